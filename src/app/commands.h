@@ -136,7 +136,18 @@ struct JitterOptions {
 void add_jitter(CLI::App& app, JitterOptions& options);
 int run_jitter(const JitterOptions& options);
 
+// The bench of servos: each of its commands is one of `kadans dynamixel`.
+struct DynamixelOptions {
+  std::string device;
+  std::uint32_t baud = 0;  // 0: scan looks at all, the others take 1000000
+  std::uint32_t id = 1, new_id = 1, new_baud = 1'000'000;
+  bool json = false;
+};
+void add_dynamixel(CLI::App& app, DynamixelOptions& options);
+int run_dynamixel(const CLI::App& app, const DynamixelOptions& options);
+
 struct DoctorOptions {
+  std::string robot;       // "": of the machine alone
   std::string root = "/";  // root folder of the machine that is examined
   bool json = false;
 };

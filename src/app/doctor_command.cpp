@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/assembly.h"
+#include "app/author/file_checks.h"
 #include "commands.h"
 #include "config/json/foreign_json.h"
 #include "realtime/machine/machine.h"
@@ -36,12 +38,23 @@ void print_json(const std::vector<MachineFinding>& findings, bool good) {
 
 void add_doctor(CLI::App& app, DoctorOptions& options) {
   CLI::App* doctor = app.add_subcommand("doctor", "Report what keeps this machine from real time");
+  doctor->add_option("robot", options.robot, "A robot's configuration (JSON): report on its drives, too")
+      ->type_name("FILE");
   doctor->add_option("--root", options.root, "Root folder of the examined system (default: /)")->type_name("FOLDER");
   doctor->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
 int run_doctor(const DoctorOptions& options) {
-  const std::vector<MachineFinding> findings = examine_machine(options.root, ".");
+  std::vector<MachineFinding> findings = examine_machine(options.root, ".");
+  if (!options.robot.empty()) {
+    require_kind(options.robot, JsonKind::robot);
+    const Robot robot = read_robot(options.robot);
+    const PlantSite site = plant_site(robot.config, "");
+    for (const auto& type : robot.config.plant_types) {
+      for (const PlantType::Finding& f : type->examine(site))
+        findings.push_back({.topic = f.topic, .good = f.good, .is = f.is, .should = f.should, .how = f.how});
+    }
+  }
   const bool good = std::ranges::all_of(findings, &MachineFinding::good);
   if (options.json) {
     print_json(findings, good);

@@ -53,6 +53,8 @@ const std::map<std::string, std::vector<std::string>> samples{
     {"log info", {"log info knee.mcap", "log info nowhere.mcap"}},
     {"log diff", {"log diff knee.mcap knee.mcap", "log diff knee.mcap at.mcap"}},
     {"doctor", {"doctor", "doctor --root machine"}},
+    {"dynamixel scan", {"dynamixel scan nowhere"}},
+    {"dynamixel info", {"dynamixel info nowhere 1"}},
     {"ctl status", {"ctl status"}},
     {"ctl list",
      {"ctl list behaviors", "ctl list parameters --names", "ctl list signals", "ctl list sets", "ctl list objects"}},

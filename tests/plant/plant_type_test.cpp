@@ -33,16 +33,20 @@ class MiddleFields final : public PlantFields {
     seen[std::string(name)] = 0;
     value = "127.0.0.1:9";
   }
+  void map(std::string_view, const ReadEntry&, std::string_view) override {}
+  bool reading() const noexcept override { return true; }
+  std::span<const std::string> drives() const noexcept override { return {}; }
+  void refuse(std::string_view, const std::string& why) override { FAIL_CHECK(why); }
   std::map<std::string, double> seen;
 };
 
 }  // namespace
 
 TEST_CASE("The types of plants are those whose folders stand in the tree, and those of the program") {
-  CHECK(plant_type_names() == std::vector<std::string>{"bullet", "ideal", "udp", "bench"});
+  CHECK(plant_type_names() == std::vector<std::string>{"bullet", "dynamixel", "ideal", "udp", "bench"});
   CHECK(plant_type_names(&PlantType::is_model) == std::vector<std::string>{"bullet", "ideal"});
   CHECK(plant_type_names(&PlantType::has_objects) == std::vector<std::string>{"bullet"});
-  CHECK(plant_type_names(&PlantType::is_protocol) == std::vector<std::string>{"udp"});
+  CHECK(plant_type_names(&PlantType::is_protocol) == std::vector<std::string>{"dynamixel", "udp"});
   for (const auto& type : plant_types()) CHECK(!type->doc().empty());
   CHECK_THROWS_AS((void)plant_type(plant_types(), "gone"), std::out_of_range);
 }
@@ -80,8 +84,8 @@ TEST_CASE("Types that others make come last") {
   };
   const MakePlantType others[] = {[]() -> std::unique_ptr<PlantType> { return std::make_unique<OtherType>(); }};
   CHECK(plant_type_names(plant_types(others)) ==
-        std::vector<std::string>{"bullet", "ideal", "udp", "bench", "another"});
-  CHECK(plant_type_names(plant_types(others), &PlantType::is_protocol) == std::vector<std::string>{"udp"});
+        std::vector<std::string>{"bullet", "dynamixel", "ideal", "udp", "bench", "another"});
+  CHECK(plant_type_names(plant_types(others), &PlantType::is_protocol) == std::vector<std::string>{"dynamixel", "udp"});
 }
 
 TEST_CASE("Two types of one name are refused") {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -35,6 +36,18 @@ class PlantFields {
   virtual void integer(std::string_view name, std::uint32_t& value, Range range, std::string_view doc) = 0;
   virtual void boolean(std::string_view name, bool& value, std::string_view doc) = 0;
   virtual void string(std::string_view name, std::string& value, std::string_view doc) = 0;
+  // Objects whose keys the file chooses: `read` lists the fields of one of them. It is also called, with "" as the key,
+  // when the fields are only described.
+  using ReadEntry = std::function<void(PlantFields& entry, const std::string& key)>;
+  virtual void map(std::string_view name, const ReadEntry& read, std::string_view doc) = 0;
+
+  // False while the fields are only described and there is no file.
+  virtual bool reading() const noexcept = 0;
+  // The names of the robot's drives, in the order of the joints; none while there is no robot.
+  virtual std::span<const std::string> drives() const noexcept = 0;
+  // A mistake that only the type can see: told with file, line and column of the field's value, or of this object's key
+  // when the name is "" or the field is not given.
+  virtual void refuse(std::string_view name, const std::string& why) = 0;
 
  protected:
   ~PlantFields() = default;
@@ -111,6 +124,18 @@ class PlantType {
 
   // Not a model: make_plant makes the plant that reaches the drives. It is not open yet. Throws InputError.
   virtual std::unique_ptr<Plant> make_plant(const PlantSite& site) const;
+
+  // What helps or hinders these drives on this machine, for `kadans doctor ROBOT`: nothing is opened and nothing moves.
+  // Without a configuration of the type there is nothing to say.
+  struct Finding {
+    std::string topic;
+    bool good = false;
+    std::string is, should, how;  // the last two say what to do where it is not good
+  };
+  virtual std::vector<Finding> examine(const PlantSite& site) const {
+    (void)site;
+    return {};
+  }
 
   // The maker's words for the codes of its drives; nullptr: codes are told as numbers.
   virtual DriveWords drive_words() const noexcept { return nullptr; }

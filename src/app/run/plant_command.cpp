@@ -141,14 +141,17 @@ class PlantService {
 }  // namespace
 
 void add_plant(CLI::App& app, PlantOptions& options) {
-  CLI::App* plant =
-      app.add_subcommand("plant", "Serve a model of a robot to `kadans run --plant udp` on another machine");
+  CLI::App* plant = app.add_subcommand(
+      "plant",
+      "Serve a model of a robot to programs that speak a protocol of drives, such as `kadans run --plant udp`");
   plant->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
   plant
-      ->add_option("--listen", options.listen,
-                   "Address to listen on; \":7100\": port 7100 on every address of this machine")
+      ->add_option(
+          "--listen", options.listen,
+          "Address to listen on; \":7100\": port 7100 on every address of this machine; for servos the path of a "
+          "serial port, which is made")
       ->required()
-      ->type_name("HOST:PORT");
+      ->type_name("HOST:PORT|PATH");
   const auto names = [](bool (PlantType::*is)() const noexcept) {
     return CLI::detail::join(plant_type_names(is), ", ");
   };

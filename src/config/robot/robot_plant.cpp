@@ -45,7 +45,8 @@ constexpr NumberRange sensor_position_m{-10, 10, "m"};
 // A plant type's list of fields, as one of the file's.
 class TypeFields final : public PlantFields {
  public:
-  explicit TypeFields(Fields& fields) : fields_(fields) {}
+  TypeFields(Fields& fields, Problems& problems, std::span<const std::string> drives)
+      : fields_(fields), problems_(problems), drives_(drives) {}
   void number(std::string_view name, double& value, Range range, std::string_view doc) override {
     fields_.number(name, value, {range.min, range.max, range.unit}, doc);
   }
@@ -57,9 +58,27 @@ class TypeFields final : public PlantFields {
   void string(std::string_view name, std::string& value, std::string_view doc) override {
     fields_.string(name, value, doc);
   }
+  void map(std::string_view name, const ReadEntry& read, std::string_view doc) override {
+    fields_.map(name, doc, [&](Fields& entry) {
+      TypeFields fields(entry, problems_, drives_);
+      read(fields, entry.key());
+    });
+  }
+  bool reading() const noexcept override { return fields_.reading(); }
+  std::span<const std::string> drives() const noexcept override { return drives_; }
+  void refuse(std::string_view name, const std::string& why) override {
+    const bool given = !name.empty() && fields_.has(name);
+    const bool entry = !fields_.key().empty();
+    problems_.add(given   ? fields_.place(name)
+                  : entry ? fields_.key_place()
+                          : fields_.place(),
+                  (given ? fields_.path(name) : fields_.path()) + ": " + why);
+  }
 
  private:
   Fields& fields_;
+  Problems& problems_;
+  std::span<const std::string> drives_;
 };
 
 }  // namespace
@@ -246,7 +265,7 @@ void RobotReader::plant(Fields& f) {
   for (const auto& type : config_.plant_types) {
     if (!type->has_fields()) continue;
     f.object(type->name(), type->doc(), [&](Fields& e) {
-      TypeFields fields(e);
+      TypeFields fields(e, problems_, drive_names_);
       type->fields(fields);
     });
   }

@@ -1,0 +1,219 @@
+#include "dynamixel_plant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <ctime>
+#include <utility>
+
+#include <pthread.h>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans::dynamixel {
+namespace {
+
+constexpr int port_priority = 80;  // below the control thread's
+constexpr std::size_t port_stack_bytes = std::size_t{256} * 1024;
+
+void add_counts(PortCounts& sum, const PortCounts& one) noexcept {
+  sum.cycles += one.cycles;
+  sum.answers += one.answers;
+  sum.lost += one.lost;
+  sum.corrupt += one.corrupt;
+  sum.strange += one.strange;
+  sum.late += one.late;
+  sum.limited += one.limited;
+}
+
+// The drives' names, by the joints in whose places they stand.
+std::vector<std::string> drives_of(const PlantSite& site) {
+  std::vector<std::string> names = site.layout.joints;
+  for (const Transmission& transmission : site.transmissions) {
+    for (std::size_t i = 0; i < transmission.drives().size(); ++i)
+      names[transmission.joints()[i]] = transmission.drives()[i];
+  }
+  return names;
+}
+
+}  // namespace
+
+struct DynamixelPlant::Port {
+  Port(SerialPort& of, const PortCycle::Timing& timing, std::vector<Servo> servos, std::vector<std::size_t> its_joints)
+      : serial(of), cycle(of, timing, std::move(servos)), period_ns(timing.period_ns), joints(std::move(its_joints)) {}
+
+  SerialPort& serial;
+  PortCycle cycle;
+  std::int64_t period_ns;
+  pthread_t thread{};
+  bool runs = false;
+  std::atomic<bool> stop{false};
+  Latest<ActuationFrame> actuation;
+  Latest<PortSample> sample;
+  std::vector<std::size_t> joints;  // of its servos
+
+  void run_once() noexcept {
+    {
+      const auto asked = actuation.read();
+      cycle.run(*asked);
+    }
+    sample.publish(cycle.sample());
+  }
+  void loop() noexcept {
+    std::int64_t due_ns = serial.now_ns();
+    while (!stop.load(std::memory_order_relaxed)) {
+      run_once();
+      const std::int64_t now_ns = serial.now_ns();
+      due_ns += period_ns;
+      if (due_ns < now_ns) due_ns += (now_ns - due_ns + period_ns - 1) / period_ns * period_ns;  // on the grid again
+      const timespec until{.tv_sec = static_cast<time_t>(due_ns / ns_per_s), .tv_nsec = due_ns % ns_per_s};
+      clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+    }
+  }
+};
+
+DynamixelPlant::DynamixelPlant(DynamixelSettings settings, PlantSite site,
+                               std::vector<std::unique_ptr<SerialPort>> ports, Threads threads)
+    : settings_(std::move(settings)),
+      site_(std::move(site)),
+      serial_(std::move(ports)),
+      threads_(threads),
+      period_ns_(bus_period_ns(settings_, site_.layout.period_ns)) {}
+
+DynamixelPlant::~DynamixelPlant() { close(); }
+
+bool DynamixelPlant::open(bool (*give_up)() noexcept) {
+  if (serial_.empty()) {
+    for (const PortSettings& port : settings_.ports)
+      serial_.push_back(std::make_unique<TerminalPort>(port.device, port.baud));
+  }
+  const std::vector<std::string> drives = drives_of(site_);
+  for (std::size_t i = 0; i < settings_.ports.size(); ++i) {
+    const PortSettings& port = settings_.ports[i];
+    std::vector<Servo> servos;
+    std::vector<std::size_t> joints;
+    for (const ServoSettings& servo : settings_.servos) {
+      if (servo.port != port.name) continue;
+      joints.push_back(static_cast<std::size_t>(std::ranges::find(drives, servo.drive) - drives.begin()));
+      servos.emplace_back(servo, joints.back(), settings_.watchdog_s);
+    }
+    const PortCycle::Timing timing{.baud = port.baud,
+                                   .period_ns = period_ns_,
+                                   .usb_latency_ns = std::llround(1e9 * settings_.usb_latency_s),
+                                   .patience_ns = std::llround(1e9 * settings_.patience_s),
+                                   .watchdog_s = settings_.watchdog_s};
+    ports_.push_back(std::make_unique<Port>(*serial_[i], timing, std::move(servos), std::move(joints)));
+    if (!ports_.back()->cycle.open(port.device, give_up)) return false;
+  }
+  open_ = true;
+  run_cycles();  // the first reading is here before the loop
+  if (threads_ == Threads::none) return true;
+  for (const auto& port : ports_) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, port_stack_bytes);
+    port->runs = pthread_create(&port->thread, &attributes, enter, port.get()) == 0;
+    pthread_attr_destroy(&attributes);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    if (!port->runs) throw InputError({.message = "the system gives no thread to a serial port"});
+    sched_param parameter{};
+    parameter.sched_priority = port_priority;
+    (void)pthread_setschedparam(port->thread, SCHED_FIFO, &parameter);  // without the right it is a usual thread
+    pthread_setname_np(port->thread, "servos");
+  }
+  return true;
+}
+
+void* DynamixelPlant::enter(void* port) {
+  static_cast<Port*>(port)->loop();
+  return nullptr;
+}
+
+void DynamixelPlant::close() noexcept {
+  for (const auto& port : ports_) port->stop.store(true, std::memory_order_relaxed);
+  for (const auto& port : ports_) {
+    if (std::exchange(port->runs, false)) pthread_join(port->thread, nullptr);
+    if (open_) port->cycle.close();
+  }
+  open_ = false;
+}
+
+void DynamixelPlant::run_cycles() noexcept {
+  for (const auto& port : ports_) port->run_once();
+}
+
+void DynamixelPlant::write(const ActuationFrame& actuation) noexcept {
+  copy_used(actuation, drives_);
+  for (const Transmission& transmission : site_.transmissions) transmission.to_drives(drives_);
+  for (const auto& port : ports_) port->actuation.publish(drives_);
+}
+
+void DynamixelPlant::read(SensorFrame& sensors) noexcept {
+  sensors.joint_count = static_cast<std::uint32_t>(site_.layout.joints.size());
+  sensors.foot_count = static_cast<std::uint32_t>(site_.layout.feet.size());
+  sensors.channel_count = static_cast<std::uint32_t>(site_.layout.sensors.size());
+  sensors.time_ns = ports_.empty() ? 0 : ports_.front()->serial.now_ns();
+  sensors.supply_V = std::numeric_limits<double>::quiet_NaN();
+  counts_ = {};
+  age_ms_ = cycle_ms_ = 0;
+  for (const auto& port : ports_) {
+    const auto sample = port->sample.read();
+    add_counts(counts_, sample->counts);
+    cycle_ms_ = std::max(cycle_ms_, sample->cycle_ms);
+    for (std::size_t i = 0; i < port->joints.size() && i < sample->count; ++i) {
+      const ServoReading& is = sample->servos[i];
+      sensors.joints[port->joints[i]] = {.position_rad = is.position_rad,
+                                         .motor_position_rad = is.position_rad,
+                                         .motor_effort_Nm = is.effort_Nm,
+                                         .sequence = is.sequence,
+                                         .code = is.code,
+                                         .time_ns = is.time_ns,
+                                         .temperature_C = is.temperature_C,
+                                         .drive = is.drive};
+      age_ms_ = std::max(age_ms_, 1e3 * seconds_between(is.time_ns, sensors.time_ns));
+      if (!(sensors.supply_V <= is.supply_V)) sensors.supply_V = is.supply_V;  // the lowest
+    }
+  }
+  for (const Transmission& transmission : site_.transmissions) {
+    const std::vector<std::size_t>& joints = transmission.joints();
+    const bool two = transmission.coupled();
+    JointSample &first = sensors.joints[joints[0]], &second = sensors.joints[joints[two ? 1 : 0]];
+    const Transmission::Pair position = transmission.joint_position_rad({first.position_rad, second.position_rad});
+    const Transmission::Pair effort = transmission.joint_effort_Nm({first.motor_effort_Nm, second.motor_effort_Nm});
+    if (two) {
+      // A joint's reading is new when one of its drives was read, and as old as the older of both.
+      first.time_ns = second.time_ns = std::min(first.time_ns, second.time_ns);
+      first.sequence = second.sequence = std::min(first.sequence, second.sequence);
+      second.position_rad = second.motor_position_rad = position[1];
+      second.motor_effort_Nm = effort[1];
+    }
+    first.position_rad = first.motor_position_rad = position[0];
+    first.motor_effort_Nm = effort[0];
+  }
+}
+
+std::vector<PlantCount> DynamixelPlant::link_counts() const {
+  return {{"cycles", counts_.cycles},   {"answers", counts_.answers}, {"lost", counts_.lost},
+          {"corrupt", counts_.corrupt}, {"strange", counts_.strange}, {"late", counts_.late},
+          {"limited", counts_.limited}};
+}
+
+void DynamixelPlant::declare_signals(SignalTable& table) const {
+  const auto add = [&](const char* name, const std::uint32_t& count, const char* doc) {
+    table.add({std::string("plant.bus.") + name, "1", doc}, &count);
+  };
+  add("cycles", counts_.cycles, "cycles of all serial ports");
+  add("answers", counts_.answers, "readings of servos");
+  add("lost", counts_.lost, "readings that never came");
+  add("corrupt", counts_.corrupt, "packets that were not what was asked for, or had a wrong CRC");
+  add("strange", counts_.strange, "readings that no servo with its settings gives: not used");
+  add("late", counts_.late, "cycles that took longer than their period");
+  add("limited", counts_.limited, "goals beyond the servos' own limits, cut to these");
+  table.add({"plant.bus.cycle_ms", "ms", "time that the last cycle of the slowest port took"}, &cycle_ms_);
+  table.add({"plant.bus.age_ms", "ms", "age of the oldest servo's newest reading"}, &age_ms_);
+}
+
+}  // namespace kadans::dynamixel

@@ -1,0 +1,52 @@
+// A serial port, and the clock that its bytes go by: of the system, or one on virtual time.
+//
+// One owner, one thread at a time. send and receive neither allocate nor throw.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "packet.h"
+
+namespace kadans::dynamixel {
+
+class SerialPort {
+ public:
+  virtual ~SerialPort() = default;
+  SerialPort() = default;
+  SerialPort(const SerialPort&) = delete;
+  SerialPort& operator=(const SerialPort&) = delete;
+
+  // False: the system did not take all of it.
+  virtual bool send(Octets bytes) noexcept = 0;
+  // Waits until bytes are here, at most until this time; returns how many it put into `into`.
+  virtual std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept = 0;
+  virtual void discard() noexcept = 0;  // what came unasked
+  virtual std::int64_t now_ns() const noexcept = 0;
+};
+
+// Of the system: raw, 8 bits, no parity, one stop bit. The clock is CLOCK_MONOTONIC.
+class TerminalPort final : public SerialPort {
+ public:
+  // Throws InputError that says what is wrong with the device: not there, no right to open it, somebody else's, no
+  // serial port, a baud rate that it cannot have.
+  TerminalPort(const std::string& device, std::uint32_t baud);
+  ~TerminalPort() override;
+
+  bool send(Octets bytes) noexcept override;
+  std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
+  void discard() noexcept override;
+  std::int64_t now_ns() const noexcept override;
+  void set_baud(std::uint32_t baud);  // throws InputError
+
+ private:
+  std::string device_;
+  int descriptor_ = -1;
+};
+
+// How long a USB adapter may keep bytes back: its latency timer, from /sys below `root`; 0: the device tells none.
+int latency_timer_ms(const std::string& root, const std::string& device);
+
+}  // namespace kadans::dynamixel

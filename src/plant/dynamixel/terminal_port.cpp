@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include <asm/termbits.h>
+#include <fcntl.h>
+#include <linux/serial.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "kadans/signal/input_error.h"
+#include "serial_port.h"
+
+namespace kadans::dynamixel {
+namespace {
+
+[[noreturn]] void refuse_device(const std::string& device, const std::string& why) {
+  throw InputError({.message = "the serial port " + device + ": " + why});
+}
+
+std::string words_of(int error) { return std::system_category().message(error); }
+
+// A wish: not every driver has it.
+void ask_for_low_latency(int descriptor) {
+  serial_struct serial{};
+  if (ioctl(descriptor, TIOCGSERIAL, &serial) != 0) return;
+  serial.flags |= ASYNC_LOW_LATENCY;
+  (void)ioctl(descriptor, TIOCSSERIAL, &serial);
+}
+
+}  // namespace
+
+TerminalPort::TerminalPort(const std::string& device, std::uint32_t baud) : device_(device) {
+  descriptor_ = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor_ < 0 && errno == ENOENT)
+    refuse_device(device, "is not there: is the adapter plugged in? `ls -l /dev/serial/by-id` shows those that are");
+  if (descriptor_ < 0 && errno == EACCES)
+    refuse_device(device, "this user may not open it: add them to its group (`ls -l " + device +
+                              "` names it, often dialout) with `sudo usermod -aG dialout $USER`, and log in again");
+  if (descriptor_ < 0) refuse_device(device, words_of(errno));
+  try {
+    if (isatty(descriptor_) == 0) refuse_device(device, "is no serial port");
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) refuse_device(device, "another program drives the servos on it");
+    set_baud(baud);
+  } catch (...) {
+    close(descriptor_);
+    throw;
+  }
+  ask_for_low_latency(descriptor_);
+}
+
+TerminalPort::~TerminalPort() { close(descriptor_); }
+
+void TerminalPort::set_baud(std::uint32_t baud) {
+  termios2 terms{};
+  if (ioctl(descriptor_, TCGETS2, &terms) != 0) refuse_device(device_, "is no serial port");
+  terms.c_iflag = 0;
+  terms.c_oflag = 0;
+  terms.c_lflag = 0;
+  terms.c_cflag = CS8 | CREAD | CLOCAL | BOTHER | (BOTHER << IBSHIFT);
+  terms.c_ispeed = terms.c_ospeed = baud;
+  terms.c_cc[VMIN] = 0;
+  terms.c_cc[VTIME] = 0;
+  termios2 is{};
+  if (ioctl(descriptor_, TCSETS2, &terms) != 0 || ioctl(descriptor_, TCGETS2, &is) != 0)
+    refuse_device(device_, words_of(errno));
+  // Three percent: more, and a byte's last bit is read wrong.
+  if (is.c_ospeed < baud - baud / 33 || is.c_ospeed > baud + baud / 33)
+    refuse_device(device_,
+                  "cannot run at " + std::to_string(baud) + " baud, the nearest is " + std::to_string(is.c_ospeed));
+}
+
+bool TerminalPort::send(Octets bytes) noexcept {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::write(descriptor_, bytes.data(), bytes.size());
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(sent));
+  }
+  return true;
+}
+
+std::size_t TerminalPort::receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept {
+  for (;;) {
+    const ssize_t got = ::read(descriptor_, into.data(), into.size());
+    if (got > 0) return static_cast<std::size_t>(got);
+    const std::int64_t left_ns = until_ns - now_ns();
+    if (left_ns <= 0 || into.empty()) return 0;
+    pollfd wanted{descriptor_, POLLIN, 0};
+    const timespec wait{.tv_sec = static_cast<time_t>(left_ns / 1'000'000'000), .tv_nsec = left_ns % 1'000'000'000};
+    const int ready = ppoll(&wanted, 1, &wait, nullptr);
+    if (ready < 0 && errno != EINTR) return 0;
+    if (ready > 0 && (wanted.revents & POLLIN) == 0) {  // unplugged: it would be ready at once, forever
+      const timespec rest{.tv_sec = 0, .tv_nsec = std::min<std::int64_t>(left_ns, 1'000'000)};
+      clock_nanosleep(CLOCK_MONOTONIC, 0, &rest, nullptr);
+    }
+  }
+}
+
+void TerminalPort::discard() noexcept { (void)ioctl(descriptor_, TCFLSH, TCIFLUSH); }
+
+std::int64_t TerminalPort::now_ns() const noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+int latency_timer_ms(const std::string& root, const std::string& device) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(device, error);
+  if (error) return 0;
+  std::ifstream in(std::filesystem::path(root) / "sys/bus/usb-serial/devices" / real.filename() / "latency_timer");
+  int ms = 0;
+  return in >> ms ? ms : 0;
+}
+
+}  // namespace kadans::dynamixel

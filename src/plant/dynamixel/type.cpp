@@ -1,0 +1,55 @@
+#include <algorithm>
+
+#include "dynamixel_plant.h"
+#include "emulator/servo_server.h"
+#include "kadans/signal/input_error.h"
+#include "port_check.h"
+
+namespace kadans {
+namespace {
+
+class DynamixelType final : public PlantType {
+ public:
+  std::string_view name() const noexcept override { return "dynamixel"; }
+  std::string_view doc() const noexcept override { return "Dynamixel servos on serial ports, protocol 2.0"; }
+  bool has_fields() const noexcept override { return true; }
+  void fields(PlantFields& f) override { settings_.fields(f); }
+
+  std::unique_ptr<Plant> make_plant(const PlantSite& site) const override {
+    return std::make_unique<dynamixel::DynamixelPlant>(settings_at(site, site.peer), site,
+                                                       std::vector<std::unique_ptr<dynamixel::SerialPort>>(),
+                                                       dynamixel::DynamixelPlant::Threads::own);
+  }
+  bool is_protocol() const noexcept override { return true; }
+  std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const override {
+    return std::make_unique<dynamixel::ServoServer>(settings_at(site, ""), site, listen);
+  }
+  std::vector<Finding> examine(const PlantSite& site) const override {
+    return settings_.servos.empty() ? std::vector<Finding>()
+                                    : dynamixel::examine_ports(settings_, site.layout.period_ns);
+  }
+  DriveWords drive_words() const noexcept override { return dynamixel::drive_code_words; }
+
+ private:
+  // The configuration's, with the device that the command line names.
+  dynamixel::DynamixelSettings settings_at(const PlantSite& site, const std::string& device) const {
+    dynamixel::DynamixelSettings settings = settings_;
+    if (settings.servos.empty())
+      throw InputError(
+          {.file = site.file,
+           .message = "says no plant.dynamixel.servos: which servo moves which joint (docs/dynamixel.md)"});
+    if (!device.empty() && settings.ports.size() > 1)
+      throw InputError(
+          {.file = "--peer", .message = "the robot has several serial ports: write their devices in " + site.file});
+    if (!device.empty()) settings.ports.front().device = device;
+    return settings;
+  }
+
+  dynamixel::DynamixelSettings settings_;
+};
+
+}  // namespace
+
+std::unique_ptr<PlantType> make_dynamixel_type() { return std::make_unique<DynamixelType>(); }
+
+}  // namespace kadans

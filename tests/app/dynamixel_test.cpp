@@ -1,0 +1,104 @@
+// JIWIY on Dynamixel servos: its whole control system, the driver, the packets and the servos, on virtual time.
+#include <doctest/doctest.h>
+
+#include "app/assembly.h"
+#include "plant/dynamixel_world.h"
+#include "program.h"
+
+using namespace kadans;
+using namespace kadans::program;
+
+namespace {
+
+constexpr const char* robot_file = KADANS_SOURCE_DIR "/config/jiwiy/servos.json";
+
+test::DynamixelWorld* newest_world = nullptr;
+
+// A model for scenarios: Bullet's, driven through servos.
+class ServosType final : public PlantType {
+ public:
+  std::string_view name() const noexcept override { return "servos"; }
+  std::string_view doc() const noexcept override { return "of the test"; }
+  bool is_model() const noexcept override { return true; }
+  std::unique_ptr<World> make_world(const WorldSite& world) const override {
+    dynamixel::DynamixelSettings settings;
+    settings.ports = {{.name = "bus", .device = "the bus", .baud = 3'000'000}};
+    settings.servos = {
+        {.drive = "pan", .port = "bus", .id = 1, .model = dynamixel::find_model("XM430-W210")},
+        {.drive = "tilt", .port = "bus", .id = 2, .model = dynamixel::find_model("XM430-W210"), .reversed = true}};
+    const PlantSite site{.file = robot_file,
+                         .layout = {.robot = "jiwiy", .joints = {"pan", "tilt"}, .period_ns = 2'000'000}};
+    const PlantTypes types = plant_types();
+    auto made = std::make_unique<test::DynamixelWorld>(plant_type(types, "bullet").make_world(world), settings, site);
+    newest_world = made.get();
+    return made;
+  }
+};
+std::unique_ptr<PlantType> make_servos_type() { return std::make_unique<ServosType>(); }
+KADANS_REGISTER_PLANT_TYPE(make_servos_type);
+
+struct Sine {
+  bool passed = false;
+  std::string why;
+  std::uint64_t hash = 0;
+  std::vector<PlantCount> counts;
+};
+
+Sine sine(const char* plant, std::uint64_t seed) {
+  ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/jiwiy_sine.json");
+  scenario.robot = robot_file;
+  scenario.plant = plant;
+  RunLog log;
+  Assembly robot(scenario, seed, log);
+  Checks checks(robot.catalog().signals, scenario.checks);
+  const RunResult result = run_scenario(robot.parts(), scenario.duration_s, checks, {});
+  Sine is{.passed = result.passed};
+  for (const CheckResult& check : result.checks) {
+    if (!check.passed) is.why += check.name + "; ";
+  }
+  for (const RunFault& one : result.faults) is.why += std::string(name(one.code)) + "; ";
+  is.hash = result.state_hash;
+  is.why += result.error;
+  if (std::string_view(plant) == "servos") is.counts = newest_world->driver().link_counts();
+  return is;
+}
+
+}  // namespace
+
+TEST_CASE("JIWIY follows its sine through servos, with the behavior that drives the model, on every seed") {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    CAPTURE(seed);
+    const Sine model = sine("bullet", seed), servos = sine("servos", seed);
+    CAPTURE(servos.why);
+    CHECK(model.passed);
+    CHECK(servos.passed);
+    CHECK(servos.hash != model.hash);
+    CHECK(servos.counts.at(0).value > 3700);  // a cycle in each control tick of 2 ms
+    CHECK(servos.counts.at(2).value == 0);    // none lost
+  }
+  CHECK(sine("servos", 1).hash == sine("servos", 1).hash);
+}
+
+TEST_CASE("A device that is no port of servos is refused, with what to do") {
+  const auto folder = project_copy("servos");
+  const std::string command = "run config/jiwiy/servos.json --plant dynamixel --soft --no-ctl --peer ";
+  Outcome outcome = run(command + "/dev/null", folder);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "the serial port /dev/null: is no serial port"));
+  outcome = run(command + "/dev/ttyNONE", folder);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "is not there: is the adapter plugged in?"));
+  outcome = run("run config/tulip/robot.json --plant dynamixel --soft --no-ctl", folder);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "says no plant.dynamixel.servos"));
+}
+
+TEST_CASE("doctor tells whether a port of servos can hold its cycle, and what is wrong with its device") {
+  const auto folder = project_copy("servos_doctor");
+  REQUIRE(edit(folder / "config/jiwiy/servos.json", "/dev/ttyUSB0", "/dev/ttyNONE"));
+  const Outcome outcome = run("doctor config/jiwiy/servos.json", folder);
+  CHECK(has(outcome.out,
+            "2 servos: 104 bytes at 3000000 baud are 0.35 ms, with the adapter 1.35 ms; the bus runs at "
+            "2.00 ms, the control at 2.00 ms"));
+  CHECK(has(outcome.out, "/dev/ttyNONE: No such file or directory"));
+}
