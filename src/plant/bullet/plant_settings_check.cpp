@@ -179,7 +179,10 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
     require_at_least_zero("encoder of joint '" + name + "': noise_rad", settings.encoders[i].noise_rad);
     if (!std::isfinite(settings.position_rad[i]))
       refuse("position_rad of '" + name + "'", settings.position_rad[i], "finite");
-    if (model.joints[i].mimic) throw std::invalid_argument("joint '" + name + "': mimic joints cannot be simulated");
+    if (model.joints[i].mimic)
+      throw std::invalid_argument("joint '" + name +
+                                  "': mimic joints cannot be simulated: in the URDF, make it 'fixed', or "
+                                  "leave out its <mimic> so that it has a motor of its own");
   }
   for (const Transmission& transmission : model.transmissions) check_coupling(settings.drives, transmission);
   for (const FootSettings& foot : settings.feet) require_link(model, "foot", foot.link);
