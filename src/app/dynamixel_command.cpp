@@ -188,16 +188,16 @@ void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
     CLI::App* command = bench->add_subcommand(name, doc);
     command->add_option("device", options.device, "The serial port, such as /dev/ttyUSB0")
         ->required()
-        ->type_name("DEVICE");
+        ->type_name("FILE");
     if (of_one) {
       command->add_option("id", options.id, "The servo's id")
           ->required()
-          ->type_name("ID")
+          ->type_name("N")
           ->check(whole_within(0, dynamixel::id_max));
     }
     command->add_option("--baud", options.baud, "Baud rate of the servos (default: 1000000; scan tries all)")
-        ->type_name("BD")
-        ->check(whole_within(9600, 10'000'000));
+        ->type_name("N")
+        ->check(whole_within(1, 10'000'000));
     return command;
   };
   add("scan", "Find the servos on a serial port", false)
@@ -207,13 +207,13 @@ void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
   add("set-id", "Give a servo another id", true)
       ->add_option("new_id", options.new_id, "Its new id")
       ->required()
-      ->type_name("ID")
+      ->type_name("N")
       ->check(whole_within(0, dynamixel::id_max));
   add("baud", "Let a servo speak at another baud rate", true)
       ->add_option("new_baud", options.new_baud, "Its new baud rate")
       ->required()
-      ->type_name("BD")
-      ->check(whole_within(9600, 10'000'000));
+      ->type_name("N")
+      ->check(whole_within(1, 10'000'000));
   add("reboot", "Let a servo begin anew, which clears its hardware error", true);
 }
 

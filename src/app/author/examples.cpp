@@ -84,7 +84,19 @@ constexpr Examples all_examples[] = {
      "  kadans run config/tulip/robot.json --play squat --live         in the browser\n"
      "  kadans run config/jiwiy/robot.json --play stick --joystick /dev/input/event5\n"
      "  kadans run config/tulip/robot.json --plant udp --peer robot:7100\n"},
-    {"plant", "  kadans plant config/tulip/robot.json --listen :7100\n"},
+    {"plant",
+     "  kadans plant config/tulip/robot.json --listen :7100\n"
+     "  kadans plant config/jiwiy/servos.json --as dynamixel --listen /tmp/bus\n"},
+    {"dynamixel",
+     "  kadans dynamixel scan /dev/ttyUSB0\n"
+     "  kadans dynamixel set-id /dev/ttyUSB0 1 7 --baud 57600\n"},
+    {"dynamixel scan",
+     "  kadans dynamixel scan /dev/ttyUSB0\n"
+     "  kadans dynamixel scan /tmp/bus --baud 3000000\n"},
+    {"dynamixel info", "  kadans dynamixel info /dev/ttyUSB0 7 --baud 3000000\n"},
+    {"dynamixel set-id", "  kadans dynamixel set-id /dev/ttyUSB0 1 7 --baud 57600\n"},
+    {"dynamixel baud", "  kadans dynamixel baud /dev/ttyUSB0 7 3000000 --baud 57600\n"},
+    {"dynamixel reboot", "  kadans dynamixel reboot /dev/ttyUSB0 7\n"},
     {"jitter",
      "  kadans jitter --seconds 10\n"
      "  kadans jitter --load --svg jitter.svg\n"},
@@ -119,7 +131,9 @@ constexpr Examples all_examples[] = {
      "  kadans log plot squat.mcap plant.base.height_m 'joint.*_knee.effort_Nm' -o squat.svg\n"},
     {"log diff", "  kadans log diff squat.mcap again.mcap --tolerance 1e-9\n"},
     {"log cut", "  kadans log cut squat.mcap --from 2 --to 4 --signals 'joint.*' -o short.mcap\n"},
-    {"doctor", "  kadans doctor\n"},
+    {"doctor",
+     "  kadans doctor\n"
+     "  kadans doctor config/jiwiy/servos.json\n"},
     {"new", "  kadans new control-object knee_damper\n"},
     {"new control-object",
      "  kadans new control-object knee_damper\n"
