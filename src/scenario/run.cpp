@@ -84,10 +84,10 @@ class Run {
     for (std::size_t i = 0; i < parts_.others.size(); ++i) take_faults(parts_.others[i], i + 1);
   }
 
-  void take_faults(const RunParts& robot, std::size_t number) {
+  void take_faults(const RunParts& robot, std::size_t index) {
     const std::int64_t time_ns = robot.control.state().time_ns;
     for (Fault fault; robot.control.safety().log().try_pop(fault);) {
-      fault.robot = static_cast<std::uint16_t>(number);
+      fault.robot = static_cast<std::uint16_t>(index);
       ToldFault what = told(fault, robot.model, time_ns, robot.name);
       for (RunObserver* observer : observers_) observer->fault(fault);
       result_.faults.push_back({fault, std::move(what)});

@@ -12,6 +12,8 @@
 #include "engine/transaction.h"
 #include "kadans/testing/allocation_count.h"
 
+namespace setpoint_motions_test {
+
 using namespace kadans;
 
 namespace {
@@ -366,3 +368,5 @@ TEST_CASE("a spline swings beyond its points where they turn, and says how far")
   for (std::size_t i = spline.size(); i < CubicSpline::points_max; ++i) REQUIRE(spline.add(1, 0.1));
   CHECK_FALSE(spline.add(1, 0.1));
 }
+
+}  // namespace setpoint_motions_test
