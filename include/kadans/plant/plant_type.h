@@ -92,8 +92,8 @@ class PlantEmulator {
   virtual bool await(int milliseconds) noexcept = 0;
   // `periods` passed since the last beat. False: the session is over. Throws what the world's step throws.
   virtual bool beat(World& world, std::uint32_t periods) = 0;
-  // From now on the world's time passes with the peer's control ticks, not with the periods of beats, which only say how
-  // much may pass at most. False: this protocol does not count the peer's ticks.
+  // From now on the world's time passes with the peer's control ticks, not with the periods of beats, which only say
+  // how much may pass at most. False: this protocol does not count the peer's ticks.
   virtual bool step_with_peer() noexcept { return false; }
   virtual std::string peer_name() const = 0;
   virtual const Session& session() const noexcept = 0;
