@@ -113,7 +113,7 @@ struct PlantOptions {
   std::string listen;
   std::string plant = "bullet", as = "udp";  // plant types: of the served model, of the protocol
   std::uint64_t seed = 1;
-  bool soft = false;  // also without the rights for real time
+  bool soft = false;     // also without the rights for real time
   bool once = false;     // ends with the first session
   bool in_step = false;  // time passes with the peer's ticks
   int cpu = -1;          // -1: the CPU that `kadans run` takes

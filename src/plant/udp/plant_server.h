@@ -59,8 +59,8 @@ class PlantServer final : public PlantEmulator {
   PeerAddress peer_;
   std::uint64_t session_number_ = 0, sent_ = 0;
   std::uint64_t newest_actuation_ = 0, stepped_ = 0;  // stepped_: for that many of the peer's ticks
-  std::int64_t silent_ns_ = 0;  // since the newest actuation
-  bool driven_ = false;         // there was an actuation
+  std::int64_t silent_ns_ = 0;                        // since the newest actuation
+  bool driven_ = false;                               // there was an actuation
   bool released_ = false;
   ActuationFrame actuation_, damping_;
   SensorFrame sensors_;
