@@ -3,8 +3,9 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-set(CMAKE_CXX_FLAGS_RELEASE "-O2")  # asserts stay: they guard what a release robot must not do either
-set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")
+set(KADANS_OPTIMISATION "" CACHE STRING "How builds are optimised (default: -O2, with debug information -O1)")
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 ${KADANS_OPTIMISATION}")  # asserts stay: they guard what a release robot must not do either
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1 ${KADANS_OPTIMISATION}")
 if(KADANS_FUZZ)  # clang inlines nothing at -O1
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1")
   add_compile_options(-fsanitize-coverage-ignorelist=${PROJECT_SOURCE_DIR}/tests/fuzz/libraries.txt)

@@ -120,13 +120,13 @@ void PacketScanner::skip(std::size_t bytes) noexcept {
 bool PacketScanner::next(ReceivedPacket& packet) noexcept {
   for (;;) {
     const Octets here{bytes_.data() + begin_, end_ - begin_};
-    const auto found = std::ranges::search(here, header);
-    if (found.empty()) {  // the last bytes may begin a header
+    const auto found = std::search(here.begin(), here.end(), header.begin(), header.end());
+    if (found == here.end()) {  // the last bytes may begin a header
       const std::size_t keep = std::min(here.size(), header.size() - 1);
       skip(here.size() - keep);
       return false;
     }
-    const auto before = static_cast<std::size_t>(found.begin() - here.begin());
+    const auto before = static_cast<std::size_t>(found - here.begin());
     if (before > 0) {
       skip(before);
       continue;
