@@ -18,7 +18,7 @@ note() { echo "$(python3 tests/computer/power_log.py count "$log") $*" >>"$progr
 # The record that is written and the run's time, then the entries.
 note_run() {
   local now
-  now=$(guest "ls $records | tail -n 1; kadans ctl status" 2>/dev/null | awk 'NR == 1 {file = $1} /^tulip/ {sub(/,$/, "", $5); print file, $5}') || return 0
+  now=$(guest "ls $records | tail -n 1; kadans ctl status" 2>/dev/null | awk 'NR == 1 {file = $1; next} /^tulip/ {sub(/,$/, "", $5); print file, $5}') || return 0
   [ -z "$now" ] || note record "$now"
 }
 run_for() {
