@@ -9,6 +9,11 @@ namespace kadans {
 PlantServer::PlantServer(const UdpSettings& settings, const PlantLayout& layout, DatagramSocket socket)
     : settings_(settings), wire_(layout), socket_(std::move(socket)), period_ns_(layout.period_ns) {}
 
+bool PlantServer::step_with_peer() noexcept {
+  settings_.watchdog_s = settings_.peer_timeout_s = in_step_timeout_s;
+  return in_step_ = true;
+}
+
 bool PlantServer::await(int milliseconds) noexcept {
   in_session_ = answered_stranger_ = false;
   socket_.wait(milliseconds);
@@ -114,8 +119,8 @@ bool PlantServer::beat(World& world, std::uint32_t periods) {
   answered_stranger_ = false;
   take_all();
   if (session_.left) return false;
-  const double patience_s = in_step_ ? in_step_timeout_s : settings_.watchdog_s;
-  const bool released = driven_ && static_cast<double>(silent_ns_) > 1e9 * patience_s;  // and again one that is driven
+  const bool released =
+      driven_ && static_cast<double>(silent_ns_) > 1e9 * settings_.watchdog_s;  // and again one that is driven
   if (released && !released_) ++session_.releases;
   released_ = released;
   const std::uint32_t due = this->due(periods);
@@ -124,7 +129,7 @@ bool PlantServer::beat(World& world, std::uint32_t periods) {
     world.step(period_ns_);
   }
   silent_ns_ += static_cast<std::int64_t>(periods) * period_ns_;
-  if (static_cast<double>(silent_ns_) > 1e9 * (in_step_ ? in_step_timeout_s : settings_.peer_timeout_s)) return false;
+  if (static_cast<double>(silent_ns_) > 1e9 * settings_.peer_timeout_s) return false;
   if (in_step_ && driven_ && due == 0) return true;  // the peer has had this sample
   robot.read(sensors_);
   const WireHead head{

@@ -27,7 +27,7 @@ class PlantServer final : public PlantEmulator {
 
   bool await(int milliseconds) noexcept override;
   bool beat(World& world, std::uint32_t periods) override;
-  bool step_with_peer() noexcept override { return in_step_ = true; }
+  bool step_with_peer() noexcept override;
   std::string peer_name() const override { return peer_.text(); }
   const Session& session() const noexcept override { return session_; }
   std::vector<PlantCount> link_counts() const override { return counts_of(link_); }
