@@ -23,14 +23,7 @@ std::optional<std::size_t> RobotModel::find_link(std::string_view wanted) const 
 
 std::vector<std::string> RobotModel::joint_names() const { return names_of(joints); }
 
-std::vector<std::string> RobotModel::drive_names() const {
-  std::vector<std::string> names = joint_names();
-  for (const Transmission& transmission : transmissions) {
-    for (std::size_t i = 0; i < transmission.drives().size(); ++i)
-      names[transmission.joints()[i]] = transmission.drives()[i];
-  }
-  return names;
-}
+std::vector<std::string> RobotModel::drive_names() const { return kadans::drive_names(joint_names(), transmissions); }
 
 bool RobotModel::on_one_path(std::size_t joint, std::size_t other) const {
   std::size_t link = std::max(joint, other) + 1;  // parents come before children

@@ -87,4 +87,37 @@ void Transmission::to_drives(ActuationFrame& frame) const noexcept {
   }
 }
 
+template <typename Position, typename Effort>
+void Transmission::map(SensorFrame& frame, Position position, Effort effort) const noexcept {
+  JointSample &first = frame.joints[joints_[0]], &second = frame.joints[joints_[coupled() ? 1 : 0]];
+  const Pair position_rad = position(Pair{first.motor_position_rad, second.motor_position_rad});
+  const Pair effort_Nm = effort(Pair{first.motor_effort_Nm, second.motor_effort_Nm});
+  if (coupled()) {
+    second.motor_position_rad = position_rad[1];
+    second.motor_effort_Nm = effort_Nm[1];
+  }
+  first.motor_position_rad = position_rad[0];
+  first.motor_effort_Nm = effort_Nm[0];
+}
+
+void Transmission::to_joints(SensorFrame& frame) const noexcept {
+  map(
+      frame, [&](const Pair& drives) { return joint_position_rad(drives); },
+      [&](const Pair& drives) { return joint_effort_Nm(drives); });
+}
+
+void Transmission::to_drives(SensorFrame& frame) const noexcept {
+  map(
+      frame, [&](const Pair& joints) { return drive_position_rad(joints); },
+      [&](const Pair& joints) { return drive_effort_Nm(joints); });
+}
+
+std::vector<std::string> drive_names(std::vector<std::string> joints, std::span<const Transmission> transmissions) {
+  for (const Transmission& transmission : transmissions) {
+    for (std::size_t i = 0; i < transmission.drives().size(); ++i)
+      joints[transmission.joints()[i]] = transmission.drives()[i];
+  }
+  return joints;
+}
+
 }  // namespace kadans

@@ -17,6 +17,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,9 +61,15 @@ class Transmission {
   // its own position, so in impedance mode it gets its diagonal entry of C^-T K C^-1. That is exact for a differential
   // between joints of the same stiffness; joints of different stiffness get the mean of both.
   void to_drives(ActuationFrame& frame) const noexcept;
+  // Position and effort of the motors' side of the samples: what the drives measure as what it is at their joints, and
+  // the other way round.
+  void to_joints(SensorFrame& frame) const noexcept;
+  void to_drives(SensorFrame& frame) const noexcept;
 
  private:
   using Matrix = std::array<Pair, 2>;
+  template <typename Position, typename Effort>
+  void map(SensorFrame& frame, Position position, Effort effort) const noexcept;
   static Pair times(const Matrix& m, const Pair& x) noexcept {
     return {m[0][0] * x[0] + m[0][1] * x[1], m[1][0] * x[0] + m[1][1] * x[1]};
   }
@@ -75,5 +82,8 @@ class Transmission {
   Matrix ratio_{{{1, 0}, {0, 1}}}, inverse_{{{1, 0}, {0, 1}}};  // C and its inverse
   Pair offset_rad_{};
 };
+
+// The drives' names, each in its joint's place: the joint's own, where no transmission names another.
+std::vector<std::string> drive_names(std::vector<std::string> joints, std::span<const Transmission> transmissions);
 
 }  // namespace kadans

@@ -71,15 +71,7 @@ void Drives::map(ActuationFrame& frame) const noexcept {
 }
 
 void Drives::map(SensorFrame& frame) const noexcept {
-  for (const auto& [transmission, own] : couplings_) {
-    JointSample &first = frame.joints[transmission.joints()[0]], &second = frame.joints[transmission.joints()[1]];
-    const auto position = transmission.joint_position_rad({first.motor_position_rad, second.motor_position_rad});
-    const auto effort = transmission.joint_effort_Nm({first.motor_effort_Nm, second.motor_effort_Nm});
-    first.motor_position_rad = position[0];
-    second.motor_position_rad = position[1];
-    first.motor_effort_Nm = effort[0];
-    second.motor_effort_Nm = effort[1];
-  }
+  for (const Coupling& coupling : couplings_) coupling.transmission.to_joints(frame);
 }
 
 void Drives::read_motion() {
