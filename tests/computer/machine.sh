@@ -53,7 +53,7 @@ machine_start() {
   : >"$console"
   began=$(date +%s%N)
   $emulator -accel tcg -cpu $cpu -m 256 -smp 1 -display none -serial "file:$console" -monitor "unix:$work/monitor,server,nowait" \
-    "${disk[@]}" -nic "user,model=e1000,hostfwd=tcp:127.0.0.1:$port-:22,hostfwd=tcp:127.0.0.1:$live-:8765" \
+    "${disk[@]}" -nic "user,id=net,model=e1000,hostfwd=tcp:127.0.0.1:$port-:22,hostfwd=tcp:127.0.0.1:$live-:8765" \
     -device i6300esb "$@" 2>"$work/qemu" &
   machine=$!
 }

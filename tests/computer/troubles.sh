@@ -20,33 +20,20 @@ guest kadans ctl status
 guest "rm /data/fill && sync"
 say "a full disk costs the record, and the robot is driven on"
 
-monitor() { python3 -c '
+monitor() {  # a command of QEMU's
+  python3 -c '
 import socket, sys
 s = socket.socket(socket.AF_UNIX)
 s.connect(sys.argv[1])
 s.settimeout(5)
 s.recv(4096)
 s.sendall(sys.argv[2].encode() + b"\n")
-s.recv(4096)' "$work/monitor" "$1"; }
-nic=$(python3 - "$work/monitor" <<'END'
-import re, socket, sys
-s = socket.socket(socket.AF_UNIX)
-s.connect(sys.argv[1])
-s.settimeout(3)
-text = ""
-s.sendall(b"info network\n")
-try:
-    while "e1000" not in text.split("info network")[-1]:
-        text += s.recv(4096).decode(errors="replace")
-except TimeoutError:
-    pass
-print(re.findall(r"(e1000\S*):", text)[-1])
-END
-)
+s.recv(4096)' "$work/monitor" "$1"
+}
 before=$(ticks)
-monitor "set_link $nic off"
+monitor "set_link net off"
 sleep 15
-monitor "set_link $nic on"
+monitor "set_link net on"
 machine_answers
 [ "$(ticks)" -gt "$before" ] || fail "a network that goes stops the robot"
 [ "$(started)" = 0 ] || fail "a network that goes ends the run"
