@@ -161,9 +161,7 @@ int set_id(const DynamixelOptions& options) {
 
 int set_baud(const DynamixelOptions& options) {
   const auto* const code = std::ranges::find(baud_rates, options.new_baud);
-  if (code == baud_rates.end())
-    throw InputError({.message = "no servo knows " + std::to_string(options.new_baud) +
-                                 " baud: 9600, 57600, 115200, 1000000, 2000000, 3000000, 4000000 or 4500000"});
+  if (code == baud_rates.end()) throw InputError({.message = unknown_baud(options.new_baud)});
   Bench bench(options);
   bench.write(torque_enable, 0);
   bench.write(baud_rate, static_cast<std::uint32_t>(code - baud_rates.begin()));

@@ -52,8 +52,6 @@ static_assert(bytes_of(full_reads) + bytes_of(full_writes) == 28 &&
 
 }  // namespace
 
-std::span<const ServoModel> servo_models() noexcept { return models; }
-
 const ServoModel* find_model(std::string_view name) noexcept {
   const auto* const found = std::ranges::find(models, name, &ServoModel::name);
   return found == models.end() ? nullptr : found;
@@ -71,6 +69,13 @@ std::vector<std::string> model_names() {
 }
 
 std::uint32_t baud_of_code(std::uint32_t code) noexcept { return code < baud_rates.size() ? baud_rates[code] : 0; }
+
+std::string unknown_baud(std::uint32_t baud) {
+  std::string known;
+  for (const std::uint32_t rate : baud_rates)
+    known += (rate == baud_rates.front() ? ": " : rate == baud_rates.back() ? " or " : ", ") + std::to_string(rate);
+  return "no servo knows " + std::to_string(baud) + " baud" + known;
+}
 
 IndirectLayout::IndirectLayout(const ServoModel& model) noexcept : data_(model.indirect_data) {
   const bool full = model.indirect_slots >= 28;

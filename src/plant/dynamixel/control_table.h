@@ -23,9 +23,8 @@ struct Register {
 };
 
 // EEPROM: writable only while torque is off.
-inline constexpr Register model_number{0, 2}, firmware_version{6, 1}, own_id{7, 1}, baud_rate{8, 1}, return_delay{9, 1},
-    drive_mode{10, 1}, operating_mode{11, 1}, shadow_id{12, 1}, homing_offset{20, 4}, pwm_limit{36, 2},
-    current_limit{38, 2}, velocity_limit{44, 4};
+inline constexpr Register own_id{7, 1}, baud_rate{8, 1}, return_delay{9, 1}, drive_mode{10, 1}, operating_mode{11, 1},
+    pwm_limit{36, 2}, current_limit{38, 2}, velocity_limit{44, 4};
 // RAM.
 inline constexpr Register torque_enable{64, 1}, status_return_level{68, 1}, hardware_error{70, 1}, bus_watchdog{98, 1},
     goal_pwm{100, 2}, goal_current{102, 2}, goal_velocity{104, 4}, profile_acceleration{108, 4},
@@ -65,7 +64,6 @@ struct ServoModel {
   double Nm_per_A() const noexcept { return stall_Nm / stall_A; }
 };
 
-std::span<const ServoModel> servo_models() noexcept;
 const ServoModel* find_model(std::string_view name) noexcept;
 const ServoModel* find_model(std::uint16_t number) noexcept;
 std::vector<std::string> model_names();
@@ -74,6 +72,8 @@ std::vector<std::string> model_names();
 std::uint32_t baud_of_code(std::uint32_t code) noexcept;
 inline constexpr std::array<std::uint32_t, 8> baud_rates{9600,      57'600,    115'200,   1'000'000,
                                                          2'000'000, 3'000'000, 4'000'000, 4'500'000};
+
+std::string unknown_baud(std::uint32_t baud);  // a sentence: no servo has it, and which there are
 
 // What a cycle reads of each servo and writes to it, through its indirect data.
 class IndirectLayout {

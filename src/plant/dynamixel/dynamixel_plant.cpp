@@ -16,25 +16,20 @@ namespace {
 constexpr int port_priority = 80;  // below the control thread's
 constexpr std::size_t port_stack_bytes = std::size_t{256} * 1024;
 
-void add_counts(PortCounts& sum, const PortCounts& one) noexcept {
-  sum.cycles += one.cycles;
-  sum.answers += one.answers;
-  sum.lost += one.lost;
-  sum.corrupt += one.corrupt;
-  sum.strange += one.strange;
-  sum.late += one.late;
-  sum.limited += one.limited;
-}
-
-// The drives' names, by the joints in whose places they stand.
-std::vector<std::string> drives_of(const PlantSite& site) {
-  std::vector<std::string> names = site.layout.joints;
-  for (const Transmission& transmission : site.transmissions) {
-    for (std::size_t i = 0; i < transmission.drives().size(); ++i)
-      names[transmission.joints()[i]] = transmission.drives()[i];
-  }
-  return names;
-}
+struct NamedCount {
+  const char* name;
+  std::uint32_t PortCounts::*value;
+  const char* doc;
+};
+constexpr NamedCount named_counts[] = {
+    {"cycles", &PortCounts::cycles, "cycles of all serial ports"},
+    {"answers", &PortCounts::answers, "readings of servos"},
+    {"lost", &PortCounts::lost, "readings that never came"},
+    {"corrupt", &PortCounts::corrupt, "packets that were not what was asked for, or had a wrong CRC"},
+    {"strange", &PortCounts::strange, "readings that no servo with its settings gives: not used"},
+    {"late", &PortCounts::late, "cycles that took longer than their period"},
+    {"limited", &PortCounts::limited, "goals beyond the servos' own limits, cut to these"},
+};
 
 }  // namespace
 
@@ -87,7 +82,7 @@ bool DynamixelPlant::open(bool (*give_up)() noexcept) {
     for (const PortSettings& port : settings_.ports)
       serial_.push_back(std::make_unique<TerminalPort>(port.device, port.baud));
   }
-  const std::vector<std::string> drives = drives_of(site_);
+  const std::vector<std::string> drives = drive_names(site_.layout.joints, site_.transmissions);
   for (std::size_t i = 0; i < settings_.ports.size(); ++i) {
     const PortSettings& port = settings_.ports[i];
     std::vector<Servo> servos;
@@ -161,7 +156,7 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
   age_ms_ = cycle_ms_ = 0;
   for (const auto& port : ports_) {
     const auto sample = port->sample.read();
-    add_counts(counts_, sample->counts);
+    for (const NamedCount& one : named_counts) counts_.*one.value += sample->counts.*one.value;
     cycle_ms_ = std::max(cycle_ms_, sample->cycle_ms);
     for (std::size_t i = 0; i < port->joints.size() && i < sample->count; ++i) {
       const ServoReading& is = sample->servos[i];
@@ -179,39 +174,25 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
   }
   for (const Transmission& transmission : site_.transmissions) {
     const std::vector<std::size_t>& joints = transmission.joints();
-    const bool two = transmission.coupled();
-    JointSample &first = sensors.joints[joints[0]], &second = sensors.joints[joints[two ? 1 : 0]];
-    const Transmission::Pair position = transmission.joint_position_rad({first.position_rad, second.position_rad});
-    const Transmission::Pair effort = transmission.joint_effort_Nm({first.motor_effort_Nm, second.motor_effort_Nm});
-    if (two) {
-      // A joint's reading is new when one of its drives was read, and as old as the older of both.
-      first.time_ns = second.time_ns = std::min(first.time_ns, second.time_ns);
-      first.sequence = second.sequence = std::min(first.sequence, second.sequence);
-      second.position_rad = second.motor_position_rad = position[1];
-      second.motor_effort_Nm = effort[1];
-    }
-    first.position_rad = first.motor_position_rad = position[0];
-    first.motor_effort_Nm = effort[0];
+    JointSample &first = sensors.joints[joints[0]], &second = sensors.joints[joints[transmission.coupled() ? 1 : 0]];
+    transmission.to_joints(sensors);
+    first.position_rad = first.motor_position_rad;
+    second.position_rad = second.motor_position_rad;
+    // A joint's reading is new when one of its drives was read, and as old as the older of both.
+    first.time_ns = second.time_ns = std::min(first.time_ns, second.time_ns);
+    first.sequence = second.sequence = std::min(first.sequence, second.sequence);
   }
 }
 
 std::vector<PlantCount> DynamixelPlant::link_counts() const {
-  return {{"cycles", counts_.cycles},   {"answers", counts_.answers}, {"lost", counts_.lost},
-          {"corrupt", counts_.corrupt}, {"strange", counts_.strange}, {"late", counts_.late},
-          {"limited", counts_.limited}};
+  std::vector<PlantCount> counts;
+  for (const NamedCount& one : named_counts) counts.push_back({one.name, counts_.*one.value});
+  return counts;
 }
 
 void DynamixelPlant::declare_signals(SignalTable& table) const {
-  const auto add = [&](const char* name, const std::uint32_t& count, const char* doc) {
-    table.add({std::string("plant.bus.") + name, "1", doc}, &count);
-  };
-  add("cycles", counts_.cycles, "cycles of all serial ports");
-  add("answers", counts_.answers, "readings of servos");
-  add("lost", counts_.lost, "readings that never came");
-  add("corrupt", counts_.corrupt, "packets that were not what was asked for, or had a wrong CRC");
-  add("strange", counts_.strange, "readings that no servo with its settings gives: not used");
-  add("late", counts_.late, "cycles that took longer than their period");
-  add("limited", counts_.limited, "goals beyond the servos' own limits, cut to these");
+  for (const NamedCount& one : named_counts)
+    table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts_.*one.value));
   table.add({"plant.bus.cycle_ms", "ms", "time that the last cycle of the slowest port took"}, &cycle_ms_);
   table.add({"plant.bus.age_ms", "ms", "age of the oldest servo's newest reading"}, &age_ms_);
 }

@@ -1,8 +1,6 @@
 #include "port_check.h"
 
-#include <array>
 #include <cerrno>
-#include <cstdio>
 #include <system_error>
 
 #include <sys/stat.h>
@@ -12,12 +10,6 @@
 
 namespace kadans::dynamixel {
 namespace {
-
-std::string ms(std::int64_t ns) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f ms", 1e-6 * static_cast<double>(ns));
-  return text.data();
-}
 
 PlantType::Finding device_of(const PortSettings& port) {
   PlantType::Finding finding{.topic = "port " + port.name, .good = false, .is = port.device, .should = {}, .how = {}};
@@ -59,9 +51,9 @@ std::vector<PlantType::Finding> examine_ports(const DynamixelSettings& settings,
     }
     const CycleNeed need = cycle_need(settings, port);
     const std::string is = std::to_string(need.servos) + " servos: " + std::to_string(need.bytes) + " bytes at " +
-                           std::to_string(port.baud) + " baud are " + ms(need.wire_ns) + ", with the adapter " +
-                           ms(need.needed_ns) + "; the bus runs at " + ms(period_ns) + ", the control at " +
-                           ms(control_period_ns);
+                           std::to_string(port.baud) + " baud are " + milliseconds(need.wire_ns) +
+                           ", with the adapter " + milliseconds(need.needed_ns) + "; the bus runs at " +
+                           milliseconds(period_ns) + ", the control at " + milliseconds(control_period_ns);
     findings.push_back({.topic = "cycle " + port.name,
                         .good = need.needed_ns <= period_ns,
                         .is = is,

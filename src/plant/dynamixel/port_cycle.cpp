@@ -229,7 +229,7 @@ void PortCycle::serve_one() noexcept {
     } else if (servo.stage() == Servo::Stage::working && servo.missed() >= missed_max) {
       ServoBus::Identity identity;
       if (bus_.ping(servo.id(), identity) == Answer::good) continue;
-      if (servo.missed() >= missed_alone_max) servo.fell_silent();
+      if (servo.missed() >= missed_alone_max) servo.give_up(code_silent);
     } else {
       continue;
     }

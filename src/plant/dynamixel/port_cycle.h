@@ -94,7 +94,6 @@ class PortCycle {
   PacketScanner scanner_;
   std::int64_t sent_ns_ = 0;
   std::size_t next_served_ = 0;
-  bool fell_out_ = false;
   PortCounts counts_;
   PortSample sample_;
 };

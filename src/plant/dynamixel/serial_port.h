@@ -12,6 +12,8 @@
 
 namespace kadans::dynamixel {
 
+std::int64_t monotonic_ns() noexcept;  // of CLOCK_MONOTONIC
+
 class SerialPort {
  public:
   virtual ~SerialPort() = default;
@@ -38,7 +40,7 @@ class TerminalPort final : public SerialPort {
   bool send(Octets bytes) noexcept override;
   std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
   void discard() noexcept override;
-  std::int64_t now_ns() const noexcept override;
+  std::int64_t now_ns() const noexcept override { return monotonic_ns(); }
   void set_baud(std::uint32_t baud);  // throws InputError
 
  private:

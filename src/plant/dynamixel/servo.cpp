@@ -36,8 +36,8 @@ Servo::Servo(const ServoSettings& settings, std::size_t joint, double watchdog_s
       layout_(*settings.model),
       sign_(settings.reversed ? -1 : 1),
       watchdog_units_(watchdog_units_of(watchdog_s)) {
-  const double Nm_per_A = settings_.Nm_per_A > 0 ? settings_.Nm_per_A : model().Nm_per_A();
-  Nm_per_unit_ = model().has_current() ? Nm_per_A * model().A_per_unit : load_per_unit * model().stall_Nm;
+  Nm_per_unit_ = model().has_current() ? settings_.torque_constant_Nm_per_A() * model().A_per_unit
+                                       : load_per_unit * model().stall_Nm;
 }
 
 void Servo::start_set_up() noexcept {
@@ -122,11 +122,7 @@ Servo::SetUp Servo::set_up(ServoBus& bus) noexcept {
     return SetUp::done;
   }
   if (++tries_ < tries_max) return SetUp::goes_on;
-  if (answer == Answer::refused) {
-    refuses();
-  } else {
-    fell_silent();
-  }
+  give_up(answer == Answer::refused ? code_refuses : code_silent);
   return SetUp::failed;
 }
 
@@ -261,16 +257,9 @@ bool Servo::take(Octets data, std::int64_t time_ns) noexcept {
   return true;
 }
 
-void Servo::fell_silent() noexcept {
+void Servo::give_up(std::uint32_t code) noexcept {
   stage_ = Stage::silent;
-  reading_.code = code_silent;
-  goals_ = {};
-  tell_state();
-}
-
-void Servo::refuses() noexcept {
-  stage_ = Stage::silent;
-  reading_.code = code_refuses;
+  reading_.code = code;
   goals_ = {};
   tell_state();
 }

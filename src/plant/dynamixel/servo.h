@@ -72,8 +72,7 @@ class Servo {
 
   // What it answered to a cycle's read, `data` as its layout says. False: it is not what a servo that was set up shows.
   bool take(Octets data, std::int64_t time_ns) noexcept;
-  void fell_silent() noexcept;
-  void refuses() noexcept;
+  void give_up(std::uint32_t code) noexcept;                 // until a reset
   std::uint32_t missed() const noexcept { return missed_; }  // reads without an answer in a row
   void miss() noexcept { ++missed_; }
 

@@ -14,21 +14,13 @@ namespace {
 constexpr std::uint32_t no_id = id_max + 1;
 constexpr std::size_t servos_max = 48;  // of one port: their answer must fit into a packet
 
-std::string milliseconds(std::int64_t ns) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f ms", 1e-6 * static_cast<double>(ns));
-  return text.data();
-}
-
 void port_fields(PlantFields& entry, PortSettings& port) {
   entry.string("device", port.device, "the serial port, such as /dev/serial/by-id/NAME");
   entry.integer("baud", port.baud, {9600, 10'000'000, "Bd"}, "baud rate that its servos are set to");
   if (!entry.reading()) return;
   if (!is_word(port.name)) entry.refuse("", "'" + port.name + "' is no name for a port: letters, digits and '_'");
   if (port.device.empty()) entry.refuse("", "port '" + port.name + "' names no device");
-  if (std::ranges::find(baud_rates, port.baud) == baud_rates.end())
-    entry.refuse("baud", "no servo knows " + std::to_string(port.baud) +
-                             " baud: 9600, 57600, 115200, 1000000, 2000000, 3000000, 4000000 or 4500000");
+  if (std::ranges::find(baud_rates, port.baud) == baud_rates.end()) entry.refuse("baud", unknown_baud(port.baud));
 }
 
 }  // namespace
@@ -121,6 +113,12 @@ void DynamixelSettings::fields(PlantFields& f) {
                                ", the USB adapter keeps them back for up to " +
                                milliseconds(std::llround(1e9 * usb_latency_s)) + ")");
   }
+}
+
+std::string milliseconds(std::int64_t ns) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f ms", 1e-6 * static_cast<double>(ns));
+  return text.data();
 }
 
 CycleNeed cycle_need(const DynamixelSettings& settings, const PortSettings& port) {

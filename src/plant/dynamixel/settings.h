@@ -24,6 +24,8 @@ struct ServoSettings {
   std::uint32_t zero_pulse = 2048;  // its position when the drive is at 0
   bool reversed = false;            // counts in the opposite direction
   double Nm_per_A = 0;              // 0: the model's, from its stall torque and current
+
+  double torque_constant_Nm_per_A() const noexcept { return Nm_per_A > 0 ? Nm_per_A : model->Nm_per_A(); }
 };
 
 struct DynamixelSettings {
@@ -37,6 +39,8 @@ struct DynamixelSettings {
   // Lists the fields; refuses what does not fit together.
   void fields(PlantFields& f);
 };
+
+std::string milliseconds(std::int64_t ns);  // "0.35 ms"
 
 // What one cycle of a port needs.
 struct CycleNeed {

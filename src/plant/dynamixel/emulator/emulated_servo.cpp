@@ -41,10 +41,7 @@ constexpr std::array written{
 
 EmulatedServo::EmulatedServo(const Settings& settings) : settings_(settings) { defaults(); }
 
-std::uint32_t EmulatedServo::baud() const noexcept {
-  constexpr std::array<std::uint32_t, 8> rates{9600, 57600, 115200, 1000000, 2000000, 3000000, 4000000, 4500000};
-  return table_[8] < rates.size() ? rates[table_[8]] : 0;
-}
+std::uint32_t EmulatedServo::baud() const noexcept { return table_[8] < rates.size() ? rates[table_[8]] : 0; }
 
 bool EmulatedServo::has_current() const noexcept {
   const std::uint16_t number = settings_.model;

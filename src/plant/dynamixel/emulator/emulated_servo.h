@@ -40,6 +40,9 @@ class EmulatedServo {
 
   // The bus.
   std::uint8_t id() const noexcept { return table_[7]; }
+  // By the code in its register, as the manual has them.
+  static constexpr std::array<std::uint32_t, 8> rates{9600,      57'600,    115'200,   1'000'000,
+                                                      2'000'000, 3'000'000, 4'000'000, 4'500'000};
   std::uint32_t baud() const noexcept;
   double return_delay_s() const noexcept { return 2e-6 * table_[9]; }
   std::uint8_t return_level() const noexcept { return table_[68]; }

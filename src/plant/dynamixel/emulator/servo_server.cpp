@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
+#include "plant/dynamixel/serial_port.h"
 
 namespace kadans::dynamixel {
 namespace {
@@ -27,12 +28,6 @@ constexpr std::int64_t look_ns = 50'000'000;  // how soon the thread sees that i
 
 [[noreturn]] void no_terminal(const std::string& link, const std::string& why) {
   throw InputError({.file = "--listen", .message = link + ": " + why});
-}
-
-std::int64_t monotonic_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
 std::uint32_t baud_of(int terminal) noexcept {
