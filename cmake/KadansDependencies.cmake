@@ -14,6 +14,10 @@ pkg_check_modules(sqlite3 REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(sleef REQUIRED IMPORTED_TARGET sleef)
 find_package(Boost 1.74 REQUIRED)  # headers of Beast and Asio
+find_package(assimp QUIET)  # for kadans-hull
+if(NOT TARGET assimp::assimp)
+  message(STATUS "No assimp: built without kadans-hull, so no mesh collides (libassimp-dev)")
+endif()
 # ROS 2 without ROS (docs/ros2.md). The build needs headers, and idlc for the messages; --ros2 loads the library.
 if(NOT KADANS_ROS2 STREQUAL "OFF")
   find_package(CycloneDDS QUIET)

@@ -49,4 +49,7 @@ if(TARGET kadans)
   if(TARGET kadans-tune)
     install(TARGETS kadans-tune)
   endif()
+  if(TARGET kadans-hull)  # for kadans alone
+    install(TARGETS kadans-hull DESTINATION "${CMAKE_INSTALL_LIBEXECDIR}")
+  endif()
 endif()

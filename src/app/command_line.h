@@ -42,6 +42,7 @@ struct CommandLine {
   LogOptions log;
   DoctorOptions doctor;
   NewControlObjectOptions new_object;
+  NewRobotOptions new_robot;
   ReferenceOptions reference;
 };
 

@@ -159,8 +159,16 @@ struct NewControlObjectOptions {
   std::string folder = ".";  // the object's folder is made in this folder
   bool plugin = false;
 };
-void add_new(CLI::App& app, NewControlObjectOptions& options);
+struct NewRobotOptions {
+  std::string urdf, name;
+  std::string folder = ".";  // the project
+  bool no_run = false;
+};
+void add_new(CLI::App& app, NewControlObjectOptions& object, NewRobotOptions& robot);
+void add_new_robot(CLI::App& made, NewRobotOptions& options);
 int run_new_control_object(const NewControlObjectOptions& options);
+// Throws InputError when the URDF is wrong or files are there already; else the exit code of its scenario.
+int run_new_robot(const NewRobotOptions& options);
 
 // The hidden command by which a build writes what is made from the program's own tables: man pages, completion, editor
 // stubs and the pages of reference of the manual.

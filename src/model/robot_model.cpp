@@ -47,6 +47,22 @@ double RobotModel::mass_kg() const {
   return sum_kg;
 }
 
+Around box_around(const Mesh& mesh) noexcept {
+  Vec3 low = mesh.corners_m.front(), high = low;
+  for (const Vec3& corner : mesh.corners_m) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], corner[i]);
+      high[i] = std::max(high[i], corner[i]);
+    }
+  }
+  Around around;
+  for (std::size_t i = 0; i < 3; ++i) {
+    around.center_m[i] = (low[i] + high[i]) / 2;
+    around.size_m[i] = high[i] - low[i];
+  }
+  return around;
+}
+
 ToldFault told(const Fault& fault, const RobotModel& model, std::int64_t time_ns, const std::string& robot) {
   return told(fault, fault.joint < model.joints.size() ? model.joints[fault.joint].name : "", time_ns, robot);
 }

@@ -22,11 +22,22 @@ guest "ssh -o BatchMode=yes -o StrictHostKeyChecking=no -o PreferredAuthenticati
 say "kadans doctor there:"
 guest kadans doctor || true
 
+# Lights and beeps: here they write down what they are told.
+guest 'mkdir -p /data/hooks && cd /data/hooks && for name in ready stopped level; do
+  printf "#!/bin/sh\necho %s \"\$@\" >>/data/told\n" $name >$name; chmod +x $name; done'
+told() { guest "grep -q '$1' /data/told" 2>/dev/null; }
+
 robot_is tulip --plant ideal --sleep-only --live --live-address 0.0.0.0
 console_says "tulip is driven"
 driven=$(used_MB)
 say "$idle MB of memory are in use without a robot, $driven MB with the runtime idle"
 [ "$driven" -lt 90 ] || fail "the runtime takes more than 90 MB"
+within 60 told "ready tulip" || fail "the hook 'ready' is not run"
+guest kadans ctl estop >/dev/null || fail "no emergency stop"
+within 60 told "level off tulip" || fail "the hook 'level' is not told of an emergency stop: $(guest cat /data/told)"
+guest systemctl restart kadans@tulip
+within 60 told "stopped tulip" || fail "the hook 'stopped' is not run"
+say "the hooks were told: $(guest cat /data/told | tr '\n' ',')"
 
 guest sync
 machine_off

@@ -52,10 +52,10 @@ void require_right(const RobotModel& model) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  for (const bool hulls : {false, true}) {
+  for (const MeshHull& hull : {MeshHull(), MeshHull([](const std::string&) { return std::vector<Vec3>{{0, 0, 1}}; })}) {
     try {
       std::vector<InputProblem> warnings;
-      const RobotModel model = read_urdf_text(text, "it.urdf", {.mesh_hulls = hulls}, &warnings);
+      const RobotModel model = read_urdf_text(text, "it.urdf", {.mesh_hull = hull}, &warnings);
       require_right(model);
       for (std::size_t i = 0; i < warnings.size(); ++i)
         require(warnings[i].line > 0 || i == 25, "a warning has a place, but for the number of those left out");

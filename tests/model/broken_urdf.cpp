@@ -59,7 +59,7 @@ std::string read_told(const std::string& text) {
   std::vector<InputProblem> warnings;
   std::string told;
   try {
-    (void)read_urdf_text(text, "duo.urdf", {.mesh_hulls = true}, &warnings);
+    (void)read_urdf_text(text, "duo.urdf", {}, &warnings);
   } catch (const InputError& error) {
     return error.what();
   }

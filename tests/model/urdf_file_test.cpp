@@ -143,10 +143,24 @@ TEST_CASE("Mesh files are found beside the URDF, and in a package's folder above
   }
 }
 
-TEST_CASE("A mesh collides only when its convex hull is asked for") {
+TEST_CASE(
+    "A mesh collides as the hull that its reader gives, scaled; each file is read once, and a bad one has its place") {
   const Folder folder;
   folder.write("hull.stl", "solid");
   const std::string file = folder.write("duo.urdf", duo_with_mesh("collision", "hull.stl"));
-  CHECK(file_error(file).find("collides only as its convex hull") != std::string::npos);
-  CHECK(file_error(file, {.mesh_hulls = true}) == "no error");
+  CHECK(std::get<Mesh>(read_urdf(file).links[0].collisions.at(0).shape).corners_m.empty());
+  int reads = 0;
+  const MeshHull hull = [&](const std::string& mesh) {
+    ++reads;
+    CHECK(mesh == folder.path() + "/hull.stl");
+    return std::vector<Vec3>{{1, 1, 1}, {-1, 0, 2}};
+  };
+  const RobotModel model = read_urdf(file, {.mesh_hull = hull});
+  CHECK(std::get<Mesh>(model.links[0].collisions.at(0).shape).corners_m == std::vector<Vec3>{{1, 2, 3}, {-1, 0, 6}});
+  CHECK(reads == 1);
+  const MeshHull none = [](const std::string& mesh) -> std::vector<Vec3> {
+    throw InputError({.file = mesh, .message = "cannot be read as a mesh"});
+  };
+  CHECK(file_error(file, {.mesh_hull = none}) ==
+        file + ":9:42: mesh '" + folder.path() + "/hull.stl' cannot be read as a mesh");
 }

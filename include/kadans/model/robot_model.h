@@ -43,8 +43,15 @@ struct Cylinder {  // along z
 struct Mesh {  // collides as its convex hull
   std::string file;
   Vec3 scale{1, 1, 1};
+  std::vector<Vec3> corners_m{};  // of the hull, scaled; empty: of a visual, or of a mesh that nobody has read
 };
 using Shape = std::variant<Box, Sphere, Cylinder, Mesh>;
+
+struct Around {
+  Vec3 center_m{}, size_m{};
+};
+// The box around a hull, along the axes of its mesh. The hull has corners.
+Around box_around(const Mesh& mesh) noexcept;
 
 struct Geometry {
   std::string name;

@@ -3,6 +3,7 @@
 // limits. Everything else is a warning that says what was made of it. docs/urdf.md.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -16,8 +17,12 @@ namespace kadans {
 
 using UrdfPackages = std::map<std::string, std::string>;  // folders by the name of a package
 
+// The corners of the convex hull of a mesh, in the file's unit; none: it cannot be read here. Throws InputError on a
+// file that is no mesh.
+using MeshHull = std::function<std::vector<Vec3>(const std::string& file)>;
+
 struct UrdfOptions {
-  bool mesh_hulls = false;  // meshes collide as their convex hulls; else a collision mesh is refused
+  MeshHull mesh_hull{};     // as which meshes collide; without it they have no corners, and collide nowhere
   bool strict = false;      // warnings are mistakes
   UrdfPackages packages{};  // where packages are; else see find_urdf_file
 };

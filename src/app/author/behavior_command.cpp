@@ -13,7 +13,7 @@
 #include "app/terminal.h"
 #include "behavior_stage.h"
 #include "campaign/suite/suite_report.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
 #include "file_checks.h"

@@ -5,6 +5,7 @@
 
 #include "app/commands.h"
 #include "app/terminal.h"
+#include "config/robot/mesh_hull.h"
 #include "file_checks.h"
 
 namespace kadans {
@@ -34,7 +35,7 @@ void add_check(CLI::App& app, CheckOptions& options) {
 int run_check(const CheckOptions& options) {
   int code = exit_passed;
   bool any = false;
-  UrdfOptions urdf{.mesh_hulls = true, .strict = options.strict};
+  UrdfOptions urdf{.mesh_hull = mesh_hull, .strict = options.strict};
   for (const std::string& package : options.packages) {
     const std::size_t end = package.find('=');
     if (end == 0 || end == std::string::npos || !std::filesystem::is_directory(package.substr(end + 1)))

@@ -29,7 +29,7 @@ class FileChecks {
  public:
   // `robot` is the configuration against which behaviors are checked; "": the one for their folder. Loading a plug-in
   // executes its code, which anybody may have written. So plug-ins are loaded only when `plugins` is true.
-  FileChecks(std::string robot, bool plugins, UrdfOptions urdf = {.mesh_hulls = true});
+  FileChecks(std::string robot, bool plugins, UrdfOptions urdf = {});
 
   // Says what the file is, for people; "" for a JSON file found in a folder that is not ours. Throws InputError with
   // all mistakes.

@@ -13,7 +13,7 @@
 
 #include "app/commands.h"
 #include "app/terminal.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "kadans/signal/input_error.h"
 #include "signal/shell_word.h"
 
@@ -294,7 +294,7 @@ std::vector<ProjectFile> control_object_project(const ControlObjectNames& names,
 
 namespace fs = std::filesystem;
 
-void add_new(CLI::App& app, NewControlObjectOptions& options) {
+void add_new(CLI::App& app, NewControlObjectOptions& options, NewRobotOptions& robot) {
   CLI::App* made = app.add_subcommand("new", "Write the first version of a new part of your project");
   made->require_subcommand(1);
   CLI::App* object = made->add_subcommand("control-object", "Write a control object: source, test and build files");
@@ -302,6 +302,7 @@ void add_new(CLI::App& app, NewControlObjectOptions& options) {
   object->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
       ->type_name("FOLDER");
   object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
+  add_new_robot(*made, robot);
 }
 
 int run_new_control_object(const NewControlObjectOptions& options) {

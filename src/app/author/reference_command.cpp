@@ -4,7 +4,7 @@
 
 #include "app/command_line.h"
 #include "app/terminal.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "config/robot/project_root.h"
 #include "field_reference.h"
 #include "man_page.h"

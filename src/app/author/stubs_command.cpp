@@ -9,7 +9,7 @@
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "behavior_stage.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
 #include "script/bindings/api.h"

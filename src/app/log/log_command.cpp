@@ -9,7 +9,7 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "log_verbs.h"
 #include "signal/number_text.h"
 #include "telemetry/plot/signal_plot.h"

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "app/terminal.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "log_verbs.h"
 #include "signal/number_text.h"
 #include "signal/utf8.h"

@@ -13,8 +13,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "campaign/work/content_hash.h"
-#include "campaign/work/durable_file.h"
+#include "signal/content_hash.h"
+#include "signal/durable_file.h"
 #include "config/robot/project_root.h"
 #include "config/robot/robot_config.h"
 #include "config/scenario/based_on.h"

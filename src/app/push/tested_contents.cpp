@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "app/line_editor.h"
-#include "campaign/work/content_hash.h"
-#include "campaign/work/durable_file.h"
+#include "signal/content_hash.h"
+#include "signal/durable_file.h"
 #include "delivery.h"
 #include "kadans/signal/input_error.h"
 

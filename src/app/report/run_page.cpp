@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "app/live/record_pictures.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "signal/nearest_name.h"
 #include "version.h"
 

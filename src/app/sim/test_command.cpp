@@ -24,7 +24,7 @@
 #include "campaign/suite/golden.h"
 #include "campaign/suite/scenario_search.h"
 #include "campaign/suite/suite_report.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
 #include "input_files.h"

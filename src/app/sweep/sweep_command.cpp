@@ -11,7 +11,7 @@
 #include "campaign/sweep/sweep_case.h"
 #include "campaign/sweep/sweep_results.h"
 #include "campaign/sweep/sweep_summary.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "config/json/problems.h"
 #include "signal/shell_word.h"
 #include "sweep_run.h"

@@ -4,7 +4,7 @@
 
 #include "app/assembly.h"
 #include "app/sim/played_behaviors.h"
-#include "campaign/work/content_hash.h"
+#include "signal/content_hash.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
 #include "scenario/judge/metrics.h"

@@ -15,7 +15,7 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "realtime/machine/jitter.h"
 #include "realtime/machine/keep_awake.h"

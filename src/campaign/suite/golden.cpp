@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
 #include "kadans/signal/input_error.h"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <string_view>
 
-#include "campaign/work/content_hash.h"
+#include "signal/content_hash.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
 #include "signal/nearest_name.h"

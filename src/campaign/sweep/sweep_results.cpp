@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "campaign/work/content_hash.h"
-#include "campaign/work/durable_file.h"
+#include "signal/content_hash.h"
+#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
 

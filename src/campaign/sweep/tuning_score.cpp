@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "campaign/work/content_hash.h"
+#include "signal/content_hash.h"
 
 namespace kadans {
 namespace {

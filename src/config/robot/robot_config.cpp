@@ -6,6 +6,7 @@
 #include "config/scenario/event_text.h"
 #include "config/scenario/play_item.h"
 #include "kadans/model/urdf.h"
+#include "mesh_hull.h"
 #include "project_root.h"
 #include "robot_reader.h"
 #include "signal/nearest_name.h"
@@ -97,7 +98,7 @@ void RobotReader::load_model(Fields& f) {
     return problems_.add(f.place("urdf"), "urdf is xacro: expand it once, so that what runs is one file: 'xacro " +
                                               shell_word(urdf) + " > FILE.urdf'");
   try {
-    config_.model = read_urdf(file.string(), {}, &config_.urdf_warnings);
+    config_.model = read_urdf(file.string(), {.mesh_hull = mesh_hull}, &config_.urdf_warnings);
   } catch (const InputError& error) {
     problems_.add(error);
     return;

@@ -2,6 +2,9 @@
 #include <algorithm>
 
 #include "kadans/model/kinematics.h"
+#include "kadans/signal/input_error.h"
+#include "mesh_hull.h"
+#include "project_root.h"
 #include "robot_reader.h"
 #include "signal/nearest_name.h"
 
@@ -207,6 +210,49 @@ void RobotReader::surface(Fields& entry) {
   }
 }
 
+void RobotReader::collision(Fields& entry) {
+  enum class As : std::uint8_t { described, box, nothing } as = As::described;
+  static const std::vector<std::string> names{"described", "box", "nothing"};
+  std::vector<PlacedName> meshes;
+  entry.choice(
+      "as", as, names,
+      "as the URDF describes the link, meshes as their convex hulls; with boxes in the place of meshes; or not "
+      "at all");
+  entry.strings("meshes", meshes, {1, 64},
+                "files of meshes, in the frame of the link that moves, whose convex hulls take the place of what the "
+                "URDF describes");
+  if (!have_model_) return;
+  std::vector<Geometry> given;
+  for (const PlacedName& mesh : meshes) {
+    const std::filesystem::path file = resolve_file(mesh.name, mesh.place, "mesh", problems_);
+    if (file.empty()) return;
+    try {
+      given.push_back({.shape = Mesh{.file = file.string(), .corners_m = mesh_hull(file.string())}});
+    } catch (const InputError& error) {
+      return problems_.add(mesh.place, error.what());
+    }
+  }
+  const std::vector<std::string> links = config_.model.link_names();
+  const std::vector<std::size_t> chosen = matching(entry.key(), links);
+  if (chosen.empty()) problems_.add_unknown(entry.key_place(), "link", entry.key(), links);
+  for (const std::size_t i : chosen) {
+    std::vector<Geometry>& all = config_.model.links[*config_.model.find_link(links[i])].collisions;
+    if (as == As::nothing || !given.empty()) std::erase_if(all, [&](const Geometry& g) { return g.link == links[i]; });
+    for (Geometry geometry : given) {
+      geometry.link = links[i];
+      all.push_back(geometry);
+    }
+    if (as != As::box) continue;
+    for (Geometry& geometry : all) {
+      const auto* const mesh = std::get_if<Mesh>(&geometry.shape);
+      if (mesh == nullptr || geometry.link != links[i] || mesh->corners_m.empty()) continue;
+      const Around around = box_around(*mesh);
+      geometry.pose = compose(geometry.pose, {.position_m = around.center_m});
+      geometry.shape = Box{around.size_m};
+    }
+  }
+}
+
 void RobotReader::imu(Fields& f) {
   ImuSettings& imu = config_.plant.imu;
   Vec3 angles_rad{};
@@ -254,6 +300,7 @@ void RobotReader::plant(Fields& f) {
   f.object("imu", "inertial measurement unit on the base link", [&](Fields& e) { imu(e); });
   f.list("feet", {0, max_feet}, "soles with four pressure sensors", [&](Fields& e) { foot(e); });
   f.map("surfaces", "friction of the links' surfaces by link pattern", [&](Fields& entry) { surface(entry); });
+  f.map("collisions", "how links collide, by link pattern", [&](Fields& entry) { collision(entry); });
   f.number("ground_friction", plant.ground_friction, {0, 10},
            "coefficient of friction of the ground; a contact's coefficient is the product of those of both surfaces");
   f.numbers("gravity_m_s2", plant.gravity_m_s2, {-100, 100, "m/s2"}, "gravity in world axes");

@@ -30,6 +30,7 @@ class RobotReader {
   void leave_to_joints(const Transmission& transmission);
   void check_coupled_drives(const Fields& f);
   void surface(Fields& entry);
+  void collision(Fields& entry);
   void imu(Fields& f);
   void foot(Fields& f);
   void start(Fields& f);

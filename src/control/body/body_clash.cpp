@@ -14,12 +14,25 @@ namespace {
 
 constexpr double clash_margin_m = 0.003;
 
-// Half the lengths of its box, and the radius around it.
-std::pair<Vector3d, double> size_of(const Shape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) return {0.5 * eigen(box->size_m), 0.0};
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) return {Vector3d::Zero(), sphere->radius_m};
-  const auto& cylinder = std::get<Cylinder>(shape);
-  return {{cylinder.radius_m, cylinder.radius_m, 0.5 * cylinder.length_m}, 0.0};
+// A box in the shape's frame, and the radius around that, which hold the shape.
+struct Hold {
+  Vec3 center_m{};
+  Vector3d half_m = Vector3d::Zero();
+  double radius_m = 0;
+};
+
+Hold holding(const Shape& shape) {
+  if (const auto* box = std::get_if<Box>(&shape)) return {.half_m = 0.5 * eigen(box->size_m)};
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return {.radius_m = sphere->radius_m};
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape))
+    return {.half_m = {cylinder->radius_m, cylinder->radius_m, 0.5 * cylinder->length_m}};
+  const Around around = box_around(std::get<Mesh>(shape));
+  return {.center_m = around.center_m, .half_m = 0.5 * eigen(around.size_m)};
+}
+
+bool collides(const Geometry& geometry) {
+  const auto* const mesh = std::get_if<Mesh>(&geometry.shape);
+  return mesh == nullptr || !mesh->corners_m.empty();
 }
 
 }  // namespace
@@ -27,9 +40,10 @@ std::pair<Vector3d, double> size_of(const Shape& shape) {
 BodyClash::BodyClash(const RobotModel& model) {
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     for (const Geometry& geometry : model.links[link].collisions) {
-      if (std::holds_alternative<Mesh>(geometry.shape)) continue;
-      const auto [half_m, radius_m] = size_of(geometry.shape);
-      solids_.push_back({link, geometry.pose, half_m, radius_m, half_m.norm() + radius_m});
+      if (!collides(geometry)) continue;
+      const Hold hold = holding(geometry.shape);
+      const Pose pose = compose(geometry.pose, {.position_m = hold.center_m});
+      solids_.push_back({link, pose, hold.half_m, hold.radius_m, hold.half_m.norm() + hold.radius_m});
     }
   }
   place(BodyGeometry(model, true));

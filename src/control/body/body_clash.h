@@ -1,7 +1,7 @@
 // Whether two links of the robot would come too near to each other: by the shapes with which they collide in the model.
 // Boxes are tested by separating axes (Gottschalk, Lin and Manocha 1996, SIGGRAPH), cylinders as their boxes, spheres
-// as points with a radius; meshes are left out. Neighbours, and links that overlap when all joints are at zero, do not
-// count: they always touch, and the plant lets them.
+// as points with a radius; hulls of meshes count as the boxes around them. Neighbours, and links that overlap when all
+// joints are at zero, do not count: they always touch, and the plant lets them.
 //
 // One owner, any thread. Only the constructor allocates.
 #pragma once

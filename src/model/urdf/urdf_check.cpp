@@ -223,6 +223,23 @@ class MeshFiles {
     });
   }
 
+  // What a robot of many equal meshes has is read once.
+  void read_hull(Mesh& mesh, std::size_t at) {
+    if (!options_.mesh_hull) return;
+    auto [hull, added] = hulls_.try_emplace(mesh.file);
+    if (added) {
+      try {
+        hull->second = options_.mesh_hull(mesh.file);
+      } catch (const InputError& error) {
+        return document_.refuse(at, "mesh " + shown_quoted(mesh.file) + " " + error.problems().front().message, "mesh");
+      }
+    }
+    for (Vec3 corner : hull->second) {
+      for (std::size_t i = 0; i < 3; ++i) corner[i] *= mesh.scale[i];
+      mesh.corners_m.push_back(corner);
+    }
+  }
+
  private:
   const std::string& found(const std::string& name) {
     const auto [at, added] = found_.emplace(name, "");
@@ -251,6 +268,7 @@ class MeshFiles {
   UrdfDocument& document_;
   const UrdfOptions& options_;
   std::map<std::string, std::string> found_;
+  std::map<std::string, std::vector<Vec3>> hulls_;  // by file
 };
 
 }  // namespace
@@ -258,16 +276,10 @@ class MeshFiles {
 void check_description(UrdfDocument& document, UrdfDescription& robot, const UrdfOptions& options) {
   MeshFiles files(document, options);
   for (UrdfLink& link : robot.links) {
-    for (const UrdfGeometry& given : link.collisions) {
-      if (std::holds_alternative<Mesh>(given.geometry.shape) && !options.mesh_hulls)
-        document.refuse(
-            given.mesh_at,
-            "the collision of link " + shown_quoted(link.name) +
-                " is a mesh, which collides only as its convex hull and only when mesh hulls are asked for: "
-                "ask, or use <box>, <sphere> or <cylinder>",
-            "collision mesh");
+    files.find(link.collisions, "collision ", link.name, "collides without it");
+    for (UrdfGeometry& given : link.collisions) {
+      if (auto* const mesh = std::get_if<Mesh>(&given.geometry.shape)) files.read_hull(*mesh, given.file_at);
     }
-    if (options.mesh_hulls) files.find(link.collisions, "collision ", link.name, "collides without it");
     files.find(link.visuals, "visual ", link.name, "is drawn with a marker in its place");
   }
   TreeCheck(document, robot).run();

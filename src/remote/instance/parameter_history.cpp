@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "campaign/sweep/parameter_edit.h"
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 #include "config/json/fields.h"
 #include "config/json/json_value.h"
 

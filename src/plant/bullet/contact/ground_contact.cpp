@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <span>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
@@ -16,7 +18,7 @@
 namespace kadans::bullet {
 namespace {
 
-constexpr std::size_t points_per_shape = 4, corners_per_shape = 8;
+constexpr std::size_t points_per_shape = 4;
 
 struct Corner {
   btVector3 point;
@@ -25,19 +27,29 @@ struct Corner {
 
 // What the solver starts from at a corner that touched in the last step already.
 struct Impulse {
+  int corner = -1;
   double normal = 0, lateral1 = 0, lateral2 = 0, rhs = 0;
 };
-using Impulses = std::array<Impulse, corners_per_shape>;
 
-Impulses impulses_of(const btPersistentManifold& manifold) {
-  Impulses impulses{};
-  for (int i = 0; i < manifold.getNumContacts(); ++i) {
-    const btManifoldPoint& point = manifold.getContactPoint(i);
-    impulses[static_cast<std::size_t>(point.m_index0)] = {point.m_appliedImpulse, point.m_appliedImpulseLateral1,
-                                                          point.m_appliedImpulseLateral2, point.m_prevRHS};
+class LastImpulses {
+ public:
+  explicit LastImpulses(const btPersistentManifold& manifold) {
+    for (int i = 0; i < manifold.getNumContacts(); ++i) {
+      const btManifoldPoint& point = manifold.getContactPoint(i);
+      impulses_[static_cast<std::size_t>(i)] = {point.m_index0, point.m_appliedImpulse, point.m_appliedImpulseLateral1,
+                                                point.m_appliedImpulseLateral2, point.m_prevRHS};
+    }
   }
-  return impulses;
-}
+  Impulse of(int corner) const {
+    for (const Impulse& impulse : impulses_) {
+      if (impulse.corner == corner) return impulse;
+    }
+    return {};
+  }
+
+ private:
+  std::array<Impulse, points_per_shape> impulses_;
+};
 
 // The lowest few of the points offered, in the ground's frame, lowest first; of equals the one offered first.
 class LowestPoints {
@@ -82,6 +94,20 @@ void offer_cylinder(const btCylinderShapeZ& cylinder, const btTransform& pose, L
   }
 }
 
+// Of the corners near the ground those that carry it, as of a face of a box.
+void offer_hull(const btConvexHullShape& hull, const btTransform& pose, LowestPoints& points) {
+  std::array<btVector3, hull_corners_max> near;
+  std::array<int, hull_corners_max> numbers{};
+  std::size_t count = 0;
+  for (int corner = 0; corner < hull.getNumPoints(); ++corner) {
+    const btVector3 point = pose * hull.getUnscaledPoints()[corner];
+    if (!(point.z() < contact_distance_m) || count == near.size()) continue;
+    near[count] = point;
+    numbers[count++] = corner;
+  }
+  for (const std::size_t i : carrying(std::span(near).first(count), 2, 1)) points.offer(near[i], numbers[i]);
+}
+
 LowestPoints lowest_points(const btCollisionShape& shape, const btTransform& pose) {
   LowestPoints points;
   switch (shape.getShapeType()) {
@@ -94,18 +120,21 @@ LowestPoints lowest_points(const btCollisionShape& shape, const btTransform& pos
     case CYLINDER_SHAPE_PROXYTYPE:
       offer_cylinder(static_cast<const btCylinderShapeZ&>(shape), pose, points);
       break;
+    case CONVEX_HULL_SHAPE_PROXYTYPE:
+      offer_hull(static_cast<const btConvexHullShape&>(shape), pose, points);
+      break;
     default:
       break;  // shapes.h makes no others
   }
   return points;
 }
 
-// No point of the shape is further from its centre.
+// No point of the shape is further from its origin.
 double reach_m(const btCollisionShape& shape) {
   btVector3 center;
   btScalar radius = 0;
   shape.getBoundingSphere(center, radius);
-  return radius;
+  return center.length() + radius;
 }
 
 class GroundContact final : public btCollisionAlgorithm {
@@ -129,14 +158,14 @@ class GroundContact final : public btCollisionAlgorithm {
                         btManifoldResult*) override {
     const btVector3 up = ground_->getWorldTransform().getBasis().getColumn(2);
     for (int i = 0; i < manifolds_.size(); ++i) {
-      const Impulses last = impulses_of(*manifolds_[i]);
+      const LastImpulses last(*manifolds_[i]);
       manifolds_[i]->clearManifold();
       const btVector3 center = link_->getWorldTransform() * compound().getChildTransform(i).getOrigin();
       if (up.dot(center - ground_->getWorldTransform().getOrigin()) > reaches_m_[i] + contact_distance_m) continue;
       const btTransform part =
           ground_->getWorldTransform().inverseTimes(link_->getWorldTransform()) * compound().getChildTransform(i);
       for (const Corner& corner : lowest_points(*compound().getChildShape(i), part)) {
-        add(*manifolds_[i], corner, last[static_cast<std::size_t>(corner.number)]);
+        add(*manifolds_[i], corner, last.of(corner.number));
       }
     }
   }

@@ -9,6 +9,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "plant/bullet/convert.h"
+#include "touch_points.h"
 
 namespace kadans::bullet {
 
@@ -24,6 +25,8 @@ bool PairMask::needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* 
 
 namespace {
 
+constexpr double hull_margin_m = 5e-4;  // by which Bullet looks for contacts with all but ground and boxes
+
 struct ConvexMaker {
   const Geometry& geometry;
 
@@ -37,8 +40,18 @@ struct ConvexMaker {
     return std::make_unique<btCylinderShapeZ>(btVector3(cylinder.radius_m, cylinder.radius_m, cylinder.length_m / 2));
   }
   std::unique_ptr<btConvexShape> operator()(const Mesh& mesh) const {
-    throw std::invalid_argument("collision mesh '" + mesh.file + "' of link '" + geometry.link +
-                                "': the Bullet plant takes boxes, spheres and cylinders");
+    const auto refuse = [&](const std::string& why) {
+      throw std::invalid_argument("collision mesh '" + mesh.file + "' of link '" + geometry.link + "' " + why);
+    };
+    if (mesh.corners_m.empty()) refuse("was not read: the program kadans-hull, which reads meshes, is not installed");
+    if (mesh.corners_m.size() > hull_corners_max)
+      refuse("has a hull of " + std::to_string(mesh.corners_m.size()) + " corners; at most " +
+             std::to_string(hull_corners_max));
+    auto hull = std::make_unique<btConvexHullShape>();
+    for (const Vec3& corner : mesh.corners_m) hull->addPoint(to_bullet(corner), false);
+    hull->setMargin(hull_margin_m);
+    hull->recalcLocalAabb();
+    return hull;
   }
 };
 
@@ -46,6 +59,11 @@ void add_corners(const btConvexShape& shape, const btTransform& pose, std::vecto
   if (shape.getShapeType() == SPHERE_SHAPE_PROXYTYPE) {
     const double radius_m = static_cast<const btSphereShape&>(shape).getRadius();
     corners.push_back(pose.getOrigin() - btVector3(0, 0, radius_m));
+    return;
+  }
+  if (shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE) {
+    const auto& hull = static_cast<const btConvexHullShape&>(shape);
+    for (int i = 0; i < hull.getNumPoints(); ++i) corners.push_back(pose * hull.getUnscaledPoints()[i]);
     return;
   }
   const bool box = shape.getShapeType() == BOX_SHAPE_PROXYTYPE;
@@ -76,7 +94,10 @@ double LinkShapes::lowest_m(const btTransform& pose) const {
     const btTransform part = pose * compound_.getChildTransform(i);
     const btVector3 down = btVector3(0, 0, -1) * part.getBasis();
     const auto* convex = parts_[static_cast<std::size_t>(i)].get();
-    lowest = std::min<double>(lowest, (part * convex->localGetSupportingVertex(down)).z());
+    const bool hull = convex->getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE;
+    const btVector3 low =
+        hull ? convex->localGetSupportingVertexWithoutMargin(down) : convex->localGetSupportingVertex(down);
+    lowest = std::min<double>(lowest, (part * low).z());
   }
   return lowest;
 }

@@ -31,7 +31,8 @@ class PairMask final : public btOverlapFilterCallback {
 
 class LinkShapes {
  public:
-  // `com_in_link` is the centre of mass frame that Bullet moves. Throws std::invalid_argument on a mesh, naming it.
+  // `com_in_link` is the centre of mass frame that Bullet moves. Throws std::invalid_argument, naming it, on a
+  // mesh that nobody has read or with more than hull_corners_max corners.
   LinkShapes(const Link& link, const btTransform& com_in_link);
 
   bool empty() const { return parts_.empty(); }

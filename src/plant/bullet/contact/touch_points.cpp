@@ -220,34 +220,6 @@ Polygon facing(const PlacedBox& box, const btVector3& normal, const PlacedBox& r
 
 double inside(double half_m) { return std::max(half_m - outline_m, half_m / 2); }
 
-// Drops all but four: the deepest, the one furthest from it, and those that span the widest to both sides.
-Polygon spread(const Polygon& polygon, int axis, double sign) {
-  if (polygon.count <= TouchPoints::capacity) return polygon;
-  const auto height = [&](std::size_t i) { return sign * polygon.corners[i][axis]; };
-  std::size_t deepest = 0, furthest = 0, left = 0, right = 0;
-  for (std::size_t i = 1; i < polygon.count; ++i) {
-    if (height(i) < height(deepest)) deepest = i;
-  }
-  const btVector3 from = polygon.corners[deepest];
-  const auto distance2 = [&](std::size_t i) { return (polygon.corners[i] - from).length2(); };
-  for (std::size_t i = 1; i < polygon.count; ++i) {
-    if (distance2(i) > distance2(furthest)) furthest = i;
-  }
-  btVector3 normal(0, 0, 0);
-  normal[axis] = 1;
-  const btVector3 across = normal.cross(polygon.corners[furthest] - from);
-  const auto aside = [&](std::size_t i) { return across.dot(polygon.corners[i] - from); };
-  for (std::size_t i = 1; i < polygon.count; ++i) {
-    if (aside(i) > aside(left)) left = i;
-    if (aside(i) < aside(right)) right = i;
-  }
-  Polygon kept;
-  for (std::size_t i = 0; i < polygon.count; ++i) {
-    if (i == deepest || i == furthest || i == left || i == right) kept.add(polygon.corners[i]);
-  }
-  return kept;
-}
-
 // `incident` stands on a face of `reference`. The points of the incident box come first in each pair.
 TouchPoints touch_face(const PlacedBox& reference, const Face& face, const PlacedBox& incident) {
   const btVector3 normal = face.sign * reference.pose.getBasis().getColumn(face.axis);
@@ -256,9 +228,8 @@ TouchPoints touch_face(const PlacedBox& reference, const Face& face, const Place
     for (const double sign : {1.0, -1.0}) polygon = cut(polygon, side, sign, inside(reference.half_m[side]));
   }
   polygon = cut(polygon, face.axis, face.sign, reference.half_m[face.axis] + contact_distance_m);
-  polygon = spread(polygon, face.axis, face.sign);
   TouchPoints points;
-  for (std::size_t i = 0; i < polygon.count; ++i) {
+  for (const std::size_t i : carrying(std::span(polygon.corners).first(polygon.count), face.axis, face.sign)) {
     const double distance = face.sign * polygon.corners[i][face.axis] - reference.half_m[face.axis];
     const btVector3 at = reference.pose * polygon.corners[i];
     points.add({at, at - distance * normal, normal, distance});
@@ -290,11 +261,80 @@ TouchPoints touch_edges(const PlacedBox& a, const PlacedBox& b, const Edges& edg
   return points;
 }
 
+// The corners over the face of least overlap.
+TouchPoints touch_corners(const btConvexHullShape& a, const btTransform& pose_a, const PlacedBox& b) {
+  const btTransform to_b = b.pose.inverseTimes(pose_a);
+  std::array<btVector3, hull_corners_max> near;
+  const std::size_t all = std::min(near.size(), static_cast<std::size_t>(a.getNumPoints()));
+  btVector3 low(BT_LARGE_FLOAT, BT_LARGE_FLOAT, BT_LARGE_FLOAT), high = -low;
+  for (std::size_t i = 0; i < all; ++i) {
+    near[i] = to_b * a.getUnscaledPoints()[i];
+    low.setMin(near[i]);
+    high.setMax(near[i]);
+  }
+  Face face;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const auto& [sign, end] : {std::pair{1.0, low[axis]}, std::pair{-1.0, -high[axis]}}) {
+      const double separation = end - b.half_m[axis];
+      if (separation > face.separation_m) face = {axis, sign, separation};
+    }
+  }
+  const auto distance = [&](const btVector3& corner) { return face.sign * corner[face.axis] - b.half_m[face.axis]; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < all; ++i) {
+    btVector3 over = near[i].absolute() - b.half_m;
+    over[face.axis] = 0;
+    if (distance(near[i]) < contact_distance_m && over[over.maxAxis()] <= 0) near[count++] = near[i];
+  }
+  btVector3 normal(0, 0, 0);
+  normal[face.axis] = face.sign;
+  TouchPoints points;
+  for (const std::size_t i : carrying(std::span(near).first(count), face.axis, face.sign)) {
+    const double distance_m = distance(near[i]);
+    points.add({b.pose * near[i], b.pose * (near[i] - distance_m * normal), b.pose.getBasis() * normal, distance_m});
+  }
+  return points;
+}
+
+bool is_hull(const btConvexShape& shape) { return shape.getShapeType() == CONVEX_HULL_SHAPE_PROXYTYPE; }
+
 }  // namespace
+
+Carrying carrying(std::span<const btVector3> points, int axis, double sign) {
+  Carrying kept;
+  std::size_t deepest = 0, furthest = 0, left = 0, right = 0;
+  const auto height = [&](std::size_t i) { return sign * points[i][axis]; };
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (height(i) < height(deepest)) deepest = i;
+  }
+  const auto distance2 = [&](std::size_t i) { return (points[i] - points[deepest]).length2(); };
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (distance2(i) > distance2(furthest)) furthest = i;
+  }
+  btVector3 normal(0, 0, 0);
+  normal[axis] = 1;
+  const btVector3 across = points.empty() ? normal : normal.cross(points[furthest] - points[deepest]);
+  const auto aside = [&](std::size_t i) { return across.dot(points[i] - points[deepest]); };
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (aside(i) > aside(left)) left = i;
+    if (aside(i) < aside(right)) right = i;
+  }
+  const bool all = points.size() <= TouchPoints::capacity;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (all || i == deepest || i == furthest || i == left || i == right) kept.add(i);
+  }
+  return kept;
+}
 
 TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
                          const btTransform& pose_b) {
   const int type_a = a.getShapeType(), type_b = b.getShapeType();
+  if (is_hull(a) && type_b == BOX_SHAPE_PROXYTYPE) {
+    const TouchPoints corners = touch_corners(static_cast<const btConvexHullShape&>(a), pose_a, placed(b, pose_b));
+    return corners.size() > 0 ? corners : touch_nearest(a, pose_a, b, pose_b);
+  }
+  if (is_hull(b) && type_a == BOX_SHAPE_PROXYTYPE) return swapped(touch_points(b, pose_b, a, pose_a));
+  if (is_hull(a) || is_hull(b)) return touch_nearest(a, pose_a, b, pose_b);
   if (type_a == SPHERE_SHAPE_PROXYTYPE) {
     return touch_sphere(static_cast<const btSphereShape&>(a), pose_a.getOrigin(), b, pose_b);
   }

@@ -2,7 +2,8 @@
 // spheres. Two boxes touch face to face wherever they can. The face is the one of least overlap, or that of the second
 // box when the two differ little: so a foot on a box finds the box's own normal, however the foot tilts. The points are
 // the corners of one face, cut off at the outline of the other. A cylinder touches a box's face with its rims; with
-// edges and other cylinders it has one point, which Bullet computes.
+// edges and other cylinders it has one point, which Bullet computes. A hull touches a box's face with its corners, and
+// all else as a cylinder does.
 //
 // Sources: separating axes and clipping, Ericson, Real-Time Collision Detection, sections 4.4.1 and 5.5.
 #pragma once
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <btBulletCollisionCommon.h>
@@ -44,6 +46,22 @@ class TouchPoints {
 
 TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
                          const btTransform& pose_b);
+
+// Of points near a face, of which `axis` is the normal and `sign` its way outwards, those that carry: the deepest, the
+// one furthest from it, and those that span the widest to both sides. Their places, in order; of up to four points all.
+class Carrying {
+ public:
+  void add(std::size_t place) { places_[count_++] = place; }
+  const std::size_t* begin() const { return places_.data(); }
+  const std::size_t* end() const { return places_.data() + count_; }
+
+ private:
+  std::array<std::size_t, TouchPoints::capacity> places_{};
+  std::size_t count_ = 0;
+};
+Carrying carrying(std::span<const btVector3> points, int axis, double sign);
+
+inline constexpr std::size_t hull_corners_max = 64;  // of a link's hull; LinkShapes holds it
 
 struct PlacedBox {
   btTransform pose;

@@ -1,4 +1,4 @@
-#include "campaign/work/durable_file.h"
+#include "signal/durable_file.h"
 
 #include <fstream>
 #include <iterator>

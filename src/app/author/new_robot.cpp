@@ -1,0 +1,299 @@
+// `kadans new robot`: from a URDF to a robot that stands or is held, with all of its files.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/terminal.h"
+#include "config/json/foreign_json.h"
+#include "config/robot/mesh_hull.h"
+#include "kadans/model/urdf.h"
+#include "kadans/signal/input_error.h"
+#include "realtime/machine/child_process.h"
+#include "signal/durable_file.h"
+#include "signal/input_file.h"
+#include "signal/shell_word.h"
+#include "stance.h"
+#include "xacro.h"
+
+namespace kadans {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t urdf_max_bytes = std::size_t{16} << 20U;
+
+constexpr std::string_view sway_template =
+    R"(-- Goes from one pose to another and back, a few times. Change it and run it again.
+local k = require "kadans"
+
+local P = k.params {
+  move_s  = { 2.0, min = 0.5, max = 20, unit = "s", doc = "time from one pose to the other" },
+  rest_s  = { 0.5, min = 0, max = 20, unit = "s", doc = "time to stay there" },
+  repeats = { 2, min = 1, max = 100, doc = "how often" },
+}
+
+return k.behavior "sway" {
+  controls = "hold",
+  vars     = { done = 0 },
+  initial  = "sway",
+  always   = {
+    { when = function(s) return s.safety.level ~= "normal" and s.safety.level ~= "limited" end, to = "failed", why = "safety" },
+  },
+
+  k.state "sway" {
+    run = function(m)
+      while m.vars.done < P.repeats do
+        m.posture:move("low", { time_s = P.move_s }):wait()
+        m:wait(P.rest_s)
+        m.posture:move("stand", { time_s = P.move_s }):wait()
+        m:wait(P.rest_s)
+        m.vars.done = m.vars.done + 1
+      end
+    end,
+    { on = "run.done", to = "done" },
+  },
+  k.final "done"   { outcome = "done" },
+  k.final "failed" { outcome = "failed" },
+}
+)";
+
+constexpr std::string_view sway_test_template = R"(-- kadans behavior test behaviors/@name@/sway_test.lua
+local k = require "kadans"
+
+describe("sway", function()
+  it("goes there and back as often as it is told", function()
+    local run = k.play "sway.lua"
+    run:set_parameter("repeats", 1)
+    expect(run:finish(30)).to_equal "done"
+  end)
+end)
+)";
+
+double rounded(double value, double to = 1e-4) { return std::round(value / to) * to; }
+double figures(double value) {  // three
+  if (!(value > 0)) return 0;
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+  return std::round(value / unit) * unit;
+}
+
+std::string name_from(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const bool good = (lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9');
+    if (good) {
+      name += lower;
+    } else if (!name.empty() && name.back() != '_') {
+      name += '_';
+    }
+  }
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  return name;
+}
+
+// The URDF's text with its meshes as they lie in `folder` of the project, which get their files in `copies`.
+std::string with_own_meshes(const std::string& text, const std::string& file, const std::string& folder,
+                            std::map<std::string, std::string>& copies) {
+  std::string result;
+  std::set<std::string> taken;
+  std::size_t at = 0;
+  constexpr std::string_view key = "filename=";
+  for (std::size_t found; (found = text.find(key, at)) != std::string::npos;) {
+    const std::size_t open = found + key.size();
+    const char quote = open < text.size() ? text[open] : ' ';
+    const std::size_t close = quote == '"' || quote == '\'' ? text.find(quote, open + 1) : std::string::npos;
+    if (close == std::string::npos) break;
+    const std::string name = text.substr(open + 1, close - open - 1);
+    result += text.substr(at, open + 1 - at);
+    at = close;
+    const std::optional<std::string> there = find_urdf_file(name, file);
+    if (!there) {
+      result += name;
+      continue;
+    }
+    std::string& copy = copies[*there];
+    if (copy.empty()) {
+      const fs::path path(*there);
+      copy = path.filename().string();
+      for (int i = 2; taken.contains(copy); ++i)
+        copy = path.stem().string() + "_" + std::to_string(i) + path.extension().string();
+      taken.insert(copy);
+    }
+    result += folder + "/" + copy;
+  }
+  return result + text.substr(at);
+}
+
+Json pose_json(const RobotModel& model, const std::vector<double>& position) {
+  Json pose = Json::object();
+  for (std::size_t i = 0; i < position.size(); ++i) pose[model.joints[i].name] = rounded(position[i]);
+  return pose;
+}
+
+Json robot_json(const RobotModel& model, const std::string& name, const Stance& stance,
+                const std::vector<JointHold>& holds) {
+  const bool bolted = stance.feet.empty();
+  Json drives = {{"doc",
+                  "E: estimates, to be replaced by what the maker says. A rotor that the motor's whole torque brings "
+                  "to 2500 rad/s2, unless the URDF has it."}};
+  Json parameters = Json::object(), motors = Json::array();
+  for (std::size_t i = 0; i < holds.size(); ++i) {
+    const std::string& joint = model.joints[i].name;
+    if (!(holds[i].stiffness_Nm_per_rad > 0)) continue;
+    motors.push_back(joint);
+    drives[joint] = {{"rotor_inertia_kg_m2", figures(holds[i].rotor_inertia_kg_m2)}};
+    parameters[joint + ".kp_Nm_per_rad"] = figures(holds[i].stiffness_Nm_per_rad);
+    parameters[joint + ".kd_Nms_per_rad"] = figures(holds[i].damping_Nms_per_rad);
+  }
+  Json objects = Json::array();
+  objects.push_back(
+      {{"name", "posture"},
+       {"doc",
+        "Each joint is stiffer than gravity pulls it away (three times where it can be), at most half of "
+        "what two ticks of delay allow, and damped at most half of that."},
+       {"type", "joint_pid"},
+       {"joints", motors},
+       {"parameters", parameters}});
+  Json hold = {{"doc", "Holds its joints."}, {"objects", {"posture"}}};
+  if (bolted) {
+    objects.push_back({{"name", "weight"}, {"type", "gravity_compensation"}, {"joints", motors}});
+    hold = {{"doc", "Holds its joints, and carries their weight."},
+            {"objects", {"posture", "weight"}},
+            {"sum", {"weight"}}};
+  }
+  Json start = {{"pose", "stand"}};
+  if (bolted) start = {{"pose", "stand"}, {"stand_on_ground", false}, {"position_m", {0, 0, 1}}};
+  return {{"name", name},
+          {"doc", "Written by kadans new robot from the URDF. E marks an estimate."},
+          {"urdf", "models/" + name + "/" + name + ".urdf"},
+          {"engine", {{"control_period_s", 0.001}, {"behavior_period_s", 0.01}}},
+          {"poses", {{"stand", pose_json(model, stance.stand)}, {"low", pose_json(model, stance.low)}}},
+          {"safe", {{"pose", "stand"}, {"after_s", 0.5}, {"time_s", 2}}},
+          {"plant", {{"drives", drives}, {"fixed_base", bolted}, {"self_collision", true}}},
+          {"start", start},
+          {"safety", {{"sensors", {{"imu", false}}}}},
+          {"control", {{"objects", objects}, {"sets", {{"hold", hold}}}}}};
+}
+
+Json scenario_json(const std::string& name, const Stance& stance) {
+  Json checks = Json::array();
+  if (!stance.feet.empty()) {
+    checks.push_back({{"name", "stays up, lowest height in m"},
+                      {"kind", "always"},
+                      {"signal", "plant.base.height_m"},
+                      {"min", rounded(0.7 * stance.height_m, 1e-3)}});
+    checks.push_back({{"name", "upright, rad"}, {"kind", "always"}, {"signal", "plant.base.tilt_rad"}, {"max", 0.3}});
+  }
+  checks.push_back({{"name", "torques within limits"}, {"kind", "always"}, {"that", "plant.limits.torque_share <= 1"}});
+  checks.push_back({{"name", "at rest at the end"}, {"kind", "at_end"}, {"that", "plant.limits.speed_share <= 0.1"}});
+  checks.push_back({{"name", "no faults"}, {"kind", "always"}, {"signal", "safety.faults"}, {"max", 0}});
+  return {{"name", name + "_hold"},
+          {"doc", stance.feet.empty() ? "Held for ten seconds." : "Stands for ten seconds."},
+          {"robot", "config/" + name + "/robot.json"},
+          {"duration_s", 10},
+          {"checks", checks}};
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
+}
+
+void tell(const RobotModel& model, const Stance& stance, const std::vector<JointHold>& holds) {
+  std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
+  if (stance.feet.empty()) {
+    std::fprintf(stderr, "No two links at its ends are the lowest of all: it is bolted down (plant.fixed_base).\n");
+  } else {
+    std::string feet;
+    for (const std::size_t foot : stance.feet) feet += (feet.empty() ? "" : ", ") + model.links[foot].name;
+    std::fprintf(stderr, "It stands on %s, its base %.3g m high.\n", feet.c_str(), stance.height_m);
+  }
+  for (std::size_t i = 0; i < holds.size(); ++i) {
+    if (holds[i].weak)
+      std::fprintf(stderr, "warning: %s can hardly be held: gravity takes %.3g Nm/rad, and the delay allows %.3g Nm/rad\n",
+                   model.joints[i].name.c_str(), holds[i].load_Nm_per_rad, holds[i].stiffness_Nm_per_rad);
+  }
+}
+
+}  // namespace
+
+void add_new_robot(CLI::App& made, NewRobotOptions& options) {
+  CLI::App* robot = made.add_subcommand("robot", "Write the files of a robot from its URDF, and see it stand");
+  robot->add_option("urdf", options.urdf, "URDF or xacro of the robot")->required()->type_name("FILE");
+  robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: the URDF's)")
+      ->type_name("NAME");
+  robot->add_option("--in", options.folder, "Project to which its files are added (default: this folder)")
+      ->type_name("FOLDER");
+  robot->add_flag("--no-run", options.no_run, "Do not run its scenario");
+}
+
+int run_new_robot(const NewRobotOptions& options) {
+  const fs::path source = options.urdf;
+  const std::string text =
+      source.extension() == ".xacro" ? expanded_xacro(source) : read_input_file(source, urdf_max_bytes);
+  const RobotModel model = read_urdf_text(text, options.urdf, {.mesh_hull = mesh_hull});
+  const std::string name = options.name.empty() ? name_from(model.name) : options.name;
+  if (name.empty() || name != name_from(name))
+    throw InputError({.message = "'" + name + "': a robot's name is words of a-z and 0-9 joined by _: --name NAME"});
+  const fs::path project = options.folder;
+  const fs::path models = project / "models" / name, config = project / "config" / name,
+                 behaviors = project / "behaviors" / name,
+                 scenario = project / "config" / "scenarios" / (name + "_hold.json");
+  for (const fs::path& path : {models, config, behaviors, scenario}) {
+    std::error_code error;
+    if (fs::exists(path, error))
+      throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
+  }
+  const Stance stance = find_stance(model);
+  const std::vector<JointHold> holds = hold_joints(model, stance);
+  if (std::ranges::none_of(holds, [](const JointHold& hold) { return hold.stiffness_Nm_per_rad > 0; }))
+    throw InputError(
+        {.file = options.urdf, .message = "no joint of it has a motor: <limit effort=...> says which torque it has"});
+
+  std::map<std::string, std::string> meshes;
+  const std::string own = with_own_meshes(text, options.urdf, "meshes", meshes);
+  make_folder(models / "meshes");
+  for (const auto& [from, to] : meshes) {
+    std::error_code error;
+    fs::copy_file(from, models / "meshes" / to, error);
+    if (error) throw InputError({.file = from, .message = "cannot be copied: " + error.message()});
+  }
+  for (const fs::path& folder : {config, behaviors, scenario.parent_path()}) make_folder(folder);
+  std::string test(sway_test_template);
+  test.replace(test.find("@name@"), 6, name);
+  const std::vector<std::pair<fs::path, std::string>> files{
+      {models / (name + ".urdf"), own},
+      {config / "robot.json", json_text(robot_json(model, name, stance, holds), 2) + "\n"},
+      {scenario, json_text(scenario_json(name, stance), 2) + "\n"},
+      {behaviors / "sway.lua", std::string(sway_template)},
+      {behaviors / "sway_test.lua", test}};
+  for (const auto& [file, content] : files) {
+    write_durably(file, content);
+    std::printf("%s\n", file.c_str());
+  }
+  std::fflush(stdout);
+  tell(model, stance, holds);
+  const std::string shown = shell_word(fs::relative(scenario, project).string());
+  const std::string at = project == "." ? "" : "cd " + shell_word(project.string()) + " && ";
+  std::fprintf(stderr, "Run it:  %skadans sim %s    with the behavior: --play sway\n", at.c_str(), shown.c_str());
+  if (options.no_run) return exit_passed;
+  ChildProcess run({.words = {"kadans", "sim", fs::absolute(scenario).string(), "--no-record"},
+                    .program = fs::read_symlink("/proc/self/exe").string()});
+  run.wait();
+  return run.exit_code() < 0 ? exit_failed : run.exit_code();
+}
+
+}  // namespace kadans

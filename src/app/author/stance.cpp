@@ -1,0 +1,358 @@
+#include "stance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include <Eigen/Dense>
+
+#include "kadans/model/kinematics.h"
+
+namespace kadans {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double g_m_s2 = 9.81;
+
+Vector3d eigen_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+// Points of a shape that are outermost: corners, points of rims, of spheres those along the axes.
+std::vector<Vec3> tips(const Geometry& geometry) {
+  std::vector<Vec3> points;
+  const auto add = [&](double x, double y, double z) { points.push_back(transform(geometry.pose, {x, y, z})); };
+  if (const auto* box = std::get_if<Box>(&geometry.shape)) {
+    for (int i = 0; i < 8; ++i)
+      add(((i & 1) != 0 ? 0.5 : -0.5) * box->size_m[0], ((i & 2) != 0 ? 0.5 : -0.5) * box->size_m[1],
+          ((i & 4) != 0 ? 0.5 : -0.5) * box->size_m[2]);
+  } else if (const auto* sphere = std::get_if<Sphere>(&geometry.shape)) {
+    // Turned with the pose, the axes would miss what is lowest; so all around.
+    for (int i = 0; i < 200; ++i) {
+      const double z = 1 - (2.0 * i + 1) / 200, angle = 2.399963 * i, r = std::sqrt(1 - z * z);
+      add(sphere->radius_m * r * std::cos(angle), sphere->radius_m * r * std::sin(angle), sphere->radius_m * z);
+    }
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&geometry.shape)) {
+    for (int i = 0; i < 16; ++i) {
+      const double angle = i * std::numbers::pi / 8;
+      for (const double end : {-0.5, 0.5})
+        add(cylinder->radius_m * std::cos(angle), cylinder->radius_m * std::sin(angle), end * cylinder->length_m);
+    }
+  } else {
+    for (const Vec3& corner : std::get<Mesh>(geometry.shape).corners_m) add(corner[0], corner[1], corner[2]);
+  }
+  return points;
+}
+
+class Body {
+ public:
+  explicit Body(const RobotModel& model) : model_(model), kinematics_(model), tips_(model.links.size()) {
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      for (const Geometry& geometry : model.links[i].collisions) {
+        const std::vector<Vec3> more = tips(geometry);
+        tips_[i].insert(tips_[i].end(), more.begin(), more.end());
+      }
+    }
+  }
+
+  void place(const std::vector<double>& position) { kinematics_.update(position); }
+  const Pose& link(std::size_t index) const { return kinematics_.link(index); }
+  Vector3d com() const { return eigen_of(kinematics_.com_m()); }
+  const std::vector<Vec3>& tips_of(std::size_t link) const { return tips_[link]; }
+  double lowest(std::size_t link) const {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Vec3& tip : tips_[link]) lowest = std::min(lowest, transform(kinematics_.link(link), tip)[2]);
+    return lowest;
+  }
+  // The middle of what stands on the ground, in the link's frame.
+  Vec3 sole(std::size_t link) const {
+    constexpr double near_m = 0.01;
+    const double low = lowest(link);
+    Vec3 sum{};
+    double count = 0;
+    for (const Vec3& tip : tips_[link]) {
+      if (transform(kinematics_.link(link), tip)[2] > low + near_m) continue;
+      for (std::size_t i = 0; i < 3; ++i) sum[i] += tip[i];
+      ++count;
+    }
+    for (double& part : sum) part /= count;
+    return sum;
+  }
+  Vector3d axis(std::size_t joint) const {
+    return eigen_of(rotate(kinematics_.link(joint + 1).orientation, model_.joints[joint].axis));
+  }
+  Vector3d place_of(std::size_t joint) const { return eigen_of(kinematics_.link(joint + 1).position_m); }
+
+ private:
+  const RobotModel& model_;
+  Kinematics kinematics_;
+  std::vector<std::vector<Vec3>> tips_;
+};
+
+bool moves(const Joint& joint) { return !joint.passive() && !joint.mimic; }
+
+struct Leg {
+  std::size_t foot;                 // link
+  std::vector<std::size_t> joints;  // from the base on
+  Vec3 sole{};                      // in the foot's frame
+  Quat level{};                     // the foot's orientation at the beginning
+  Vector3d target = Vector3d::Zero();
+};
+
+class StanceSearch {
+ public:
+  explicit StanceSearch(const RobotModel& model) : model_(model), body_(model), position_(model.joints.size()) {
+    for (std::size_t i = 0; i < position_.size(); ++i) position_[i] = within(i, 0, 0);
+  }
+
+  Stance run() {
+    Stance stance;
+    find_legs();
+    if (legs_.size() < 2) {
+      stance.stand = stance.low = position_;
+      for (std::size_t i = 0; i < position_.size(); ++i) {
+        if (!moves(model_.joints[i])) continue;
+        const double aside = within(i, position_[i] + 0.3, 0.1);
+        stance.low[i] = aside > position_[i] + 0.1 ? aside : within(i, position_[i] - 0.3, 0.1);
+      }
+      return stance;
+    }
+    for (const Leg& leg : legs_) stance.feet.push_back(leg.foot);
+    bend();
+    stance.stand = solve(0);
+    body_.place(stance.stand);
+    for (const Leg& leg : legs_) stance.height_m = std::max(stance.height_m, -body_.lowest(leg.foot));
+    stance.low = solve(0.12 * length());
+    return stance;
+  }
+
+ private:
+  double within(std::size_t i, double wanted, double margin_share) const {
+    const Joint& joint = model_.joints[i];
+    const bool bounded = std::isfinite(joint.lower_rad) && std::isfinite(joint.upper_rad);
+    const double range = joint.upper_rad - joint.lower_rad;
+    // The safety layer's soft stops begin 0.03 rad before the limits.
+    const double margin = bounded ? std::min(std::max(margin_share * range, 0.06), 0.25 * range) : 0;
+    return std::clamp(wanted, joint.lower_rad + margin, joint.upper_rad - margin);
+  }
+
+  void find_legs() {
+    body_.place(position_);
+    std::vector<bool> ends(model_.links.size(), true);
+    for (const Joint& joint : model_.joints) ends[joint.parent] = false;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 0; i < model_.links.size(); ++i) {
+      for (const Vec3& tip : body_.tips_of(i)) {
+        const double z = transform(body_.link(i), tip)[2];
+        low = std::min(low, z);
+        high = std::max(high, z);
+      }
+    }
+    const double share = 0.1 * (high - low);
+    const auto& merged = model_.links[0].merged;
+    if (model_.links[0].name == "world" || std::ranges::find(merged, "world") != merged.end()) return;
+    if (!body_.tips_of(0).empty() && body_.lowest(0) < low + share) return;
+    for (std::size_t i = 1; i < model_.links.size(); ++i) {
+      if (!ends[i] || body_.tips_of(i).empty() || body_.lowest(i) > low + share) continue;
+      Leg leg{.foot = i};
+      for (std::size_t link = i; link > 0; link = model_.joints[link - 1].parent) leg.joints.push_back(link - 1);
+      std::ranges::reverse(leg.joints);
+      leg.sole = body_.sole(i);
+      leg.level = body_.link(i).orientation;
+      legs_.push_back(leg);
+    }
+  }
+
+  // From the first joint that swings the leg forward to the sole, stretched.
+  double length() const {
+    double longest = 0;
+    for (const Leg& leg : legs_) {
+      std::optional<Vector3d> last;
+      double sum = 0;
+      for (const std::size_t joint : leg.joints) {
+        if (std::abs(body_.axis(joint).y()) < 0.7) continue;
+        if (last) sum += (body_.place_of(joint) - *last).norm();
+        last = body_.place_of(joint);
+      }
+      if (last) sum += (eigen_of(transform(body_.link(leg.foot), leg.sole)) - *last).norm();
+      longest = std::max(longest, sum);
+    }
+    return longest;
+  }
+
+  // Knees, and what else bends one way alone, a little: a straight leg can move nowhere.
+  void bend() {
+    constexpr double much = 1.5, bent_rad = 0.4;
+    body_.place(position_);
+    const double leg_m = length();
+    for (Leg& leg : legs_) {
+      const Vector3d foot = eigen_of(transform(body_.link(leg.foot), leg.sole));
+      const Vector3d root = body_.place_of(leg.joints.front());
+      const bool level = leg.joints.size() >= level_joints;
+      leg.target = foot;
+      if (level) {
+        leg.target.z() += 0.06 * leg_m;
+      } else {
+        const auto swings =
+            std::ranges::find_if(leg.joints, [&](std::size_t j) { return std::abs(body_.axis(j).y()) > 0.7; });
+        const double top = swings == leg.joints.end() ? root.z() : body_.place_of(*swings).z();
+        const double from = swings == leg.joints.end() ? root.x() : body_.place_of(*swings).x();
+        leg.target.x() = from;
+        leg.target.z() = top - 0.72 * leg_m;
+      }
+      for (const std::size_t i : leg.joints) {
+        const Joint& joint = model_.joints[i];
+        if (std::abs(body_.axis(i).y()) < 0.7 || !moves(joint)) continue;
+        if (joint.upper_rad > -much * joint.lower_rad) position_[i] = within(i, std::max(position_[i], bent_rad), 0.02);
+        if (-joint.lower_rad > much * joint.upper_rad)
+          position_[i] = within(i, std::min(position_[i], -bent_rad), 0.02);
+      }
+    }
+  }
+
+  // Legs at their targets, lowered by so much, the centre of mass over the middle of the soles.
+  std::vector<double> solve(double lowered_m) {
+    std::vector<double> position = position_;
+    Vector3d shift(0, 0, lowered_m);
+    for (int round = 0; round < 8; ++round) {
+      for (int step = 0; step < 40; ++step) {
+        for (const Leg& leg : legs_) improve(leg, leg.target + shift, position);
+      }
+      body_.place(position);
+      Vector3d middle = Vector3d::Zero();
+      for (const Leg& leg : legs_)
+        middle += eigen_of(transform(body_.link(leg.foot), leg.sole)) / static_cast<double>(legs_.size());
+      Vector3d off = body_.com() - middle;
+      off.z() = 0;
+      shift += off;
+    }
+    return position;
+  }
+
+  void improve(const Leg& leg, const Vector3d& target, std::vector<double>& position) {
+    constexpr double small = 1e-6, damping = 1e-3, step_max_rad = 0.1;
+    const double turn_m = leg.joints.size() >= level_joints ? 0.2 : 0;
+    const auto count = static_cast<Eigen::Index>(leg.joints.size());
+    const auto error = [&]() -> Eigen::Vector<double, 6> {
+      body_.place(position);
+      const Pose& foot = body_.link(leg.foot);
+      const Quat off = multiply(leg.level, conjugate(foot.orientation));
+      const double sign = off[0] < 0 ? -1 : 1;
+      Eigen::Vector<double, 6> e;
+      e << target - eigen_of(transform(foot, leg.sole)), 2 * sign * turn_m * Vector3d(off[1], off[2], off[3]);
+      return e;
+    };
+    const Eigen::Vector<double, 6> now = error();
+    Eigen::MatrixXd slope(6, count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const std::size_t joint = leg.joints[static_cast<std::size_t>(k)];
+      slope.col(k).setZero();
+      if (!moves(model_.joints[joint])) continue;
+      position[joint] += small;
+      slope.col(k) = (error() - now) / small;
+      position[joint] -= small;
+    }
+    const Eigen::MatrixXd square = slope.transpose() * slope + damping * Eigen::MatrixXd::Identity(count, count);
+    const Eigen::VectorXd way = square.ldlt().solve(-slope.transpose() * now);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const std::size_t joint = leg.joints[static_cast<std::size_t>(k)];
+      position[joint] = within(joint, position[joint] + std::clamp(way[k], -step_max_rad, step_max_rad), 0.02);
+    }
+  }
+
+  static constexpr std::size_t level_joints = 5;
+
+  const RobotModel& model_;
+  Body body_;
+  std::vector<double> position_;
+  std::vector<Leg> legs_;
+};
+
+// What hangs on a joint.
+struct Carried {
+  double mass_kg = 0;
+  Vector3d moment = Vector3d::Zero();  // mass times place
+  double inertia = 0;                  // about the joint's axis; kg of a slider
+};
+
+Carried carried_by(const RobotModel& model, const Body& body, std::size_t joint) {
+  std::vector<bool> hangs(model.links.size(), false);
+  hangs[joint + 1] = true;
+  for (std::size_t i = joint + 1; i < model.joints.size(); ++i) hangs[i + 1] = hangs[model.joints[i].parent];
+  hangs[joint + 1] = true;
+  Carried all;
+  const Vector3d axis = body.axis(joint), at = body.place_of(joint);
+  for (std::size_t i = joint + 1; i < model.links.size(); ++i) {
+    if (!hangs[i]) continue;
+    const Inertia& inertia = model.links[i].inertia;
+    const Vector3d com = eigen_of(transform(body.link(i), inertia.com_m));
+    all.mass_kg += inertia.mass_kg;
+    all.moment += inertia.mass_kg * com;
+    Eigen::Matrix3d own;
+    own << inertia.xx, inertia.xy, inertia.xz, inertia.xy, inertia.yy, inertia.yz, inertia.xz, inertia.yz, inertia.zz;
+    const Vec3 local = rotate_inverse(body.link(i).orientation, {axis.x(), axis.y(), axis.z()});
+    const Vector3d turned = eigen_of(local);
+    const Vector3d arm = axis.cross(com - at);
+    all.inertia += turned.dot(own * turned) + inertia.mass_kg * arm.squaredNorm();
+  }
+  if (model.joints[joint].type == JointType::prismatic) all.inertia = all.mass_kg;
+  return all;
+}
+
+}  // namespace
+
+Stance find_stance(const RobotModel& model) { return StanceSearch(model).run(); }
+
+std::vector<JointHold> hold_joints(const RobotModel& model, const Stance& stance) {
+  // A rotor that its motor's whole torque brings to 2500 rad/s2 is typical of drives of legs and arms; E.
+  constexpr double rotor_per_Nm = 1.0 / 2500;
+  // At 1 kHz with two ticks of delay and a velocity filtered at 100 Hz stiffness / inertia of 28000 is the edge of
+  // stability, damping / inertia of 270: half of that.
+  constexpr double stiffest = 14000, most_damped = 135;
+  constexpr double own_bandwidth = 225, sag_rad = 0.04, over_load = 3;  // (15 rad/s)^2
+  Body body(model);
+  body.place(stance.stand);
+  const Vector3d com = body.com();
+  const double mass_kg = model.mass_kg(),
+               share = stance.feet.empty() ? 0 : 1.0 / static_cast<double>(stance.feet.size());
+  std::map<std::size_t, std::size_t> foot_of;  // by joint of a leg
+  for (const std::size_t foot : stance.feet) {
+    for (std::size_t link = foot; link > 0; link = model.joints[link - 1].parent) foot_of[link - 1] = foot;
+  }
+  std::vector<JointHold> holds(model.joints.size());
+  for (std::size_t i = 0; i < holds.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    if (!moves(joint)) continue;
+    JointHold& hold = holds[i];
+    const Carried hung = carried_by(model, body, i);
+    const bool slides = joint.type == JointType::prismatic;
+    hold.rotor_inertia_kg_m2 =
+        joint.rotor_inertia_kg_m2 > 0 ? joint.rotor_inertia_kg_m2 : std::max(1e-4, rotor_per_Nm * joint.effort_max_Nm);
+    if (!std::isfinite(hold.rotor_inertia_kg_m2) || joint.effort_max_Nm > 1e5) hold.rotor_inertia_kg_m2 = 0.01;
+    const double inertia = hung.inertia + hold.rotor_inertia_kg_m2;
+    const Vector3d at = body.place_of(i);
+    hold.load_Nm_per_rad = slides ? 0 : g_m_s2 * (hung.moment - hung.mass_kg * at).norm();
+    double wanted = std::max(over_load * hold.load_Nm_per_rad, own_bandwidth * inertia);
+    if (slides) wanted = std::max(wanted, hung.mass_kg * g_m_s2 / 0.005);
+    const auto foot = foot_of.find(i);
+    if (foot != foot_of.end() && !slides) {
+      const Vector3d sole = eigen_of(transform(body.link(foot->second), body.sole(foot->second)));
+      const double standing = share * mass_kg * g_m_s2 * std::max(0.0, com.z() - sole.z());
+      const double torque_Nm = std::abs(body.axis(i).dot((sole - at).cross(Vector3d(0, 0, share * mass_kg * g_m_s2))));
+      hold.load_Nm_per_rad = std::max(hold.load_Nm_per_rad, standing);
+      wanted = std::max({wanted, over_load * standing, torque_Nm / sag_rad});
+    }
+    hold.stiffness_Nm_per_rad = std::min(wanted, stiffest * inertia);
+    hold.weak = hold.stiffness_Nm_per_rad < 1.2 * hold.load_Nm_per_rad;
+    const double critical = 1.4 * std::sqrt(hold.stiffness_Nm_per_rad * inertia);
+    hold.damping_Nms_per_rad =
+        foot != foot_of.end() && !slides
+            ? std::min(std::max(critical, 0.03 * hold.stiffness_Nm_per_rad), most_damped * inertia)
+            : std::min(critical, most_damped * inertia);
+  }
+  return holds;
+}
+
+}  // namespace kadans

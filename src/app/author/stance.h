@@ -1,0 +1,34 @@
+// How a robot that nobody has configured yet stands, and how stiffly its joints must be held for that: what `kadans new
+// robot` writes. All from the URDF: kinematics, masses, shapes, limits of torque.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "kadans/model/robot_model.h"
+
+namespace kadans {
+
+struct Stance {
+  std::vector<std::size_t> feet;  // links that carry it; none: it is bolted to the world
+  std::vector<double> stand;      // positions of the joints, rad (m of a slider)
+  std::vector<double> low;        // lower, or for a robot that is bolted down a little aside
+  double height_m = 0;            // of the base's frame over the ground, in `stand`
+};
+
+// A robot with at least two links at its ends that are the lowest of all, and a base that is well above them, stands on
+// these: its feet under their legs, level where the legs have the joints for it, and its centre of mass over their
+// middle (damped least squares, Buss 2004). Any other is bolted down, and stands as near to zero as its limits allow.
+Stance find_stance(const RobotModel& model);
+
+struct JointHold {
+  double stiffness_Nm_per_rad = 0, damping_Nms_per_rad = 0;  // N/m and Ns/m of a slider
+  double rotor_inertia_kg_m2 = 0;                            // kg of a slider; the URDF's, or estimated
+  double load_Nm_per_rad = 0;                                // how much gravity takes from the stiffness, at most
+  bool weak = false;                                         // a delay of two ticks does not allow twice the load
+};
+
+// One a joint; zeros where there is no motor.
+std::vector<JointHold> hold_joints(const RobotModel& model, const Stance& stance);
+
+}  // namespace kadans

@@ -1,0 +1,84 @@
+// The program kadans-hull, which reads a mesh for kadans: kadans-hull FILE CORNERS. It prints the convex hull as JSON.
+// It is a process of its own since files of meshes come from anywhere, and their reader is large.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "hull.h"
+
+namespace kadans {
+namespace {
+
+constexpr rlim_t memory_max_bytes = rlim_t{1} << 31U, cpu_max_s = 60;
+constexpr std::size_t corners_least = 4, corners_most = 256;
+constexpr unsigned depth_max = 100;  // of nodes in nodes
+
+void bound(__rlimit_resource what, rlim_t most) {
+  const rlimit limit{most, most};
+  (void)setrlimit(what, &limit);
+}
+
+void add_points(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, unsigned depth,
+                std::vector<Point>& points) {
+  if (depth > depth_max) throw std::runtime_error("its nodes are nested too deep");
+  const aiMatrix4x4 pose = above * node.mTransformation;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
+      const aiVector3D point = pose * mesh.mVertices[k];
+      if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
+        throw std::runtime_error("a point of it is no number");
+      points.push_back({point.x, point.y, point.z});
+    }
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) add_points(scene, *node.mChildren[i], pose, depth + 1, points);
+}
+
+std::vector<Point> read_points(const char* file) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as ROS does: x y z are as they stand
+  const aiScene* const scene = importer.ReadFile(file, aiProcess_ValidateDataStructure);
+  if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
+  std::vector<Point> points;
+  if (scene->mRootNode != nullptr) add_points(*scene, *scene->mRootNode, aiMatrix4x4(), 0, points);
+  if (points.empty()) throw std::runtime_error("it has no points");
+  return points;
+}
+
+int run(int argc, char** argv) {
+  const long corners = argc == 3 ? std::strtol(argv[2], nullptr, 10) : 0;
+  if (corners < static_cast<long>(corners_least) || corners > static_cast<long>(corners_most)) {
+    std::fprintf(stderr, "usage: kadans-hull FILE CORNERS, %zu to %zu\n", corners_least, corners_most);
+    return 2;
+  }
+  bound(RLIMIT_AS, memory_max_bytes);
+  bound(RLIMIT_CPU, cpu_max_s);
+  bound(RLIMIT_CORE, 0);
+  const Hull hull = convex_hull(read_points(argv[1]), static_cast<std::size_t>(corners));
+  const nlohmann::ordered_json json = {{"exact", hull.exact}, {"left_out", hull.left_out}, {"corners", hull.corners}};
+  std::printf("%s\n", json.dump().c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace kadans
+
+int main(int argc, char** argv) {
+  try {
+    return kadans::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
