@@ -52,6 +52,7 @@ void DcmWalk::declare(Declaration& d) {
   d.parameter({"level_Nms_per_rad", "Nm s/rad", 0, 200, c.level_Nms_per_rad, "Damps it."}, &c.level_Nms_per_rad);
   d.parameter({"counter_share", "", 0, 1, c.counter_share, "Of the swing hip's torque that the stance hip takes."},
               &c.counter_share);
+  d.parameter({"grip", "", 0, 2, c.grip, "Largest force along the ground, per load."}, &c.grip);
   d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
   d.parameter({"shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load."}, &c.shift_s);
   d.parameter({"ankle_smooth_s", "s", 0, 0.1, c.ankle_smooth_s, "Low pass of the ankles' torques."}, &c.ankle_smooth_s);
@@ -160,6 +161,7 @@ void DcmWalk::declare_signals(Declaration& d) {
   d.signal({"at_z_m", "m", "Above it."}, &s.feet.at_m[2]);
   d.signal({"pressure_x_m", "m", "Centre of pressure asked for, forward of the stance foot's frame."}, &s.in_sole_x_m);
   d.signal({"trim_x_m_s", "m/s", "Correction of the speed forward."}, &s.meant.trim_m_s.x_m);
+  d.signal({"height_m", "m", "Of the centre of mass over the stance foot's frame."}, &com_height_m_);
   for (Leg& leg : legs_) {
     for (std::size_t i = 0; i < leg_joints; ++i) {
       d.signal({leg.inverse.axis(i).name + ".target_rad", "rad", "Where it shall be."}, &leg.target_rad[i]);
@@ -278,7 +280,11 @@ DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_
   const double most_N = config_.lift_max * weight_N_;
   const double height_m = std::max(over.com_m[2], lowest_com_m) + config_.sole_m;
   const double force_N = share * (weight_N_ + std::clamp(lift_N, -most_N, most_N));
-  const Vec3 force{force_N * (over.com_m[0] - in_sole_x_m) / height_m, force_N * over.com_m[1] / height_m, force_N};
+  if (i == plan_.state().stance) com_height_m_ = over.com_m[2];
+  const double grip_N = config_.grip * force_N;
+  const double x_N = (force_N * (over.com_m[0] - in_sole_x_m) - share * turn_Nm_[1]) / height_m;
+  const double y_N = (force_N * over.com_m[1] + share * turn_Nm_[0]) / height_m;
+  const Vec3 force{std::clamp(x_N, -grip_N, grip_N), std::clamp(y_N, -grip_N, grip_N), force_N};
   leg.load.update(over_feet_.kinematics(), force,
                   {over.foot_m[0] + in_sole_x_m, over.foot_m[1], over.foot_m[2] - config_.sole_m});
   Efforts effort_Nm{};
@@ -288,13 +294,14 @@ DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_
   return effort_Nm;
 }
 
-// What holds the torso, in roll and pitch.
-std::array<double, 2> DcmWalk::righting(const ControlInput& input) const noexcept {
+// The moment that rights the torso and takes the swing leg's reaction.
+void DcmWalk::turn(const Efforts& swing_Nm, const ControlInput& input) noexcept {
   const Config& c = config_;
   const BaseStatus& base = input.status.base;
   const Vec3& w = base.angular_velocity_rad_s;
-  return {c.level_Nm_per_rad * base.roll_rad + c.level_Nms_per_rad * w[0],
-          c.torso_Nm_per_rad * (base.pitch_rad - c.lean_rad) + c.torso_Nms_per_rad * w[1]};
+  turn_Nm_ = {c.counter_share * swing_Nm[hip_roll] - c.level_Nm_per_rad * base.roll_rad - c.level_Nms_per_rad * w[0],
+              c.counter_share * swing_Nm[hip_pitch] - c.torso_Nm_per_rad * (base.pitch_rad - c.lean_rad) -
+                  c.torso_Nms_per_rad * w[1]};
 }
 
 void DcmWalk::swing_torques(const ControlInput& input) noexcept {
@@ -315,28 +322,25 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
       swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m), next_yaw_rad - over_feet_.yaw_rad());
   swing_rad[ankle_pitch] -= input.status.base.pitch_rad;
   aim(swing, swing_rad, input.dt_s);
-  const Efforts swing_Nm = spring(swing, input), left_Nm = bearing(b, 1 - loaded, 0, input);
+  const Efforts swing_Nm = spring(swing, input);
+  turn(swing_Nm, input);
+  const Efforts left_Nm = bearing(b, 1 - loaded, 0, input);
 
   LegInverse::Angles stance_rad = stance.target_rad;
   stance_rad[hip_yaw] = over.yaw_rad;
   aim(stance, stance_rad, input.dt_s);
   const Efforts stance_Nm = spring(stance, input), borne_Nm = bearing(a, loaded, s.in_sole_x_m, input);
 
-  const auto [roll_Nm, pitch_Nm] = righting(input);
   for (std::size_t j = 0; j < leg_joints; ++j) {
     swing.effort_Nm[j] = loaded * swing_Nm[j] + left_Nm[j];
     stance.effort_Nm[j] = borne_Nm[j];
   }
-  swing.effort_Nm[hip_roll] += (1 - loaded) * roll_Nm;
-  swing.effort_Nm[hip_pitch] += (1 - loaded) * pitch_Nm;
   stance.effort_Nm[hip_yaw] = stance_Nm[hip_yaw];
-  stance.effort_Nm[hip_roll] += loaded * (roll_Nm - c.counter_share * swing_Nm[hip_roll]);
-  stance.effort_Nm[hip_pitch] += loaded * (pitch_Nm - c.counter_share * swing_Nm[hip_pitch]);
 }
 
 void DcmWalk::both_torques(const ControlInput& input) noexcept {
   const WalkPlan::State& s = plan_.state();
-  const auto [roll_Nm, pitch_Nm] = righting(input);
+  turn({}, input);
   const std::size_t a = s.stance;
   const Vec3 &at_m = over_feet_.over(a).foot_m, &other_m = over_feet_.over(1 - a).foot_m;
   std::array<GroundPoint, 2> feet;
@@ -354,8 +358,6 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
     const Efforts held_Nm = spring(leg, input), borne_Nm = bearing(i, share, split.in_sole.x_m, input);
     leg.effort_Nm = borne_Nm;
     leg.effort_Nm[hip_yaw] = held_Nm[hip_yaw];
-    leg.effort_Nm[hip_roll] += share * roll_Nm;
-    leg.effort_Nm[hip_pitch] += share * pitch_Nm;
   }
 }
 
@@ -375,7 +377,7 @@ void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexce
 
 void DcmWalk::pass_state(StateBytes& bytes) noexcept {
   for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm);
-  bytes(over_feet_, plan_, wanted_, given_up_, ankle_Nm_, phase_number_, stance_number_);
+  bytes(over_feet_, plan_, wanted_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_, com_height_m_);
 }
 
 std::unique_ptr<ControlObject> make_dcm_walk(const ObjectSetup& setup) { return std::make_unique<DcmWalk>(setup); }

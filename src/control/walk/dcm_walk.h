@@ -47,6 +47,7 @@ class DcmWalk final : public ControlObject {
     double torso_Nm_per_rad = 220, torso_Nms_per_rad = 14;  // in pitch
     double level_Nm_per_rad = 220, level_Nms_per_rad = 14;  // in roll
     double counter_share = 0.5;                             // share of the swing hip's torque that the stance hip takes
+    double grip = 0.4;           // largest force along the ground, per load
     double sole_m = 0.06;                                   // how far the sole is below a foot's frame
     double shift_s = 0.05;                                  // in which a leg that landed takes the load
     double ankle_smooth_s = 0.003;
@@ -87,7 +88,7 @@ class DcmWalk final : public ControlObject {
   void aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept;
   Efforts spring(const Leg& leg, const ControlInput& input) const noexcept;
   Efforts bearing(std::size_t leg, double share, double in_sole_x_m, const ControlInput& input) noexcept;
-  std::array<double, 2> righting(const ControlInput& input) const noexcept;
+  void turn(const Efforts& swing_Nm, const ControlInput& input) noexcept;
   void swing_torques(const ControlInput& input) noexcept;
   void both_torques(const ControlInput& input) noexcept;
   void write(const ControlInput& input, ActuationFrame& actuation) noexcept;
@@ -101,8 +102,9 @@ class DcmWalk final : public ControlObject {
   WalkPlan plan_;
   WalkPlan::Wanted wanted_;
   bool given_up_ = false;
+  std::array<double, 2> turn_Nm_{};   // moment of the ground on the robot about its centre of mass: roll, pitch
   std::array<double, 2> ankle_Nm_{};  // low-passed
-  double phase_number_ = 0, stance_number_ = 0;
+  double phase_number_ = 0, stance_number_ = 0, com_height_m_ = 0;
 };
 
 std::unique_ptr<ControlObject> make_dcm_walk(const ObjectSetup& setup);

@@ -68,7 +68,8 @@ void WalkPlan::choose(const Config& c, const Wanted&, const Sight& sight) noexce
                     s.meant.step.y_m / (grown_y - 1) - sign * c.width_m / (grown_y + 1)};
   const double meant_y_m = sign * c.width_m + s.meant.step.y_m;
   const double earliest_s = std::max(c.step_min_s, s.time_s), latest_s = std::max(c.step_max_s, s.time_s);
-  double least = 1e9;
+  double least = 1e9, best_s = c.step_s;
+  GroundPoint best;
   for (int i = 0; i < times_tried; ++i) {
     const double t_s = earliest_s + (latest_s - earliest_s) * i / (times_tried - 1);
     const double left_s = t_s - s.time_s;
@@ -84,9 +85,13 @@ void WalkPlan::choose(const Config& c, const Wanted&, const Sight& sight) noexce
                         c.time_weight * square(t_s - c.step_s);
     if (cost < least) {
       least = cost;
-      s.feet.foothold = at;
-      s.step_s = t_s;
+      best = at;
+      best_s = t_s;
     }
+  }
+  if (s.time_s < c.place_share * s.step_s) {  // then the foot comes straight down
+    s.feet.foothold = best;
+    s.step_s = best_s;
   }
   // The pressure goes beyond xi where xi is ahead of what was meant.
   const double meant_x_m = s.meant.offset.x_m * std::exp(w_x * std::min(s.time_s, c.step_s));
