@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -13,7 +15,7 @@ constexpr std::array<double, leg_joints> walk_kp{80, 250, 250, 250, 120}, walk_k
 constexpr double walk_rate_s = 0.006;  // low pass of the targets' rates
 constexpr double walk_rate_max_rad_s = 7;
 constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
-enum Channel : std::uint32_t { forward_channel, left_channel, turn_channel, go_channel };
+enum Channel : std::uint32_t { forward_channel, left_channel, turn_channel, go_channel, x_channel, y_channel, heading_channel, channels };
 
 }  // namespace
 
@@ -112,38 +114,19 @@ void DcmWalk::declare_plan(Declaration& d) {
 }
 
 void DcmWalk::declare_signals(Declaration& d) {
-  d.setpoint({.name = "forward_m_s",
-              .unit = "m/s",
-              .min = -0.5,
-              .max = 0.8,
-              .doc = "Velocity forward.",
-              .channel = forward_channel,
-              .joint = no_joint,
-              .safe = 0});
-  d.setpoint({.name = "left_m_s",
-              .unit = "m/s",
-              .min = -0.4,
-              .max = 0.4,
-              .doc = "Velocity to the left.",
-              .channel = left_channel,
-              .joint = no_joint,
-              .safe = 0});
-  d.setpoint({.name = "turn_rad_s",
-              .unit = "rad/s",
-              .min = -1.5,
-              .max = 1.5,
-              .doc = "Turning to the left.",
-              .channel = turn_channel,
-              .joint = no_joint,
-              .safe = 0});
-  d.setpoint({.name = "go",
-              .unit = "",
-              .min = 0,
-              .max = 1,
-              .doc = "1: walks; 0: comes to stand.",
-              .channel = go_channel,
-              .joint = no_joint,
-              .safe = 0});
+  const auto setpoint = [&](const char* name, const char* unit, double min, double max, const char* doc,
+                            std::uint32_t channel) {
+    const double safe = channel == go_channel ? 0 : std::numeric_limits<double>::quiet_NaN();
+    d.setpoint({.name = name, .unit = unit, .min = min, .max = max, .doc = doc, .channel = channel, .joint = no_joint,
+                .safe = safe});
+  };
+  setpoint("forward_m_s", "m/s", -0.5, 0.8, "Velocity forward.", forward_channel);
+  setpoint("left_m_s", "m/s", -0.4, 0.4, "Velocity to the left.", left_channel);
+  setpoint("turn_rad_s", "rad/s", -1.5, 1.5, "Turning to the left.", turn_channel);
+  setpoint("go", "", 0, 1, "1: walks; 0: comes to stand. Reads 1 until it stands.", go_channel);
+  setpoint("x_m", "m", -1e4, 1e4, "Where the base is by its steps; setting it sets it there.", x_channel);
+  setpoint("y_m", "m", -1e4, 1e4, "Likewise, to the left.", y_channel);
+  setpoint("heading_rad", "rad", -std::numbers::pi, std::numbers::pi, "Likewise, its heading.", heading_channel);
   const WalkPlan::State& s = plan_.state();
   d.signal({"phase", "", "0 stands, 1 sways, 2 steps, 3 bears; -1 has given up."}, &phase_number_);
   d.signal({"stance", "", "The foot that stands: 0 left, 1 right."}, &stance_number_);
@@ -161,6 +144,9 @@ void DcmWalk::declare_signals(Declaration& d) {
   d.signal({"at_z_m", "m", "Above it."}, &s.feet.at_m[2]);
   d.signal({"pressure_x_m", "m", "Centre of pressure asked for, forward of the stance foot's frame."}, &s.in_sole_x_m);
   d.signal({"trim_x_m_s", "m/s", "Correction of the speed forward."}, &s.meant.trim_m_s.x_m);
+  d.signal({"x_m", "m", "Where the base is by its steps."}, &odometry_.x_m);
+  d.signal({"y_m", "m", "Where the base is by its steps, to the left."}, &odometry_.y_m);
+  d.signal({"heading_rad", "rad", "Its heading."}, &odometry_.heading_rad);
   d.signal({"height_m", "m", "Of the centre of mass over the stance foot's frame."}, &com_height_m_);
   for (Leg& leg : legs_) {
     for (std::size_t i = 0; i < leg_joints; ++i) {
@@ -172,16 +158,53 @@ void DcmWalk::declare_signals(Declaration& d) {
 
 void DcmWalk::start(const ControlInput&) noexcept {
   plan_.reset();
-  wanted_ = {};
   given_up_ = false;
   over_feet_.follow_heading();
 }
 
-void DcmWalk::set_point(std::uint32_t channel, double value, double) noexcept {
-  if (channel == forward_channel) wanted_.velocity.forward_m_s = value;
-  if (channel == left_channel) wanted_.velocity.left_m_s = value;
-  if (channel == turn_channel) wanted_.velocity.turn_rad_s = value;
-  if (channel == go_channel) wanted_.go = value >= 0.5;
+bool DcmWalk::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+  const std::array<double, channels> values{wanted_.velocity.forward_m_s,
+                                            wanted_.velocity.left_m_s,
+                                            wanted_.velocity.turn_rad_s,
+                                            plan_.state().phase == WalkPlan::Phase::stands ? 0.0 : 1.0,
+                                            odometry_.x_m,
+                                            odometry_.y_m,
+                                            odometry_.heading_rad};
+  state = {.value = values[channel]};
+  return true;
+}
+
+void DcmWalk::follow(std::uint32_t channel, const SetpointState& state) noexcept {
+  Odometry& o = odometry_;
+  if (channel == forward_channel) wanted_.velocity.forward_m_s = state.value;
+  if (channel == left_channel) wanted_.velocity.left_m_s = state.value;
+  if (channel == turn_channel) wanted_.velocity.turn_rad_s = state.value;
+  if (channel == go_channel) wanted_.go = state.value >= 0.5;
+  if (channel == x_channel) o.foot_x_m += state.value - o.x_m, o.x_m = state.value;
+  if (channel == y_channel) o.foot_y_m += state.value - o.y_m, o.y_m = state.value;
+  if (channel == heading_channel) {  // the base stays where it is, the foot goes round it
+    const double by_rad = state.value - o.heading_rad, x_m = o.foot_x_m - o.x_m, y_m = o.foot_y_m - o.y_m;
+    o.foot_x_m = o.x_m + std::cos(by_rad) * x_m - std::sin(by_rad) * y_m;
+    o.foot_y_m = o.y_m + std::sin(by_rad) * x_m + std::cos(by_rad) * y_m;
+    o.zero_rad -= by_rad;
+    o.heading_rad = state.value;
+  }
+}
+
+// The foot that stands stays where it is.
+void DcmWalk::reckon(const ControlInput& input, bool new_stance) noexcept {
+  Odometry& o = odometry_;
+  o.heading_rad = std::remainder(input.status.base.yaw_rad - o.zero_rad, 2 * std::numbers::pi);
+  const double frame_rad = o.heading_rad - over_feet_.yaw_rad();
+  const Vec3& foot_m = over_feet_.over(plan_.state().stance).foot_m;
+  const double x_m = std::cos(frame_rad) * foot_m[0] - std::sin(frame_rad) * foot_m[1];
+  const double y_m = std::sin(frame_rad) * foot_m[0] + std::cos(frame_rad) * foot_m[1];
+  if (new_stance) {
+    o.foot_x_m = o.x_m + x_m;
+    o.foot_y_m = o.y_m + y_m;
+  }
+  o.x_m = o.foot_x_m - x_m;
+  o.y_m = o.foot_y_m - y_m;
 }
 
 void DcmWalk::let_go(ActuationFrame& actuation) noexcept {
@@ -210,6 +233,7 @@ void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcep
     return let_go(actuation);
   }
   if (idle) begin(input);
+  reckon(input, false);
   if (plan_.advance(plan_config_, wanted_, sight(input), input.dt_s)) landed(input);
   const WalkPlan::State& s = plan_.state();
   phase_number_ = static_cast<double>(s.phase);
@@ -240,6 +264,7 @@ void DcmWalk::landed(const ControlInput& input) noexcept {
     plan_.turned(turn_rad);
     (void)over_feet_.update(input);
   }
+  reckon(input, true);
   for (Leg& leg : legs_) {
     for (std::size_t i = 0; i < leg_joints; ++i) {
       const JointState& joint = input.joints.joints[leg.inverse.axis(i).joint];
@@ -377,7 +402,7 @@ void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexce
 
 void DcmWalk::pass_state(StateBytes& bytes) noexcept {
   for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm);
-  bytes(over_feet_, plan_, wanted_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_, com_height_m_);
+  bytes(over_feet_, plan_, wanted_, odometry_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_, com_height_m_);
 }
 
 std::unique_ptr<ControlObject> make_dcm_walk(const ObjectSetup& setup) { return std::make_unique<DcmWalk>(setup); }

@@ -16,7 +16,8 @@
 //
 // Joints      of both legs *_hip_yaw, *_hip_roll, *_hip_pitch, *_knee, *_ankle_pitch.
 // Options     left_foot, right_foot: the links that stand; required. The foot sensors are in this order too.
-// Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand.
+// Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand; it reads 1 as long as the
+//             legs are claimed. x_m, y_m, heading_rad: where the base is by joints and IMU; setting one sets it there.
 // Parameters  Config and WalkPlan::Config.
 // Signals     State of the plan.
 // Given up    when the base leans beyond tilt_max_rad or a measurement is not finite: it lets go of the legs until `go`
@@ -61,7 +62,8 @@ class DcmWalk final : public ControlObject {
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void set_point(std::uint32_t channel, double value, double duration_s) noexcept override;
+  bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept override;
+  void follow(std::uint32_t channel, const SetpointState& state) noexcept override;
   void pass_state(StateBytes& bytes) noexcept override;
 
   const WalkPlan& plan() const noexcept { return plan_; }
@@ -83,6 +85,7 @@ class DcmWalk final : public ControlObject {
   void let_go(ActuationFrame& actuation) noexcept;
   WalkPlan::Sight sight(const ControlInput& input) const noexcept;
   void begin(const ControlInput& input) noexcept;
+  void reckon(const ControlInput& input, bool new_stance) noexcept;
   void landed(const ControlInput& input) noexcept;
   Vec3 hip(std::size_t leg) const noexcept;  // in the heading frame
   void aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept;
@@ -101,6 +104,12 @@ class DcmWalk final : public ControlObject {
   WalkPlan::Config plan_config_;
   WalkPlan plan_;
   WalkPlan::Wanted wanted_;
+  struct Odometry {
+    double x_m = 0, y_m = 0, heading_rad = 0;  // of the base
+    double foot_x_m = 0, foot_y_m = 0;         // of the stance foot
+    double zero_rad = 0;                       // yaw of the base at a heading of 0
+  };
+  Odometry odometry_;
   bool given_up_ = false;
   std::array<double, 2> turn_Nm_{};   // moment of the ground on the robot about its centre of mass: roll, pitch
   std::array<double, 2> ankle_Nm_{};  // low-passed
