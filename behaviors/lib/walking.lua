@@ -3,7 +3,7 @@
 local walk = {}
 
 -- The fastest that it walks, alone: together the shares of these may not exceed 1.5.
-local fastest = { forward_m_s = 0.5, backward_m_s = 0.2, left_m_s = 0.15, turn_rad_s = 0.8 }
+local fastest = { forward_m_s = 0.6, backward_m_s = 0.2, left_m_s = 0.15, turn_rad_s = 0.8 }
 
 local function shares(way)
   local forward = way.forward_m_s or 0

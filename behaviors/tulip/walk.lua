@@ -5,9 +5,9 @@ local walk = require "walking"
 
 local P = k.params {
   settle_s    = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
-  forward_m_s = { 0.3, min = -0.5, max = 0.8, unit = "m/s", doc = "velocity forward" },
-  left_m_s    = { 0, min = -0.4, max = 0.4, unit = "m/s", doc = "velocity to the left" },
-  turn_rad_s  = { 0, min = -1.5, max = 1.5, unit = "rad/s", doc = "turning to the left" },
+  forward_m_s = { 0.3, min = -0.25, max = 0.65, unit = "m/s", doc = "velocity forward" },
+  left_m_s    = { 0, min = -0.2, max = 0.2, unit = "m/s", doc = "velocity to the left" },
+  turn_rad_s  = { 0, min = -1, max = 1, unit = "rad/s", doc = "turning to the left" },
   for_s       = { 1e5, min = 0, max = 1e5, unit = "s", doc = "how long it walks" },
 }
 

@@ -15,7 +15,16 @@ constexpr std::array<double, leg_joints> walk_kp{80, 250, 250, 250, 120}, walk_k
 constexpr double walk_rate_s = 0.006;  // low pass of the targets' rates
 constexpr double walk_rate_max_rad_s = 7;
 constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
-enum Channel : std::uint32_t { forward_channel, left_channel, turn_channel, go_channel, x_channel, y_channel, heading_channel, channels };
+enum Channel : std::uint32_t {
+  forward_channel,
+  left_channel,
+  turn_channel,
+  go_channel,
+  x_channel,
+  y_channel,
+  heading_channel,
+  channels
+};
 
 }  // namespace
 
@@ -117,12 +126,18 @@ void DcmWalk::declare_signals(Declaration& d) {
   const auto setpoint = [&](const char* name, const char* unit, double min, double max, const char* doc,
                             std::uint32_t channel) {
     const double safe = channel == go_channel ? 0 : std::numeric_limits<double>::quiet_NaN();
-    d.setpoint({.name = name, .unit = unit, .min = min, .max = max, .doc = doc, .channel = channel, .joint = no_joint,
+    d.setpoint({.name = name,
+                .unit = unit,
+                .min = min,
+                .max = max,
+                .doc = doc,
+                .channel = channel,
+                .joint = no_joint,
                 .safe = safe});
   };
-  setpoint("forward_m_s", "m/s", -0.5, 0.8, "Velocity forward.", forward_channel);
-  setpoint("left_m_s", "m/s", -0.4, 0.4, "Velocity to the left.", left_channel);
-  setpoint("turn_rad_s", "rad/s", -1.5, 1.5, "Turning to the left.", turn_channel);
+  setpoint("forward_m_s", "m/s", -0.25, 0.65, "Velocity forward.", forward_channel);
+  setpoint("left_m_s", "m/s", -0.2, 0.2, "Velocity to the left.", left_channel);
+  setpoint("turn_rad_s", "rad/s", -1, 1, "Turning to the left.", turn_channel);
   setpoint("go", "", 0, 1, "1: walks; 0: comes to stand. Reads 1 until it stands.", go_channel);
   setpoint("x_m", "m", -1e4, 1e4, "Where the base is by its steps; setting it sets it there.", x_channel);
   setpoint("y_m", "m", -1e4, 1e4, "Likewise, to the left.", y_channel);
@@ -144,6 +159,7 @@ void DcmWalk::declare_signals(Declaration& d) {
   d.signal({"at_z_m", "m", "Above it."}, &s.feet.at_m[2]);
   d.signal({"pressure_x_m", "m", "Centre of pressure asked for, forward of the stance foot's frame."}, &s.in_sole_x_m);
   d.signal({"trim_x_m_s", "m/s", "Correction of the speed forward."}, &s.meant.trim_m_s.x_m);
+  d.signal({"trim_y_m_s", "m/s", "Likewise to the left."}, &s.meant.trim_m_s.y_m);
   d.signal({"x_m", "m", "Where the base is by its steps."}, &odometry_.x_m);
   d.signal({"y_m", "m", "Where the base is by its steps, to the left."}, &odometry_.y_m);
   d.signal({"heading_rad", "rad", "Its heading."}, &odometry_.heading_rad);
@@ -402,7 +418,8 @@ void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexce
 
 void DcmWalk::pass_state(StateBytes& bytes) noexcept {
   for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm);
-  bytes(over_feet_, plan_, wanted_, odometry_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_, com_height_m_);
+  bytes(over_feet_, plan_, wanted_, odometry_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_,
+        com_height_m_);
 }
 
 std::unique_ptr<ControlObject> make_dcm_walk(const ObjectSetup& setup) { return std::make_unique<DcmWalk>(setup); }

@@ -48,7 +48,7 @@ class DcmWalk final : public ControlObject {
     double torso_Nm_per_rad = 220, torso_Nms_per_rad = 14;  // in pitch
     double level_Nm_per_rad = 220, level_Nms_per_rad = 14;  // in roll
     double counter_share = 0.5;                             // share of the swing hip's torque that the stance hip takes
-    double grip = 0.4;           // largest force along the ground, per load
+    double grip = 0.4;                                      // largest force along the ground, per load
     double sole_m = 0.06;                                   // how far the sole is below a foot's frame
     double shift_s = 0.05;                                  // in which a leg that landed takes the load
     double ankle_smooth_s = 0.003;

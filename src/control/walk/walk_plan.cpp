@@ -58,7 +58,7 @@ void WalkPlan::look(const Config& c, const Sight& sight, double dt_s) noexcept {
   s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + c.trust_per_s * (seen.dcm_y_m - s.dcm.y_m));
 }
 
-void WalkPlan::choose(const Config& c, const Wanted&, const Sight& sight) noexcept {
+void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
   State& s = state_;
   const double w_x = sight.rate_per_s, w_y = c.side_rate_share * w_x, sign = side_of(1 - s.stance);
   const double grown_x = std::exp(w_x * c.step_s), grown_y = std::exp(w_y * c.step_s);
@@ -98,7 +98,7 @@ void WalkPlan::choose(const Config& c, const Wanted&, const Sight& sight) noexce
   s.in_sole_x_m = std::clamp(c.shift_x_m + c.ankle_gain * (s.dcm.x_m - meant_x_m), -c.sole.heel_m, c.sole.toe_m);
 }
 
-void WalkPlan::lead_foot(const Config& c, double) noexcept {
+void WalkPlan::lead_foot(const Config& c) noexcept {
   State& s = state_;
   const double share = s.time_s / s.step_s, way = swing_way(share / c.place_share);
   const double sink_m = c.sink_m_s * std::max(s.time_s - s.step_s, 0.0);
@@ -111,10 +111,12 @@ void WalkPlan::trim(const Config& c, const Sight& sight) noexcept {
   State& s = state_;
   const DcmMeasure::OverFoot& before = sight.over[1 - s.stance];  // of the foot that stood
   const double time_s = std::max(step_time_s_, 0.1);
-  const double x_m_s = (before.com_m[0] - from_com_m_.x_m) / time_s;
-  const double missed_m_s = s.meant.velocity.forward_m_s - x_m_s;
-  s.meant.trim_m_s.x_m =
-      std::clamp(s.meant.trim_m_s.x_m + c.trim_per_s * time_s * missed_m_s, -c.trim_max_m_s, c.trim_max_m_s);
+  const auto corrected = [&](double trim_m_s, double meant_m_s, double way_m) {
+    const double missed_m_s = meant_m_s - way_m / time_s;
+    return std::clamp(trim_m_s + c.trim_per_s * time_s * missed_m_s, -c.trim_max_m_s, c.trim_max_m_s);
+  };
+  s.meant.trim_m_s = {corrected(s.meant.trim_m_s.x_m, s.meant.velocity.forward_m_s, before.com_m[0] - from_com_m_.x_m),
+                      corrected(s.meant.trim_m_s.y_m, s.meant.velocity.left_m_s, before.com_m[1] - from_com_m_.y_m)};
 }
 
 void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) noexcept {
@@ -153,8 +155,8 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
     s.feet.from_m = s.feet.at_m = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     return true;
   }
-  choose(c, wanted, sight);
-  lead_foot(c, dt_s);
+  choose(c, sight);
+  lead_foot(c);
   const bool touches = s.time_s > c.early_share * s.step_s && sight.force_N[1 - s.stance] > c.touch_N;
   if (!touches && s.time_s < s.step_s + late_s) return false;
   land(c, wanted, sight);

@@ -103,8 +103,8 @@ class WalkPlan {
  private:
   void follow_wanted(const Config& config, const Wanted& wanted, double dt_s) noexcept;
   void look(const Config& config, const Sight& sight, double dt_s) noexcept;
-  void choose(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
-  void lead_foot(const Config& config, double dt_s) noexcept;
+  void choose(const Config& config, const Sight& sight) noexcept;
+  void lead_foot(const Config& config) noexcept;
   void land(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
   void trim(const Config& config, const Sight& sight) noexcept;
 
