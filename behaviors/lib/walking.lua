@@ -34,7 +34,7 @@ end
 -- Comes to stand.
 function walk.stop(m) m.walk:set("go", 0) end
 
--- Whether it stands: it has let go of its legs.
+-- Whether it stands.
 function walk.stands(m) return m.walk:setpoint("go") < 0.5 end
 
 -- Where it is by its steps, { x_m =, y_m =, heading_rad = }, since the start or since walk.here.

@@ -94,15 +94,20 @@ TEST_CASE("DcmWalk lets the stance leg bear the robot, and lifts the other") {
   CHECK(std::abs(bench.computed.joints[a + hip_roll].effort_Nm) > 3);  // the weight beside the hip
 }
 
-TEST_CASE("DcmWalk comes to stand when it shall not go on, and lets go") {
+TEST_CASE("DcmWalk comes to stand when it shall not go on, carries the robot there, and goes again") {
   Bench bench;
   bench.lead("go", 1);
   bench.ticks(1500);
   REQUIRE(bench.claimed() == 10);
   bench.lead("go", 0);
   bench.ticks(3000);
-  CHECK(bench.claimed() == 0);
+  CHECK(bench.claimed() == 10);
   CHECK(bench.reads("go") == 0);
+  CHECK(bench.walk.plan().state().phase == Phase::bears);
+  bench.lead("go", 1);
+  bench.ticks(1000);
+  CHECK(bench.reads("go") == 1);
+  CHECK(bench.walk.plan().state().phase == Phase::steps);
 }
 
 TEST_CASE("DcmWalk gives up a robot that falls, or is not measured, until it is told to stop and to go again") {

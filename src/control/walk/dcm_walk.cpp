@@ -65,9 +65,11 @@ void DcmWalk::declare(Declaration& d) {
               &c.counter_share);
   d.parameter({"grip", "", 0, 2, c.grip, "Largest force along the ground, per load."}, &c.grip);
   d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
+  d.parameter({"slope_s", "s", 0.01, 100, c.slope_s, "In which the slope of the ground is learnt."}, &c.slope_s);
+  d.parameter({"slope_max", "", 0, 1, c.slope_max, "The largest slope that it believes in."}, &c.slope_max);
   d.parameter({"shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load."}, &c.shift_s);
   d.parameter({"ankle_smooth_s", "s", 0, 0.1, c.ankle_smooth_s, "Low pass of the ankles' torques."}, &c.ankle_smooth_s);
-  d.parameter({"stand_s", "s", 0, 10, c.stand_s, "After the last step, before it lets go of the legs."}, &c.stand_s);
+  d.parameter({"stand_s", "s", 0, 10, c.stand_s, "After the last step, before it counts as standing."}, &c.stand_s);
   declare_gains(d);
   declare_plan(d);
   declare_signals(d);
@@ -163,6 +165,8 @@ void DcmWalk::declare_signals(Declaration& d) {
   d.signal({"x_m", "m", "Where the base is by its steps."}, &odometry_.x_m);
   d.signal({"y_m", "m", "Where the base is by its steps, to the left."}, &odometry_.y_m);
   d.signal({"heading_rad", "rad", "Its heading."}, &odometry_.heading_rad);
+  d.signal({"slope_x", "", "Slope of the ground as it is felt, forward."}, &slope_.x_m);
+  d.signal({"slope_y", "", "To the left."}, &slope_.y_m);
   d.signal({"height_m", "m", "Of the centre of mass over the stance foot's frame."}, &com_height_m_);
   for (Leg& leg : legs_) {
     for (std::size_t i = 0; i < leg_joints; ++i) {
@@ -174,15 +178,21 @@ void DcmWalk::declare_signals(Declaration& d) {
 
 void DcmWalk::start(const ControlInput&) noexcept {
   plan_.reset();
+  wanted_ = {};
   given_up_ = false;
   over_feet_.follow_heading();
+}
+
+bool DcmWalk::stands() const noexcept {
+  const WalkPlan::State& s = plan_.state();
+  return s.phase == WalkPlan::Phase::stands || (s.phase == WalkPlan::Phase::bears && s.time_s > config_.stand_s);
 }
 
 bool DcmWalk::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
   const std::array<double, channels> values{wanted_.velocity.forward_m_s,
                                             wanted_.velocity.left_m_s,
                                             wanted_.velocity.turn_rad_s,
-                                            plan_.state().phase == WalkPlan::Phase::stands ? 0.0 : 1.0,
+                                            stands() ? 0.0 : 1.0,
                                             odometry_.x_m,
                                             odometry_.y_m,
                                             odometry_.heading_rad};
@@ -236,7 +246,8 @@ WalkPlan::Sight DcmWalk::sight(const ControlInput& input) const noexcept {
           .force_N = {feet[0].force_N, feet[1].force_N},
           .cop_x_m = {feet[0].cop_x_m, feet[1].cop_x_m},
           .cop_y_m = {feet[0].cop_y_m, feet[1].cop_y_m},
-          .rate_per_s = over_feet_.rate_per_s()};
+          .rate_per_s = over_feet_.rate_per_s(),
+          .slope = slope_};
 }
 
 void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
@@ -249,18 +260,33 @@ void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcep
     return let_go(actuation);
   }
   if (idle) begin(input);
+  if (wanted_.go && stands()) {
+    plan_.begin(plan_config_, sight(input));
+    landed(input);
+  }
+  feel_ground(input.dt_s);
   reckon(input, false);
   if (plan_.advance(plan_config_, wanted_, sight(input), input.dt_s)) landed(input);
   const WalkPlan::State& s = plan_.state();
   phase_number_ = static_cast<double>(s.phase);
   stance_number_ = static_cast<double>(s.stance);
   if (s.phase != WalkPlan::Phase::steps) {
-    if (s.phase == WalkPlan::Phase::bears && s.time_s > config_.stand_s) return let_go(actuation);
     both_torques(input);
   } else {
     swing_torques(input);
   }
   write(input, actuation);
+}
+
+// A foot that bears the robot lies flat, but not while it lands or leaves.
+void DcmWalk::feel_ground(double dt_s) noexcept {
+  const WalkPlan::State& s = plan_.state();
+  const double share = s.time_s / std::max(s.step_s, dt_s), rate = std::min(dt_s / config_.slope_s, 1.0);
+  if (s.phase == WalkPlan::Phase::steps && !(share > 0.3 && share < 0.8)) return;
+  const DcmMeasure::OverFoot& over = over_feet_.over(s.stance);
+  const double most = config_.slope_max;
+  slope_.x_m += rate * (std::clamp(over.toe_up_m, -most, most) - slope_.x_m);
+  slope_.y_m += rate * (std::clamp(over.left_up_m, -most, most) - slope_.y_m);
 }
 
 void DcmWalk::begin(const ControlInput& input) noexcept {
@@ -354,14 +380,17 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   const DcmMeasure::OverFoot& over = over_feet_.over(a);
 
   const Vec3 swing_hip_m = hip(b);
-  const double risen_m = std::max(-over.toe_up_m * sole_front_m, over.toe_up_m * sole_back_m) -
-                         sole_side_m * std::abs(over_feet_.over(b).left_up_m);  // a tilted foot reaches further down
+  const double toe_up_m = over.toe_up_m - slope_.x_m;  // on its toes, or heel
+  const double risen_m =
+      std::max(-toe_up_m * sole_front_m, toe_up_m * sole_back_m) -
+      sole_side_m * std::abs(over_feet_.over(b).left_up_m - slope_.y_m) -  // tilted, it reaches deeper
+      slope_.x_m * s.feet.at_m[0] - slope_.y_m * s.feet.at_m[1];
   const Vec3 way_m{over.foot_m[0] + s.feet.at_m[0] - swing_hip_m[0], over.foot_m[1] + s.feet.at_m[1] - swing_hip_m[1],
                    over.foot_m[2] + s.feet.at_m[2] - swing_hip_m[2] - risen_m};
   const double next_yaw_rad = s.meant.turn_rad * swing_way(s.time_s / s.step_s);
   LegInverse::Angles swing_rad =
       swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m), next_yaw_rad - over_feet_.yaw_rad());
-  swing_rad[ankle_pitch] -= input.status.base.pitch_rad;
+  swing_rad[ankle_pitch] -= input.status.base.pitch_rad + slope_.x_m;
   aim(swing, swing_rad, input.dt_s);
   const Efforts swing_Nm = spring(swing, input);
   turn(swing_Nm, input);
@@ -418,7 +447,7 @@ void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexce
 
 void DcmWalk::pass_state(StateBytes& bytes) noexcept {
   for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm);
-  bytes(over_feet_, plan_, wanted_, odometry_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_,
+  bytes(over_feet_, plan_, wanted_, odometry_, slope_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_,
         com_height_m_);
 }
 

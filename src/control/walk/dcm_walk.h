@@ -1,5 +1,5 @@
-// Walks: type "dcm_walk", in effort mode. Meant to be composed with "priority" over a posture that stands. It claims
-// the legs from its first step on, and leaves them alone while the robot stands.
+// Walks: type "dcm_walk", in effort mode. Meant to be composed with "priority" over a posture that stands. It leaves
+// the legs alone until it is told to go; from then on it carries the robot, also while that stands.
 //
 // WalkPlan decides what each foot does; this class computes the torques.
 //
@@ -16,8 +16,8 @@
 //
 // Joints      of both legs *_hip_yaw, *_hip_roll, *_hip_pitch, *_knee, *_ankle_pitch.
 // Options     left_foot, right_foot: the links that stand; required. The foot sensors are in this order too.
-// Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand; it reads 1 as long as the
-//             legs are claimed. x_m, y_m, heading_rad: where the base is by joints and IMU; setting one sets it there.
+// Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand; it reads 1 until it stands.
+//             x_m, y_m, heading_rad: where the base is by joints and IMU; setting one sets it there.
 // Parameters  Config and WalkPlan::Config.
 // Signals     State of the plan.
 // Given up    when the base leans beyond tilt_max_rad or a measurement is not finite: it lets go of the legs until `go`
@@ -50,7 +50,9 @@ class DcmWalk final : public ControlObject {
     double counter_share = 0.5;                             // share of the swing hip's torque that the stance hip takes
     double grip = 0.4;                                      // largest force along the ground, per load
     double sole_m = 0.06;                                   // how far the sole is below a foot's frame
-    double shift_s = 0.05;                                  // in which a leg that landed takes the load
+    double slope_s = 0.5;                                   // time constant with which the ground's slope is learnt
+    double slope_max = 0.12;
+    double shift_s = 0.05;  // in which a leg that landed takes the load
     double ankle_smooth_s = 0.003;
     double stand_s = 0.6;  // after the last step, before it lets go
     std::array<double, leg_joints> kp_Nm_per_rad{}, kd_Nms_per_rad{};
@@ -86,6 +88,8 @@ class DcmWalk final : public ControlObject {
   WalkPlan::Sight sight(const ControlInput& input) const noexcept;
   void begin(const ControlInput& input) noexcept;
   void reckon(const ControlInput& input, bool new_stance) noexcept;
+  bool stands() const noexcept;
+  void feel_ground(double dt_s) noexcept;
   void landed(const ControlInput& input) noexcept;
   Vec3 hip(std::size_t leg) const noexcept;  // in the heading frame
   void aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept;
@@ -110,6 +114,7 @@ class DcmWalk final : public ControlObject {
     double zero_rad = 0;                       // yaw of the base at a heading of 0
   };
   Odometry odometry_;
+  GroundPoint slope_;  // of the ground in the heading frame, per metre, by the attitude of the foot that stands
   bool given_up_ = false;
   std::array<double, 2> turn_Nm_{};   // moment of the ground on the robot about its centre of mass: roll, pitch
   std::array<double, 2> ankle_Nm_{};  // low-passed

@@ -20,11 +20,17 @@ void WalkPlan::begin(const Config& c, const Sight& sight) noexcept {
   s = {};
   s.phase = Phase::sways;
   s.stance = sight.force_N[0] >= sight.force_N[1] ? 0 : 1;
-  const Vec3 &a = sight.over[s.stance].foot_m, &b = sight.over[1 - s.stance].foot_m;
-  s.feet.from_m = s.feet.at_m = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  leave(sight);
   s.dcm = {sight.over[s.stance].dcm_x_m, sight.over[s.stance].dcm_y_m};
   s.step_s = c.step_s;
   from_com_m_ = {sight.over[s.stance].com_m[0], sight.over[s.stance].com_m[1]};
+}
+
+// The other foot is about to leave the ground.
+void WalkPlan::leave(const Sight& sight) noexcept {
+  const Vec3 &a = sight.over[state_.stance].foot_m, &b = sight.over[1 - state_.stance].foot_m;
+  const double x_m = b[0] - a[0], y_m = b[1] - a[1];
+  state_.feet.from_m = state_.feet.at_m = {x_m, y_m, b[2] - a[2] - sight.slope.x_m * x_m - sight.slope.y_m * y_m};
 }
 
 GroundPoint WalkPlan::goal(const Config& c, const Sight& sight) const noexcept {
@@ -127,7 +133,7 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   s.stance = 1 - s.stance;
   trim(c, sight);
   s.dcm = {s.dcm.x_m - way.x_m, s.dcm.y_m - way.y_m};
-  s.feet.from_m = s.feet.at_m = {-way.x_m, -way.y_m, a[2] - b[2]};
+  leave(sight);
   from_com_m_ = {sight.over[s.stance].com_m[0], sight.over[s.stance].com_m[1]};
   ++s.steps;
   s.time_s = 0;
@@ -151,8 +157,7 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
     if (std::abs(s.dcm.y_m) > reached_m && s.time_s < c.sway_s) return false;
     s.phase = Phase::steps;
     s.time_s = 0;
-    const Vec3 &a = sight.over[s.stance].foot_m, &b = sight.over[1 - s.stance].foot_m;
-    s.feet.from_m = s.feet.at_m = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    leave(sight);
     return true;
   }
   choose(c, sight);

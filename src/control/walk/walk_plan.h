@@ -64,10 +64,11 @@ class WalkPlan {
     std::array<DcmMeasure::OverFoot, 2> over{};
     std::array<double, 2> force_N{}, cop_x_m{}, cop_y_m{};  // of each foot, in its frame
     double rate_per_s = 4;
+    GroundPoint slope;  // of the ground, per metre
   };
   struct Feet {
     Vec3 from_m{};  // where the other foot lifted off, or landed
-    Vec3 at_m{};    // where the other foot shall be now
+    Vec3 at_m{};    // where the other foot shall be now; heights are over the slope
     GroundPoint foothold;
   };
   struct Meant {
@@ -105,6 +106,7 @@ class WalkPlan {
   void look(const Config& config, const Sight& sight, double dt_s) noexcept;
   void choose(const Config& config, const Sight& sight) noexcept;
   void lead_foot(const Config& config) noexcept;
+  void leave(const Sight& sight) noexcept;
   void land(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
   void trim(const Config& config, const Sight& sight) noexcept;
 
