@@ -26,6 +26,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   ADD_TYPE(computed_torque);
   ADD_TYPE(dcm_balance);
   ADD_TYPE(dcm_step);
+  ADD_TYPE(dcm_walk);
   ADD_TYPE(stance);
   ADD_TYPE(gravity_compensation);
   ADD_TYPE(gaze);

@@ -36,6 +36,7 @@ std::vector<Row> rows() {
   std::vector<Row> rows{{"computed_torque", leg_robot, {2, 3, 4}},
                         {"dcm_balance", leg_robot, {1, 2, 4, 6, 7, 9}, feet},
                         {"dcm_step", leg_robot, all, feet},
+                        {"dcm_walk", leg_robot, all, feet},
                         {"stance", leg_robot, all, feet},
                         {"gravity_compensation", leg_robot, {2, 3, 4}},
                         {"gaze", head, {0, 1, 2, 3, 4, 5, 6}, test::eyes()},
@@ -52,7 +53,7 @@ struct Played {
   static constexpr int tuned = 44;
 
   Played(const Row& row, const ControlObjectTypes& types)
-      : model(row.model()), steps(std::string(row.type) == "dcm_step") {
+      : model(row.model()), steps(std::string(row.type) == "dcm_step" || std::string(row.type) == "dcm_walk") {
     const std::vector<DriveLaw> drives(model.joints.size(),
                                        DriveLaw{.spring_Nm_per_rad = 300, .rotor_inertia_kg_m2 = 0.02});
     object = (*types.find(row.type))(ObjectSetup{model, row.joints, row.options, drives});
@@ -121,7 +122,7 @@ struct Played {
       for (SetpointId id = 0; id < catalog.setpoints.size(); ++id) {
         const Setpoint& setpoint = catalog.setpoints[id];
         const double most = std::min(setpoint.max, 0.4);
-        const double value = most * std::sin(0.1 * tick + id + 1);
+        const double value = setpoint.name == "it.go" ? 1 : most * std::sin(0.1 * tick + id + 1);
         object->set_point(setpoint.channel, value, 0.06);
         if (!setpoint.own_motion) object->follow(setpoint.channel, {.value = value, .velocity = 0.1});
       }

@@ -11,6 +11,7 @@
 #include "control/balance/dcm_step.h"
 #include "control/balance/stance.h"
 #include "control/made_objects.h"
+#include "control/walk/dcm_walk.h"
 
 namespace kadans {
 
@@ -29,6 +30,7 @@ struct ControlObjects {
       owners.push_back(type == "joint_pid"  ? make_joint_pid(setup)
                        : type == "stance"   ? make_stance(setup)
                        : type == "dcm_step" ? make_dcm_step(setup)
+                       : type == "dcm_walk" ? make_dcm_walk(setup)
                                             : make_dcm_balance(setup));
       const auto first = static_cast<ParameterId>(catalog.parameters.size());
       Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);

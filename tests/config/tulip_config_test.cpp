@@ -12,7 +12,7 @@
 namespace kadans::tulip_config_test {
 namespace {
 
-const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance", "dcm_step"};
+const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance", "dcm_step", "dcm_walk"};
 const std::string robot_file = KADANS_SOURCE_DIR "/config/tulip/robot.json";
 
 RobotConfig tulip() { return read_robot_config(robot_file, types); }
@@ -41,7 +41,7 @@ TEST_CASE("TULip's configuration drives its twelve motors and leaves the ankle r
   const RobotConfig config = tulip();
   CHECK(config.name == "tulip");
   CHECK(config.model.joints.size() == 14);
-  REQUIRE(config.objects.size() == 4);
+  REQUIRE(config.objects.size() == 5);
   CHECK(config.objects[0].joints.size() == 12);
   CHECK(config.objects[1].type.name == "dcm_balance");
   CHECK(config.objects[1].joints.size() == 8);
@@ -49,6 +49,8 @@ TEST_CASE("TULip's configuration drives its twelve motors and leaves the ankle r
   CHECK(config.objects[2].joints.size() == 10);
   CHECK(config.objects[3].type.name == "dcm_step");
   CHECK(config.objects[3].joints.size() == 10);
+  CHECK(config.objects[4].type.name == "dcm_walk");
+  CHECK(config.objects[4].joints.size() == 10);
   const std::size_t ankle = config.model.find_joint("r_ankle_roll").value();
   const std::size_t knee = config.model.find_joint("r_knee").value();
   CHECK(config.plant.drives[ankle].torque_max_Nm == 0);

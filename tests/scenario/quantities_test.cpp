@@ -42,20 +42,30 @@ struct Robot {
 
 }  // namespace
 
+TEST_CASE("A joint without a motor has no drive that rubs") {
+  Robot robot;
+  robot.variant.plant.drives[1].torque_max_Nm = 0;
+  robot.set("joint.*.coulomb_Nm", 1.5);
+  CHECK(robot.variant.plant.drives[0].coulomb_Nm == 1.5);
+  CHECK(robot.variant.plant.drives[1].coulomb_Nm == 0);
+}
+
 TEST_CASE("Quantities change the plant and the control objects' parameters, by name and by pattern") {
   Robot robot;
   robot.set("ground.friction", 0.3);
   robot.set("joint.*_knee.torque_scale", 0.5);
   robot.set("link.torso.mass_scale", 1.5);
   robot.set("control.posture.l_knee.kp_scale", 1.2);
+  robot.set("joint.*.coulomb_Nm", 1.5);
   CHECK(robot.refusal().empty());
+  CHECK(robot.variant.plant.drives[0].coulomb_Nm == 1.5);
   CHECK(robot.variant.plant.ground_friction == 0.3);
   CHECK(robot.variant.plant.drives[1].torque_max_Nm == 30);
   CHECK(robot.variant.model.links[0].inertia.mass_kg == 3);
   CHECK(robot.variant.model.links[0].inertia.xx == doctest::Approx(0.15));
   CHECK(robot.variant.model.links[1].inertia.mass_kg == 2);
   CHECK(robot.kp == doctest::Approx(120));
-  CHECK(robot.done.size() == 5);
+  CHECK(robot.done.size() == 7);
   CHECK(robot.done[1].name == "joint.l_knee.torque_scale");
 }
 

@@ -78,7 +78,10 @@ bool DcmMeasure::update(const ControlInput& input) noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     OverFoot& over = over_[i];
     over.foot_m = body_.foot(i).position_m;
-    over.toe_up_m = rotate(body_.foot(i).orientation, {1, 0, 0})[2];
+    const Vec3 toes = rotate(body_.foot(i).orientation, {1, 0, 0});
+    over.toe_up_m = toes[2];
+    over.left_up_m = rotate(body_.foot(i).orientation, {0, 1, 0})[2];
+    over.yaw_rad = std::atan2(toes[1], toes[0]);
     over.com_m = difference(com_m_, over.foot_m);
     const Vec3 way_m = difference(next_m[i], over.com_m);
     over.velocity_m_s = {way_m[0] / moment_s, way_m[1] / moment_s, way_m[2] / moment_s};

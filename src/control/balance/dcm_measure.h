@@ -79,8 +79,10 @@ class Standing {
 class DcmMeasure {
  public:
   struct OverFoot {
-    Vec3 foot_m{};        // the foot's frame, from the base's origin
-    double toe_up_m = 0;  // how far its x axis rises, per metre: > 0 with the toes up
+    Vec3 foot_m{};         // the foot's frame, from the base's origin
+    double toe_up_m = 0;   // how far its x axis rises, per metre: > 0 with the toes up
+    double left_up_m = 0;  // likewise its y axis
+    double yaw_rad = 0;    // where its toes point
     Vec3 com_m{}, velocity_m_s{};
     double dcm_x_m = 0, dcm_y_m = 0;
   };
@@ -93,14 +95,17 @@ class DcmMeasure {
 
   // keep_heading: x stays where the base points now. follow_heading: x always is where the base points.
   void keep_heading(const ControlInput& input) noexcept;
+  void turn_heading(double by_rad) noexcept { heading_rad_ += by_rad; }
   void follow_heading() noexcept { keeps_ = false; }
   void pass_state(StateBytes& bytes) noexcept { bytes(keeps_, heading_rad_); }  // all else is measured anew
   double yaw_rad() const noexcept { return yaw_rad_; }                          // of the base in the heading frame
 
-  const OverFoot& over(std::size_t foot) const noexcept { return over_[foot]; }  // 0 left, 1 right
-  const Quat& upright() const noexcept { return upright_; }                      // of the base in the heading frame
-  const Vec3& com_m() const noexcept { return com_m_; }                          // from the base's origin
-  double rate_per_s() const noexcept { return rate_per_s_; }                     // w0
+  const OverFoot& over(std::size_t foot) const noexcept { return over_[foot]; }     // 0 left, 1 right
+  const Quat& upright() const noexcept { return upright_; }                         // of the base in the heading frame
+  const Vec3& com_m() const noexcept { return com_m_; }                             // from the base's origin
+  const std::array<std::size_t, 2>& feet() const noexcept { return body_.feet(); }  // links, left and right
+  const Kinematics& kinematics() const noexcept { return body_.kinematics(); }      // the base's origin at 0
+  double rate_per_s() const noexcept { return rate_per_s_; }                        // w0
 
  private:
   double dcm(std::size_t axis, const OverFoot& over) const noexcept;

@@ -107,6 +107,7 @@ void Quantities::add_joints(const RobotModel& model, PlantSettings& plant) {
     add_scale(joint + "torque_scale", drive.torque_max_Nm);
     add_scale(joint + "damping_scale", drive.viscous_Nms_per_rad);
     add_scale(joint + "coulomb_scale", drive.coulomb_Nm);
+    if (drive.torque_max_Nm > 0) add_value(joint + "coulomb_Nm", {0, 100, "Nm"}, drive.coulomb_Nm);
     add_scale(joint + "spring_scale", drive.spring_Nm_per_rad);
     add_value(joint + "encoder_noise_rad", {0, 1, "rad"}, plant.encoders[i].noise_rad);
     const std::size_t joints = model.joints.size();

@@ -2,7 +2,7 @@
 // start, and the parameters of the control objects.
 //
 //   ground.friction                      joint.<joint>.torque_scale, damping_scale, coulomb_scale, spring_scale
-//   link.<link>.mass_scale, friction     joint.<joint>.start_rad (added), encoder_noise_rad
+//   link.<link>.mass_scale, friction     joint.<joint>.coulomb_Nm, start_rad (added), encoder_noise_rad
 //   start.x_m, y_m, roll_rad, pitch_rad, yaw_rad
 //                                        imu.gyro_noise_rad_s, gyro_bias_rad_s, accelerometer_noise_m_s2, ...
 //   sensor.<name>.value, noise

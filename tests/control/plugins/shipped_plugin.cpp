@@ -5,12 +5,13 @@
 #include "control/balance/stance.h"
 #include "control/drive/spring_torque.h"
 #include "control/joint/trajectory_list.h"
+#include "control/walk/dcm_walk.h"
 #include "kadans/control/plugin.h"
 
 #define PLUGGED(type) kadans::plugin_type<kadans::make_##type>("plugged_" #type)
 
 KADANS_PLUGIN(PLUGGED(joint_pid), PLUGGED(joint_cascade), PLUGGED(joint_impedance), PLUGGED(joint_integrator),
               PLUGGED(joint_velocity), PLUGGED(trajectory_list), PLUGGED(profile_position), PLUGGED(feedforward_player),
-              PLUGGED(computed_torque), PLUGGED(dcm_balance), PLUGGED(dcm_step), PLUGGED(stance),
+              PLUGGED(computed_torque), PLUGGED(dcm_balance), PLUGGED(dcm_step), PLUGGED(dcm_walk), PLUGGED(stance),
               PLUGGED(gravity_compensation), PLUGGED(gaze), PLUGGED(spring_torque), PLUGGED(task_impedance),
               PLUGGED(whole_body))

@@ -1,0 +1,76 @@
+-- Words for walking: what a behavior asks of the control object "walk". What the robot cannot do is refused with a
+-- sentence, and nothing is clamped.
+local walk = {}
+
+-- The fastest that it walks, alone: together the shares of these may not exceed 1.5.
+local fastest = { forward_m_s = 0.6, backward_m_s = 0.2, left_m_s = 0.15, turn_rad_s = 0.8 }
+
+local function shares(way)
+  local forward = way.forward_m_s or 0
+  return {
+    forward_m_s = math.abs(forward) / (forward < 0 and fastest.backward_m_s or fastest.forward_m_s),
+    left_m_s = math.abs(way.left_m_s or 0) / fastest.left_m_s,
+    turn_rad_s = math.abs(way.turn_rad_s or 0) / fastest.turn_rad_s,
+  }
+end
+
+-- Walks at { forward_m_s =, left_m_s =, turn_rad_s = } from now on; what is left out is 0. True, or nil and a sentence.
+function walk.go(m, way)
+  local together = 0
+  for name, share in pairs(shares(way)) do
+    if not (share <= 1) then
+      return nil, string.format("%s = %g is faster than it walks", name, way[name])
+    end
+    together = together + share
+  end
+  if together > 1.5 then return nil, string.format("it does not walk so fast in all directions at once: %.1f of 1.5", together) end
+  m.walk:set("forward_m_s", way.forward_m_s or 0)
+  m.walk:set("left_m_s", way.left_m_s or 0)
+  m.walk:set("turn_rad_s", way.turn_rad_s or 0)
+  m.walk:set("go", 1)
+  return true
+end
+
+-- Comes to stand.
+function walk.stop(m) m.walk:set("go", 0) end
+
+-- Whether it stands.
+function walk.stands(m) return m.walk:setpoint("go") < 0.5 end
+
+-- Where it is by its steps, { x_m =, y_m =, heading_rad = }, since the start or since walk.here.
+function walk.at(m)
+  return { x_m = m.walk:setpoint("x_m"), y_m = m.walk:setpoint("y_m"), heading_rad = m.walk:setpoint("heading_rad") }
+end
+
+-- Says where it is.
+function walk.here(m, place)
+  m.walk:set("x_m", place.x_m or 0)
+  m.walk:set("y_m", place.y_m or 0)
+  m.walk:set("heading_rad", place.heading_rad or 0)
+end
+
+local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
+local function within(value, most) return math.max(-most, math.min(most, value)) end
+
+-- In each tick: a step of the way to { x_m =, y_m =, heading_rad = }; true when it is there. It turns toward a place that is far,
+-- walks there, and turns as it shall stand.
+function walk.to(m, goal, near)
+  near = near or { m = 0.05, rad = 0.1 }
+  local at = walk.at(m)
+  local x_m, y_m = goal.x_m - at.x_m, goal.y_m - at.y_m
+  local far_m = math.sqrt(x_m ^ 2 + y_m ^ 2)
+  local wanted_rad = far_m > 0.5 and math.atan2(y_m, x_m) or (goal.heading_rad or at.heading_rad)
+  local turn_rad = angle(wanted_rad - at.heading_rad)
+  if far_m < near.m and math.abs(turn_rad) < near.rad then return true end
+  local ahead_m = math.cos(at.heading_rad) * x_m + math.sin(at.heading_rad) * y_m
+  local left_m = math.cos(at.heading_rad) * y_m - math.sin(at.heading_rad) * x_m
+  local facing = math.max(0, math.cos(turn_rad)) ^ 2
+  walk.go(m, {
+    forward_m_s = math.max(-0.1, within(0.8 * ahead_m, 0.3) * facing),
+    left_m_s = within(0.6 * left_m, 0.06),
+    turn_rad_s = within(1.2 * turn_rad, 0.4),
+  })
+  return false
+end
+
+return walk

@@ -1,0 +1,52 @@
+-- Walks at a velocity for some time, then comes to stand. When the robot falls, it gets up and walks on.
+local k = require "kadans"
+local floor = require "floor"
+local walk = require "walking"
+
+local P = k.params {
+  settle_s    = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
+  forward_m_s = { 0.3, min = -0.25, max = 0.65, unit = "m/s", doc = "velocity forward" },
+  left_m_s    = { 0, min = -0.2, max = 0.2, unit = "m/s", doc = "velocity to the left" },
+  turn_rad_s  = { 0, min = -1, max = 1, unit = "rad/s", doc = "turning to the left" },
+  for_s       = { 1e5, min = 0, max = 1e5, unit = "s", doc = "how long it walks" },
+}
+
+local function lies(s) return floor.lies(s.base) end
+local function stands(_, m) return m.vars.stands end
+
+return k.behavior "walk" {
+  controls = "walking",
+  initial  = "set_out",
+
+  k.state "set_out" {
+    run = function(m)
+      m.posture:set_gains("stiff")
+      m.posture:move("set_out", { time_s = P.settle_s })
+      m:wait(P.settle_s)
+    end,
+    { on = "run.done", to = "go" },
+    { when = lies, to = "fallen", why = "lies" },
+  },
+  k.state "go" {
+    enter = function(m)
+      local goes, why = walk.go(m, { forward_m_s = P.forward_m_s, left_m_s = P.left_m_s, turn_rad_s = P.turn_rad_s })
+      if not goes then k.log.error("it stays: %s", why) end
+    end,
+    { after = P.for_s, to = "stop" },
+    { when = lies, to = "fallen", why = "lies" },
+  },
+  k.state "stop" {
+    enter = walk.stop,
+    during = function(m) m.vars.stands = walk.stands(m) end,
+    { when = stands, to = "stands" },
+    { when = lies, to = "fallen", why = "lies" },
+  },
+  k.state "fallen" {
+    enter = walk.stop,
+    k.call "get_up",
+    { on = "done", to = "set_out" },
+    { on = "failed", to = "failed" },
+  },
+  k.final "stands" { outcome = "done" },
+  k.final "failed" { outcome = "failed" },
+}

@@ -1,0 +1,456 @@
+#include "dcm_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace kadans {
+namespace {
+
+constexpr std::array<const char*, leg_joints> walk_parts{"hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch"};
+constexpr std::array<double, leg_joints> walk_kp{80, 250, 250, 250, 120}, walk_kd{4, 4, 4, 4, 2};
+constexpr double walk_rate_s = 0.006;  // low pass of the targets' rates
+constexpr double walk_rate_max_rad_s = 7;
+constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
+enum Channel : std::uint32_t {
+  forward_channel,
+  left_channel,
+  turn_channel,
+  go_channel,
+  x_channel,
+  y_channel,
+  heading_channel,
+  channels
+};
+
+}  // namespace
+
+DcmWalk::Leg DcmWalk::leg(const ObjectSetup& setup, const char* side, std::size_t foot) const {
+  Leg made{.inverse = LegInverse(setup.model, axes_, side), .load = LegLoad(setup.model, foot), .bearing = {}};
+  for (std::size_t j = 0; j < leg_joints; ++j) {
+    const auto bearings = made.load.bearings();
+    const auto found = std::ranges::find(bearings, made.inverse.axis(j).joint, &LegLoad::Bearing::joint);
+    if (found == bearings.end())
+      throw std::invalid_argument(made.inverse.axis(j).name + " does not carry the foot of its side");
+    made.bearing[j] = static_cast<std::size_t>(found - bearings.begin());
+  }
+  return made;
+}
+
+DcmWalk::DcmWalk(const ObjectSetup& setup)
+    : axes_(joint_axes(setup)),
+      over_feet_(setup),
+      legs_{leg(setup, "l", over_feet_.feet()[0]), leg(setup, "r", over_feet_.feet()[1])},
+      weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {}
+
+void DcmWalk::declare(Declaration& d) {
+  Config& c = config_;
+  d.parameter({"tilt_max_rad", "rad", 0, 1.5, c.tilt_max_rad, "Tilt of the trunk beyond which it gives up."},
+              &c.tilt_max_rad);
+  d.parameter({"height_m", "m", 0.1, 2, c.height_m, "Of the centre of mass over the foot that stands."}, &c.height_m);
+  d.parameter({"height_N_per_m", "N/m", 0, 20000, c.height_N_per_m, "Keeps that height."}, &c.height_N_per_m);
+  d.parameter({"height_Ns_per_m", "N s/m", 0, 2000, c.height_Ns_per_m, "Damps it."}, &c.height_Ns_per_m);
+  d.parameter({"lift_max", "", 0, 1, c.lift_max, "Most of both, per weight."}, &c.lift_max);
+  d.parameter({"lean_rad", "rad", -0.5, 0.5, c.lean_rad, "Of the torso, forward."}, &c.lean_rad);
+  d.parameter({"torso_Nm_per_rad", "Nm/rad", 0, 2000, c.torso_Nm_per_rad, "Holds the torso, in pitch."},
+              &c.torso_Nm_per_rad);
+  d.parameter({"torso_Nms_per_rad", "Nm s/rad", 0, 200, c.torso_Nms_per_rad, "Damps it."}, &c.torso_Nms_per_rad);
+  d.parameter({"level_Nm_per_rad", "Nm/rad", 0, 2000, c.level_Nm_per_rad, "Holds the torso, in roll."},
+              &c.level_Nm_per_rad);
+  d.parameter({"level_Nms_per_rad", "Nm s/rad", 0, 200, c.level_Nms_per_rad, "Damps it."}, &c.level_Nms_per_rad);
+  d.parameter({"counter_share", "", 0, 1, c.counter_share, "Of the swing hip's torque that the stance hip takes."},
+              &c.counter_share);
+  d.parameter({"grip", "", 0, 2, c.grip, "Largest force along the ground, per load."}, &c.grip);
+  d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
+  d.parameter({"slope_s", "s", 0.01, 100, c.slope_s, "In which the slope of the ground is learnt."}, &c.slope_s);
+  d.parameter({"slope_max", "", 0, 1, c.slope_max, "The largest slope that it believes in."}, &c.slope_max);
+  d.parameter({"shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load."}, &c.shift_s);
+  d.parameter({"ankle_smooth_s", "s", 0, 0.1, c.ankle_smooth_s, "Low pass of the ankles' torques."}, &c.ankle_smooth_s);
+  d.parameter({"stand_s", "s", 0, 10, c.stand_s, "After the last step, before it counts as standing."}, &c.stand_s);
+  declare_gains(d);
+  declare_plan(d);
+  declare_signals(d);
+}
+
+void DcmWalk::declare_gains(Declaration& d) {
+  Config& c = config_;
+  for (std::size_t i = 0; i < leg_joints; ++i) {
+    const std::string name = walk_parts[i];
+    d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 2000, walk_kp[i], "Torque per position error."},
+                &c.kp_Nm_per_rad[i]);
+    d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 200, walk_kd[i], "Torque per velocity error."},
+                &c.kd_Nms_per_rad[i]);
+  }
+}
+
+void DcmWalk::declare_plan(Declaration& d) {
+  WalkPlan::Config& c = plan_config_;
+  d.parameter({"step_s", "s", 0.1, 2, c.step_s, "Time of a step."}, &c.step_s);
+  d.parameter({"step_min_s", "s", 0.05, 2, c.step_min_s, "Shortest step."}, &c.step_min_s);
+  d.parameter({"step_max_s", "s", 0.1, 2, c.step_max_s, "Longest step."}, &c.step_max_s);
+  d.parameter({"width_m", "m", 0, 1, c.width_m, "Between the feet, sideways."}, &c.width_m);
+  d.parameter({"apart_min_m", "m", 0, 1, c.apart_min_m, "Least distance of the feet, sideways."}, &c.apart_min_m);
+  d.parameter({"apart_max_m", "m", 0, 1, c.apart_max_m, "Largest distance of the feet, sideways."}, &c.apart_max_m);
+  d.parameter({"reach_m", "m", 0, 1, c.reach_m, "Longest step."}, &c.reach_m);
+  d.parameter({"lift_m", "m", 0, 0.3, c.lift_m, "Height of a swing."}, &c.lift_m);
+  d.parameter({"place_share", "", 0.5, 1, c.place_share, "Of a swing, after which the foot is over its foothold."},
+              &c.place_share);
+  d.parameter({"sink_m_s", "m/s", 0, 2, c.sink_m_s, "How a late foot looks for the ground."}, &c.sink_m_s);
+  d.parameter({"place_weight", "", 0, 100, c.place_weight, "Of the meant step, beside the offset's 1."},
+              &c.place_weight);
+  d.parameter({"time_weight", "m2/s2", 0, 100, c.time_weight, "Of the meant time, beside the offset's 1."},
+              &c.time_weight);
+  d.parameter({"side_rate_share", "", 0.3, 1.5, c.side_rate_share, "Rate of falling sideways, of that along."},
+              &c.side_rate_share);
+  d.parameter({"trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured."},
+              &c.trust_per_s);
+  d.parameter({"ankle_gain", "", 0, 20, c.ankle_gain, "Shift of the pressure per error of xi."}, &c.ankle_gain);
+  d.parameter({"shift_x_m", "m", -0.1, 0.1, c.shift_x_m, "Where the pressure is meant to be, before a foot's frame."},
+              &c.shift_x_m);
+  d.parameter({"trim_per_s", "1/s", 0, 10, c.trim_per_s, "How fast the meant speed is corrected."}, &c.trim_per_s);
+  d.parameter({"trim_max_m_s", "m/s", 0, 1, c.trim_max_m_s, "Largest such correction."}, &c.trim_max_m_s);
+  d.parameter({"touch_N", "N", 1, 200, c.touch_N, "Force of a foot that has landed."}, &c.touch_N);
+  d.parameter({"early_share", "", 0, 1, c.early_share, "Of a swing, before which no landing counts."}, &c.early_share);
+  d.parameter({"sway_gain", "", 0, 20, c.sway_gain, "Shift of the load per error of xi, before the first step."},
+              &c.sway_gain);
+  d.parameter({"sway_s", "s", 0, 5, c.sway_s, "Longest time from standing to the first step."}, &c.sway_s);
+  d.parameter({"speed_max_m_s2", "m/s2", 0.01, 10, c.speed_max_m_s2, "How fast the meant velocity changes."},
+              &c.speed_max_m_s2);
+  d.parameter({"heel_m", "m", 0.001, 0.5, c.sole.heel_m, "Of the sole that may bear, behind the foot's frame."},
+              &c.sole.heel_m);
+  d.parameter({"toe_m", "m", 0.001, 0.5, c.sole.toe_m, "Before it."}, &c.sole.toe_m);
+}
+
+void DcmWalk::declare_signals(Declaration& d) {
+  const auto setpoint = [&](const char* name, const char* unit, double min, double max, const char* doc,
+                            std::uint32_t channel) {
+    const double safe = channel == go_channel ? 0 : std::numeric_limits<double>::quiet_NaN();
+    d.setpoint({.name = name,
+                .unit = unit,
+                .min = min,
+                .max = max,
+                .doc = doc,
+                .channel = channel,
+                .joint = no_joint,
+                .safe = safe});
+  };
+  setpoint("forward_m_s", "m/s", -0.25, 0.65, "Velocity forward.", forward_channel);
+  setpoint("left_m_s", "m/s", -0.2, 0.2, "Velocity to the left.", left_channel);
+  setpoint("turn_rad_s", "rad/s", -1, 1, "Turning to the left.", turn_channel);
+  setpoint("go", "", 0, 1, "1: walks; 0: comes to stand. Reads 1 until it stands.", go_channel);
+  setpoint("x_m", "m", -1e4, 1e4, "Where the base is by its steps; setting it sets it there.", x_channel);
+  setpoint("y_m", "m", -1e4, 1e4, "Likewise, to the left.", y_channel);
+  setpoint("heading_rad", "rad", -std::numbers::pi, std::numbers::pi, "Likewise, its heading.", heading_channel);
+  const WalkPlan::State& s = plan_.state();
+  d.signal({"phase", "", "0 stands, 1 sways, 2 steps, 3 bears; -1 has given up."}, &phase_number_);
+  d.signal({"stance", "", "The foot that stands: 0 left, 1 right."}, &stance_number_);
+  d.signal({"steps", "", "Steps since it began."}, &s.steps);
+  d.signal({"time_s", "s", "In the step."}, &s.time_s);
+  d.signal({"step_s", "s", "When the foot is meant to land."}, &s.step_s);
+  d.signal({"dcm_x_m", "m", "Divergent component of motion, forward of the stance foot."}, &s.dcm.x_m);
+  d.signal({"dcm_y_m", "m", "Left of it."}, &s.dcm.y_m);
+  d.signal({"offset_x_m", "m", "Meant distance from the foothold to xi at the landing, forward."}, &s.meant.offset.x_m);
+  d.signal({"offset_y_m", "m", "To the left."}, &s.meant.offset.y_m);
+  d.signal({"foothold_x_m", "m", "Where the other foot goes, forward of the stance foot."}, &s.feet.foothold.x_m);
+  d.signal({"foothold_y_m", "m", "Left of it."}, &s.feet.foothold.y_m);
+  d.signal({"at_x_m", "m", "Where the other foot shall be now, forward of the stance foot."}, &s.feet.at_m[0]);
+  d.signal({"at_y_m", "m", "Left of it."}, &s.feet.at_m[1]);
+  d.signal({"at_z_m", "m", "Above it."}, &s.feet.at_m[2]);
+  d.signal({"pressure_x_m", "m", "Centre of pressure asked for, forward of the stance foot's frame."}, &s.in_sole_x_m);
+  d.signal({"trim_x_m_s", "m/s", "Correction of the speed forward."}, &s.meant.trim_m_s.x_m);
+  d.signal({"trim_y_m_s", "m/s", "Likewise to the left."}, &s.meant.trim_m_s.y_m);
+  d.signal({"x_m", "m", "Where the base is by its steps."}, &odometry_.x_m);
+  d.signal({"y_m", "m", "Where the base is by its steps, to the left."}, &odometry_.y_m);
+  d.signal({"heading_rad", "rad", "Its heading."}, &odometry_.heading_rad);
+  d.signal({"slope_x", "", "Slope of the ground as it is felt, forward."}, &slope_.x_m);
+  d.signal({"slope_y", "", "To the left."}, &slope_.y_m);
+  d.signal({"height_m", "m", "Of the centre of mass over the stance foot's frame."}, &com_height_m_);
+  for (Leg& leg : legs_) {
+    for (std::size_t i = 0; i < leg_joints; ++i) {
+      d.signal({leg.inverse.axis(i).name + ".target_rad", "rad", "Where it shall be."}, &leg.target_rad[i]);
+      d.signal({leg.inverse.axis(i).name + ".effort_Nm", "Nm", "Torque asked for."}, &leg.effort_Nm[i]);
+    }
+  }
+}
+
+void DcmWalk::start(const ControlInput&) noexcept {
+  plan_.reset();
+  wanted_ = {};
+  given_up_ = false;
+  over_feet_.follow_heading();
+}
+
+bool DcmWalk::stands() const noexcept {
+  const WalkPlan::State& s = plan_.state();
+  return s.phase == WalkPlan::Phase::stands || (s.phase == WalkPlan::Phase::bears && s.time_s > config_.stand_s);
+}
+
+bool DcmWalk::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+  const std::array<double, channels> values{wanted_.velocity.forward_m_s,
+                                            wanted_.velocity.left_m_s,
+                                            wanted_.velocity.turn_rad_s,
+                                            stands() ? 0.0 : 1.0,
+                                            odometry_.x_m,
+                                            odometry_.y_m,
+                                            odometry_.heading_rad};
+  state = {.value = values[channel]};
+  return true;
+}
+
+void DcmWalk::follow(std::uint32_t channel, const SetpointState& state) noexcept {
+  Odometry& o = odometry_;
+  if (channel == forward_channel) wanted_.velocity.forward_m_s = state.value;
+  if (channel == left_channel) wanted_.velocity.left_m_s = state.value;
+  if (channel == turn_channel) wanted_.velocity.turn_rad_s = state.value;
+  if (channel == go_channel) wanted_.go = state.value >= 0.5;
+  if (channel == x_channel) o.foot_x_m += state.value - o.x_m, o.x_m = state.value;
+  if (channel == y_channel) o.foot_y_m += state.value - o.y_m, o.y_m = state.value;
+  if (channel == heading_channel) {  // the base stays where it is, the foot goes round it
+    const double by_rad = state.value - o.heading_rad, x_m = o.foot_x_m - o.x_m, y_m = o.foot_y_m - o.y_m;
+    o.foot_x_m = o.x_m + std::cos(by_rad) * x_m - std::sin(by_rad) * y_m;
+    o.foot_y_m = o.y_m + std::sin(by_rad) * x_m + std::cos(by_rad) * y_m;
+    o.zero_rad -= by_rad;
+    o.heading_rad = state.value;
+  }
+}
+
+// The foot that stands stays where it is.
+void DcmWalk::reckon(const ControlInput& input, bool new_stance) noexcept {
+  Odometry& o = odometry_;
+  o.heading_rad = std::remainder(input.status.base.yaw_rad - o.zero_rad, 2 * std::numbers::pi);
+  const double frame_rad = o.heading_rad - over_feet_.yaw_rad();
+  const Vec3& foot_m = over_feet_.over(plan_.state().stance).foot_m;
+  const double x_m = std::cos(frame_rad) * foot_m[0] - std::sin(frame_rad) * foot_m[1];
+  const double y_m = std::sin(frame_rad) * foot_m[0] + std::cos(frame_rad) * foot_m[1];
+  if (new_stance) {
+    o.foot_x_m = o.x_m + x_m;
+    o.foot_y_m = o.y_m + y_m;
+  }
+  o.x_m = o.foot_x_m - x_m;
+  o.y_m = o.foot_y_m - y_m;
+}
+
+void DcmWalk::let_go(ActuationFrame& actuation) noexcept {
+  for (const JointAxis& axis : axes_) actuation.joints[axis.joint] = {};
+  for (Leg& leg : legs_) leg.effort_Nm = {};
+  plan_.reset();
+  over_feet_.follow_heading();
+}
+
+WalkPlan::Sight DcmWalk::sight(const ControlInput& input) const noexcept {
+  const auto& feet = input.status.feet;
+  return {.over = {over_feet_.over(0), over_feet_.over(1)},
+          .force_N = {feet[0].force_N, feet[1].force_N},
+          .cop_x_m = {feet[0].cop_x_m, feet[1].cop_x_m},
+          .cop_y_m = {feet[0].cop_y_m, feet[1].cop_y_m},
+          .rate_per_s = over_feet_.rate_per_s(),
+          .slope = slope_};
+}
+
+void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
+  if (!wanted_.go) given_up_ = false;
+  const bool idle = plan_.state().phase == WalkPlan::Phase::stands;
+  phase_number_ = given_up_ ? -1 : static_cast<double>(plan_.state().phase);
+  if (given_up_ || (idle && !wanted_.go)) return let_go(actuation);
+  if (!over_feet_.update(input) || !(input.status.base.tilt_rad <= config_.tilt_max_rad)) {
+    given_up_ = wanted_.go;
+    return let_go(actuation);
+  }
+  if (idle) begin(input);
+  if (wanted_.go && stands()) {
+    plan_.begin(plan_config_, sight(input));
+    landed(input);
+  }
+  feel_ground(input.dt_s);
+  reckon(input, false);
+  if (plan_.advance(plan_config_, wanted_, sight(input), input.dt_s)) landed(input);
+  const WalkPlan::State& s = plan_.state();
+  phase_number_ = static_cast<double>(s.phase);
+  stance_number_ = static_cast<double>(s.stance);
+  if (s.phase != WalkPlan::Phase::steps) {
+    both_torques(input);
+  } else {
+    swing_torques(input);
+  }
+  write(input, actuation);
+}
+
+// A foot that bears the robot lies flat, but not while it lands or leaves.
+void DcmWalk::feel_ground(double dt_s) noexcept {
+  const WalkPlan::State& s = plan_.state();
+  const double share = s.time_s / std::max(s.step_s, dt_s), rate = std::min(dt_s / config_.slope_s, 1.0);
+  if (s.phase == WalkPlan::Phase::steps && !(share > 0.3 && share < 0.8)) return;
+  const DcmMeasure::OverFoot& over = over_feet_.over(s.stance);
+  const double most = config_.slope_max;
+  slope_.x_m += rate * (std::clamp(over.toe_up_m, -most, most) - slope_.x_m);
+  slope_.y_m += rate * (std::clamp(over.left_up_m, -most, most) - slope_.y_m);
+}
+
+void DcmWalk::begin(const ControlInput& input) noexcept {
+  over_feet_.keep_heading(input);
+  (void)over_feet_.update(input);
+  plan_.begin(plan_config_, sight(input));
+  for (std::size_t i = 0; i < 2; ++i)
+    ankle_Nm_[i] = input.last.joints[legs_[i].inverse.axis(ankle_pitch).joint].effort_Nm;
+  landed(input);
+}
+
+// The load goes to the leg that landed. Targets go on from the measured angles.
+void DcmWalk::landed(const ControlInput& input) noexcept {
+  const double turn_rad = plan_.state().meant.turn_rad;
+  if (turn_rad != 0) {
+    over_feet_.turn_heading(turn_rad);
+    plan_.turned(turn_rad);
+    (void)over_feet_.update(input);
+  }
+  reckon(input, true);
+  for (Leg& leg : legs_) {
+    for (std::size_t i = 0; i < leg_joints; ++i) {
+      const JointState& joint = input.joints.joints[leg.inverse.axis(i).joint];
+      leg.target_rad[i] = joint.position_rad;
+      leg.rate_rad_s[i] = joint.velocity_rad_s;
+    }
+  }
+}
+
+Vec3 DcmWalk::hip(std::size_t leg) const noexcept { return rotate(over_feet_.upright(), legs_[leg].inverse.hip_m()); }
+
+void DcmWalk::aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept {
+  for (std::size_t i = 0; i < leg_joints; ++i) {
+    const double rate_rad_s = (target_rad[i] - leg.target_rad[i]) / dt_s;
+    const double limited_rad_s = std::clamp(rate_rad_s, -walk_rate_max_rad_s, walk_rate_max_rad_s);
+    leg.rate_rad_s[i] += dt_s / walk_rate_s * (limited_rad_s - leg.rate_rad_s[i]);
+    leg.target_rad[i] = target_rad[i];
+  }
+}
+
+DcmWalk::Efforts DcmWalk::spring(const Leg& leg, const ControlInput& input) const noexcept {
+  Efforts effort_Nm{};
+  for (std::size_t i = 0; i < leg_joints; ++i) {
+    const JointState& joint = input.joints.joints[leg.inverse.axis(i).joint];
+    effort_Nm[i] = config_.kp_Nm_per_rad[i] * (leg.target_rad[i] - joint.position_rad) +
+                   config_.kd_Nms_per_rad[i] * (leg.rate_rad_s[i] - joint.velocity_rad_s);
+  }
+  return effort_Nm;
+}
+
+// The torques of a leg that bears this share of the robot, by a force through the centre of mass. With no share, those
+// that bear the leg alone.
+DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_m, const ControlInput& input) noexcept {
+  Leg& leg = legs_[i];
+  const DcmMeasure::OverFoot& over = over_feet_.over(i);
+  const double lift_N =
+      config_.height_N_per_m * (config_.height_m - over.com_m[2]) - config_.height_Ns_per_m * over.velocity_m_s[2];
+  const double most_N = config_.lift_max * weight_N_;
+  const double height_m = std::max(over.com_m[2], lowest_com_m) + config_.sole_m;
+  const double force_N = share * (weight_N_ + std::clamp(lift_N, -most_N, most_N));
+  if (i == plan_.state().stance) com_height_m_ = over.com_m[2];
+  const double grip_N = config_.grip * force_N;
+  const double x_N = (force_N * (over.com_m[0] - in_sole_x_m) - share * turn_Nm_[1]) / height_m;
+  const double y_N = (force_N * over.com_m[1] + share * turn_Nm_[0]) / height_m;
+  const Vec3 force{std::clamp(x_N, -grip_N, grip_N), std::clamp(y_N, -grip_N, grip_N), force_N};
+  leg.load.update(over_feet_.kinematics(), force,
+                  {over.foot_m[0] + in_sole_x_m, over.foot_m[1], over.foot_m[2] - config_.sole_m});
+  Efforts effort_Nm{};
+  for (std::size_t j = 0; j < leg_joints; ++j) effort_Nm[j] = leg.load.bearings()[leg.bearing[j]].effort_Nm;
+  const double ground_N = std::max(input.status.feet[i].force_N, 0.0);  // more would turn the foot about its edge
+  effort_Nm[ankle_pitch] = std::clamp(effort_Nm[ankle_pitch], -ground_N * sole_back_m, ground_N * sole_front_m);
+  return effort_Nm;
+}
+
+// The moment that rights the torso and takes the swing leg's reaction.
+void DcmWalk::turn(const Efforts& swing_Nm, const ControlInput& input) noexcept {
+  const Config& c = config_;
+  const BaseStatus& base = input.status.base;
+  const Vec3& w = base.angular_velocity_rad_s;
+  turn_Nm_ = {c.counter_share * swing_Nm[hip_roll] - c.level_Nm_per_rad * base.roll_rad - c.level_Nms_per_rad * w[0],
+              c.counter_share * swing_Nm[hip_pitch] - c.torso_Nm_per_rad * (base.pitch_rad - c.lean_rad) -
+                  c.torso_Nms_per_rad * w[1]};
+}
+
+void DcmWalk::swing_torques(const ControlInput& input) noexcept {
+  const Config& c = config_;
+  const WalkPlan::State& s = plan_.state();
+  const std::size_t a = s.stance, b = 1 - a;
+  Leg &stance = legs_[a], &swing = legs_[b];
+  const double loaded = std::min(s.time_s / c.shift_s, 1.0);
+  const DcmMeasure::OverFoot& over = over_feet_.over(a);
+
+  const Vec3 swing_hip_m = hip(b);
+  const double toe_up_m = over.toe_up_m - slope_.x_m;  // on its toes, or heel
+  const double risen_m =
+      std::max(-toe_up_m * sole_front_m, toe_up_m * sole_back_m) -
+      sole_side_m * std::abs(over_feet_.over(b).left_up_m - slope_.y_m) -  // tilted, it reaches deeper
+      slope_.x_m * s.feet.at_m[0] - slope_.y_m * s.feet.at_m[1];
+  const Vec3 way_m{over.foot_m[0] + s.feet.at_m[0] - swing_hip_m[0], over.foot_m[1] + s.feet.at_m[1] - swing_hip_m[1],
+                   over.foot_m[2] + s.feet.at_m[2] - swing_hip_m[2] - risen_m};
+  const double next_yaw_rad = s.meant.turn_rad * swing_way(s.time_s / s.step_s);
+  LegInverse::Angles swing_rad =
+      swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m), next_yaw_rad - over_feet_.yaw_rad());
+  swing_rad[ankle_pitch] -= input.status.base.pitch_rad + slope_.x_m;
+  aim(swing, swing_rad, input.dt_s);
+  const Efforts swing_Nm = spring(swing, input);
+  turn(swing_Nm, input);
+  const Efforts left_Nm = bearing(b, 1 - loaded, 0, input);
+
+  LegInverse::Angles stance_rad = stance.target_rad;
+  stance_rad[hip_yaw] = over.yaw_rad;
+  aim(stance, stance_rad, input.dt_s);
+  const Efforts stance_Nm = spring(stance, input), borne_Nm = bearing(a, loaded, s.in_sole_x_m, input);
+
+  for (std::size_t j = 0; j < leg_joints; ++j) {
+    swing.effort_Nm[j] = loaded * swing_Nm[j] + left_Nm[j];
+    stance.effort_Nm[j] = borne_Nm[j];
+  }
+  stance.effort_Nm[hip_yaw] = stance_Nm[hip_yaw];
+}
+
+void DcmWalk::both_torques(const ControlInput& input) noexcept {
+  const WalkPlan::State& s = plan_.state();
+  turn({}, input);
+  const std::size_t a = s.stance;
+  const Vec3 &at_m = over_feet_.over(a).foot_m, &other_m = over_feet_.over(1 - a).foot_m;
+  std::array<GroundPoint, 2> feet;
+  feet[1 - a] = {other_m[0] - at_m[0], other_m[1] - at_m[1]};
+  const GroundPoint goal = plan_.goal(plan_config_, sight(input));
+  const double gain = s.phase == WalkPlan::Phase::sways ? plan_config_.sway_gain : 1;
+  const GroundPoint pressure{2 * s.dcm.x_m - goal.x_m, (1 + gain) * s.dcm.y_m - gain * goal.y_m};
+  const LoadSplit split = split_load(plan_config_.sole, feet[0], feet[1], pressure);
+  for (std::size_t i = 0; i < 2; ++i) {
+    Leg& leg = legs_[i];
+    LegInverse::Angles target_rad = leg.target_rad;
+    target_rad[hip_yaw] = over_feet_.over(i).yaw_rad;
+    aim(leg, target_rad, input.dt_s);
+    const double share = i == 1 ? split.right_share : 1 - split.right_share;
+    const Efforts held_Nm = spring(leg, input), borne_Nm = bearing(i, share, split.in_sole.x_m, input);
+    leg.effort_Nm = borne_Nm;
+    leg.effort_Nm[hip_yaw] = held_Nm[hip_yaw];
+  }
+}
+
+void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexcept {
+  const double smooth = config_.ankle_smooth_s > input.dt_s ? input.dt_s / config_.ankle_smooth_s : 1;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Efforts& effort_Nm = legs_[i].effort_Nm;
+    ankle_Nm_[i] += smooth * (effort_Nm[ankle_pitch] - ankle_Nm_[i]);
+    effort_Nm[ankle_pitch] = ankle_Nm_[i];
+    for (std::size_t j = 0; j < leg_joints; ++j) {
+      const JointAxis& axis = legs_[i].inverse.axis(j);
+      effort_Nm[j] = std::clamp(effort_Nm[j], -axis.effort_max_Nm, axis.effort_max_Nm);
+      actuation.joints[axis.joint] = {.effort_Nm = effort_Nm[j], .mode = ActuationMode::effort};
+    }
+  }
+}
+
+void DcmWalk::pass_state(StateBytes& bytes) noexcept {
+  for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm);
+  bytes(over_feet_, plan_, wanted_, odometry_, slope_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_,
+        com_height_m_);
+}
+
+std::unique_ptr<ControlObject> make_dcm_walk(const ObjectSetup& setup) { return std::make_unique<DcmWalk>(setup); }
+
+}  // namespace kadans

@@ -1,0 +1,126 @@
+// Walks: type "dcm_walk", in effort mode. Meant to be composed with "priority" over a posture that stands. It leaves
+// the legs alone until it is told to go; from then on it carries the robot, also while that stands.
+//
+// WalkPlan decides what each foot does; this class computes the torques.
+//
+// clang-format off
+//   stance leg  Bears the robot: a force from the centre of pressure through the centre of mass, as torques of each joint
+//               (LegLoad). The force keeps the centre of mass at its height over the foot. The hip also holds the torso, by the attitude that is measured, and takes the swing leg's
+//               reaction (SIMBICON, Yin et al. 2007). The ankle places the centre of pressure; its roll is passive. The
+//               yaw turns the base to the heading.
+//   swing leg   Inverse kinematics of where the foot shall be over the ground, through the measured stance leg and
+//               attitude; PD on its joints, and the leg's own weight.
+//   a landing   moves the load from one leg to the other in shift_s.
+//   both bear   After the last step: the load is shared so that xi comes to rest in the middle.
+// clang-format on
+//
+// Joints      of both legs *_hip_yaw, *_hip_roll, *_hip_pitch, *_knee, *_ankle_pitch.
+// Options     left_foot, right_foot: the links that stand; required. The foot sensors are in this order too.
+// Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand; it reads 1 until it stands.
+//             x_m, y_m, heading_rad: where the base is by joints and IMU; setting one sets it there.
+// Parameters  Config and WalkPlan::Config.
+// Signals     State of the plan.
+// Given up    when the base leans beyond tilt_max_rad or a measurement is not finite: it lets go of the legs until `go`
+//             is 0.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "control/balance/dcm_measure.h"
+#include "control/balance/dcm_step.h"
+#include "control/balance/stance.h"
+#include "kadans/control/control_object.h"
+#include "kadans/control/joint_axis.h"
+#include "walk_plan.h"
+
+namespace kadans {
+
+class DcmWalk final : public ControlObject {
+ public:
+  struct Config {
+    double tilt_max_rad = 0.7;
+    double height_m = 0.51;  // of the centre of mass over the foot's frame
+    double height_N_per_m = 1500, height_Ns_per_m = 150, lift_max = 0.4;
+    double lean_rad = 0.03;                                 // of the torso, forward
+    double torso_Nm_per_rad = 220, torso_Nms_per_rad = 14;  // in pitch
+    double level_Nm_per_rad = 220, level_Nms_per_rad = 14;  // in roll
+    double counter_share = 0.5;                             // share of the swing hip's torque that the stance hip takes
+    double grip = 0.4;                                      // largest force along the ground, per load
+    double sole_m = 0.06;                                   // how far the sole is below a foot's frame
+    double slope_s = 0.5;                                   // time constant with which the ground's slope is learnt
+    double slope_max = 0.12;
+    double shift_s = 0.05;  // in which a leg that landed takes the load
+    double ankle_smooth_s = 0.003;
+    double stand_s = 0.6;  // after the last step, before it lets go
+    std::array<double, leg_joints> kp_Nm_per_rad{}, kd_Nms_per_rad{};
+  };
+
+  // Throws std::invalid_argument for a joint that is missing, OptionError for a wrong foot.
+  explicit DcmWalk(const ObjectSetup& setup);
+
+  void declare(Declaration& declaration) override;
+  void start(const ControlInput& input) noexcept override;
+  void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
+  bool setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept override;
+  void follow(std::uint32_t channel, const SetpointState& state) noexcept override;
+  void pass_state(StateBytes& bytes) noexcept override;
+
+  const WalkPlan& plan() const noexcept { return plan_; }
+
+ private:
+  using Efforts = LegInverse::Angles;
+  struct Leg {
+    LegInverse inverse;
+    LegLoad load;
+    std::array<std::size_t, leg_joints> bearing;  // the joint's place in load.bearings()
+    LegInverse::Angles target_rad{}, rate_rad_s{};
+    Efforts effort_Nm{};
+  };
+
+  Leg leg(const ObjectSetup& setup, const char* side, std::size_t foot) const;
+  void declare_gains(Declaration& declaration);
+  void declare_plan(Declaration& declaration);
+  void declare_signals(Declaration& declaration);
+  void let_go(ActuationFrame& actuation) noexcept;
+  WalkPlan::Sight sight(const ControlInput& input) const noexcept;
+  void begin(const ControlInput& input) noexcept;
+  void reckon(const ControlInput& input, bool new_stance) noexcept;
+  bool stands() const noexcept;
+  void feel_ground(double dt_s) noexcept;
+  void landed(const ControlInput& input) noexcept;
+  Vec3 hip(std::size_t leg) const noexcept;  // in the heading frame
+  void aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept;
+  Efforts spring(const Leg& leg, const ControlInput& input) const noexcept;
+  Efforts bearing(std::size_t leg, double share, double in_sole_x_m, const ControlInput& input) noexcept;
+  void turn(const Efforts& swing_Nm, const ControlInput& input) noexcept;
+  void swing_torques(const ControlInput& input) noexcept;
+  void both_torques(const ControlInput& input) noexcept;
+  void write(const ControlInput& input, ActuationFrame& actuation) noexcept;
+
+  std::vector<JointAxis> axes_;
+  DcmMeasure over_feet_;
+  std::array<Leg, 2> legs_;
+  double weight_N_;
+  Config config_;
+  WalkPlan::Config plan_config_;
+  WalkPlan plan_;
+  WalkPlan::Wanted wanted_;
+  struct Odometry {
+    double x_m = 0, y_m = 0, heading_rad = 0;  // of the base
+    double foot_x_m = 0, foot_y_m = 0;         // of the stance foot
+    double zero_rad = 0;                       // yaw of the base at a heading of 0
+  };
+  Odometry odometry_;
+  GroundPoint slope_;  // of the ground in the heading frame, per metre, by the attitude of the foot that stands
+  bool given_up_ = false;
+  std::array<double, 2> turn_Nm_{};   // moment of the ground on the robot about its centre of mass: roll, pitch
+  std::array<double, 2> ankle_Nm_{};  // low-passed
+  double phase_number_ = 0, stance_number_ = 0, com_height_m_ = 0;
+};
+
+std::unique_ptr<ControlObject> make_dcm_walk(const ObjectSetup& setup);
+
+}  // namespace kadans

@@ -1,0 +1,185 @@
+#include "walk_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kadans {
+namespace {
+
+constexpr int times_tried = 16;
+constexpr double late_s = 0.25;  // a foot that finds no ground until then counts as put down
+
+double side_of(std::size_t foot) noexcept { return foot == 0 ? 1 : -1; }  // of left: +y
+
+double toward(double from, double to, double most) noexcept { return from + std::clamp(to - from, -most, most); }
+
+}  // namespace
+
+void WalkPlan::begin(const Config& c, const Sight& sight) noexcept {
+  State& s = state_;
+  s = {};
+  s.phase = Phase::sways;
+  s.stance = sight.force_N[0] >= sight.force_N[1] ? 0 : 1;
+  leave(sight);
+  s.dcm = {sight.over[s.stance].dcm_x_m, sight.over[s.stance].dcm_y_m};
+  s.step_s = c.step_s;
+  from_com_m_ = {sight.over[s.stance].com_m[0], sight.over[s.stance].com_m[1]};
+}
+
+// The other foot is about to leave the ground.
+void WalkPlan::leave(const Sight& sight) noexcept {
+  const Vec3 &a = sight.over[state_.stance].foot_m, &b = sight.over[1 - state_.stance].foot_m;
+  const double x_m = b[0] - a[0], y_m = b[1] - a[1];
+  state_.feet.from_m = state_.feet.at_m = {x_m, y_m, b[2] - a[2] - sight.slope.x_m * x_m - sight.slope.y_m * y_m};
+}
+
+GroundPoint WalkPlan::goal(const Config& c, const Sight& sight) const noexcept {
+  const State& s = state_;
+  const Vec3 &a = sight.over[s.stance].foot_m, &b = sight.over[1 - s.stance].foot_m;
+  const GroundPoint middle{(b[0] - a[0]) / 2 + c.shift_x_m, (b[1] - a[1]) / 2};
+  return s.phase == Phase::sways ? GroundPoint{middle.x_m, 0} : middle;
+}
+
+void WalkPlan::follow_wanted(const Config& c, const Wanted& wanted, double dt_s) noexcept {
+  State& s = state_;
+  const double most = c.speed_max_m_s2 * dt_s;
+  s.meant.velocity.forward_m_s =
+      toward(s.meant.velocity.forward_m_s, wanted.go ? wanted.velocity.forward_m_s : 0, most);
+  s.meant.velocity.left_m_s = toward(s.meant.velocity.left_m_s, wanted.go ? wanted.velocity.left_m_s : 0, most);
+  s.meant.velocity.turn_rad_s =
+      toward(s.meant.velocity.turn_rad_s, wanted.go ? wanted.velocity.turn_rad_s : 0, 4 * most);
+}
+
+// xi follows its law from the measured pressure, and the measurement as far as that is trusted.
+void WalkPlan::look(const Config& c, const Sight& sight, double dt_s) noexcept {
+  State& s = state_;
+  const std::size_t other = 1 - s.stance;
+  const double a_N = std::max(sight.force_N[s.stance], 0.0), b_N = std::max(sight.force_N[other], 0.0);
+  const double share = a_N + b_N > 1 ? b_N / (a_N + b_N) : 0;
+  const Vec3 &a = sight.over[s.stance].foot_m, &b = sight.over[other].foot_m;
+  const double p_x_m = (1 - share) * sight.cop_x_m[s.stance] + share * (b[0] - a[0] + sight.cop_x_m[other]);
+  const double p_y_m = (1 - share) * sight.cop_y_m[s.stance] + share * (b[1] - a[1] + sight.cop_y_m[other]);
+  const DcmMeasure::OverFoot& seen = sight.over[s.stance];
+  s.dcm.x_m += dt_s * (sight.rate_per_s * (s.dcm.x_m - p_x_m) + c.trust_per_s * (seen.dcm_x_m - s.dcm.x_m));
+  s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + c.trust_per_s * (seen.dcm_y_m - s.dcm.y_m));
+}
+
+void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
+  State& s = state_;
+  const double w_x = sight.rate_per_s, w_y = c.side_rate_share * w_x, sign = side_of(1 - s.stance);
+  const double grown_x = std::exp(w_x * c.step_s), grown_y = std::exp(w_y * c.step_s);
+  s.meant.step = {(s.meant.velocity.forward_m_s + s.meant.trim_m_s.x_m) * c.step_s,
+                  (s.meant.velocity.left_m_s + s.meant.trim_m_s.y_m) * c.step_s};
+  s.meant.offset = {s.meant.step.x_m / (grown_x - 1) + c.shift_x_m,
+                    s.meant.step.y_m / (grown_y - 1) - sign * c.width_m / (grown_y + 1)};
+  const double meant_y_m = sign * c.width_m + s.meant.step.y_m;
+  const double earliest_s = std::max(c.step_min_s, s.time_s), latest_s = std::max(c.step_max_s, s.time_s);
+  double least = 1e9, best_s = c.step_s;
+  GroundPoint best;
+  for (int i = 0; i < times_tried; ++i) {
+    const double t_s = earliest_s + (latest_s - earliest_s) * i / (times_tried - 1);
+    const double left_s = t_s - s.time_s;
+    const double x_m = s.in_sole_x_m + (s.dcm.x_m - s.in_sole_x_m) * std::exp(w_x * left_s);
+    const double y_m = s.dcm.y_m * std::exp(w_y * left_s);
+    const double p = c.place_weight, all = 1 + p;
+    const GroundPoint at{
+        std::clamp((x_m - s.meant.offset.x_m + p * s.meant.step.x_m) / all, -c.reach_m, c.reach_m),
+        sign * std::clamp(sign * (y_m - s.meant.offset.y_m + p * meant_y_m) / all, c.apart_min_m, c.apart_max_m)};
+    const auto square = [](double v) { return v * v; };
+    const double cost = square(x_m - at.x_m - s.meant.offset.x_m) + square(y_m - at.y_m - s.meant.offset.y_m) +
+                        p * (square(at.x_m - s.meant.step.x_m) + square(at.y_m - meant_y_m)) +
+                        c.time_weight * square(t_s - c.step_s);
+    if (cost < least) {
+      least = cost;
+      best = at;
+      best_s = t_s;
+    }
+  }
+  if (s.time_s < c.place_share * s.step_s) {  // then the foot comes straight down
+    s.feet.foothold = best;
+    s.step_s = best_s;
+  }
+  // The pressure goes beyond xi where xi is ahead of what was meant.
+  const double meant_x_m = s.meant.offset.x_m * std::exp(w_x * std::min(s.time_s, c.step_s));
+  s.in_sole_x_m = std::clamp(c.shift_x_m + c.ankle_gain * (s.dcm.x_m - meant_x_m), -c.sole.heel_m, c.sole.toe_m);
+}
+
+void WalkPlan::lead_foot(const Config& c) noexcept {
+  State& s = state_;
+  const double share = s.time_s / s.step_s, way = swing_way(share / c.place_share);
+  const double sink_m = c.sink_m_s * std::max(s.time_s - s.step_s, 0.0);
+  s.feet.at_m = {s.feet.from_m[0] + way * (s.feet.foothold.x_m - s.feet.from_m[0]),
+                 s.feet.from_m[1] + way * (s.feet.foothold.y_m - s.feet.from_m[1]),
+                 s.feet.from_m[2] * (1 - way) + c.lift_m * swing_lift(share) - std::min(sink_m, 0.06)};
+}
+
+void WalkPlan::trim(const Config& c, const Sight& sight) noexcept {
+  State& s = state_;
+  const DcmMeasure::OverFoot& before = sight.over[1 - s.stance];  // of the foot that stood
+  const double time_s = std::max(step_time_s_, 0.1);
+  const auto corrected = [&](double trim_m_s, double meant_m_s, double way_m) {
+    const double missed_m_s = meant_m_s - way_m / time_s;
+    return std::clamp(trim_m_s + c.trim_per_s * time_s * missed_m_s, -c.trim_max_m_s, c.trim_max_m_s);
+  };
+  s.meant.trim_m_s = {corrected(s.meant.trim_m_s.x_m, s.meant.velocity.forward_m_s, before.com_m[0] - from_com_m_.x_m),
+                      corrected(s.meant.trim_m_s.y_m, s.meant.velocity.left_m_s, before.com_m[1] - from_com_m_.y_m)};
+}
+
+void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) noexcept {
+  State& s = state_;
+  const Vec3 &a = sight.over[s.stance].foot_m, &b = sight.over[1 - s.stance].foot_m;
+  const GroundPoint way{b[0] - a[0], b[1] - a[1]};
+  step_time_s_ = s.time_s;
+  s.stance = 1 - s.stance;
+  trim(c, sight);
+  s.dcm = {s.dcm.x_m - way.x_m, s.dcm.y_m - way.y_m};
+  leave(sight);
+  from_com_m_ = {sight.over[s.stance].com_m[0], sight.over[s.stance].com_m[1]};
+  ++s.steps;
+  s.time_s = 0;
+  s.step_s = c.step_s;
+  s.meant.turn_rad = s.meant.velocity.turn_rad_s * c.step_s;
+  const double slow_m_s = 0.06;
+  if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
+      std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1)
+    s.phase = Phase::bears;
+}
+
+bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight, double dt_s) noexcept {
+  State& s = state_;
+  if (s.phase == Phase::stands) return false;
+  s.time_s += dt_s;
+  follow_wanted(c, wanted, dt_s);
+  look(c, sight, dt_s);
+  if (s.phase == Phase::bears) return false;
+  if (s.phase == Phase::sways) {
+    const double reached_m = c.width_m / (std::exp(c.side_rate_share * sight.rate_per_s * c.step_s) + 1);
+    if (std::abs(s.dcm.y_m) > reached_m && s.time_s < c.sway_s) return false;
+    s.phase = Phase::steps;
+    s.time_s = 0;
+    leave(sight);
+    return true;
+  }
+  choose(c, sight);
+  lead_foot(c);
+  const bool touches = s.time_s > c.early_share * s.step_s && sight.force_N[1 - s.stance] > c.touch_N;
+  if (!touches && s.time_s < s.step_s + late_s) return false;
+  land(c, wanted, sight);
+  return true;
+}
+
+void WalkPlan::turned(double by_rad) noexcept {
+  State& s = state_;
+  const double c = std::cos(by_rad), n = std::sin(by_rad);
+  const auto turn = [&](double& x, double& y) {
+    const double was = x;
+    x = c * was + n * y;
+    y = c * y - n * was;
+  };
+  turn(s.dcm.x_m, s.dcm.y_m);
+  turn(s.feet.from_m[0], s.feet.from_m[1]);
+  turn(s.feet.at_m[0], s.feet.at_m[1]);
+  turn(from_com_m_.x_m, from_com_m_.y_m);
+}
+
+}  // namespace kadans

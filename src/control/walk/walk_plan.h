@@ -1,0 +1,118 @@
+// Decides for a robot that walks which foot stands, when the other one comes down and where, from the divergent
+// component of motion xi (dcm_measure.h). Computes no torques.
+//
+//   stands  Both feet are where they were put; nothing is asked for.
+//   sways   Before the first step the load goes to the foot that will swing, until xi is where a step begins.
+//   steps   One foot stands. The other one goes to its foothold, and stands from its landing on.
+//   bears   After the last step both feet stand side by side, and xi comes to rest between them.
+//
+// While one foot stands, xi runs away from the centre of pressure p: xi(t) = p + (xi - p) e^(w t). A walk that repeats
+// itself with the step (L, W) in the time T has at each landing the offset b between xi and the foot that landed:
+//
+//   b_x = L_x / (e^(wT) - 1)      b_y = L_y / (e^(wT) - 1) -+ W / (e^(wT) + 1)
+//
+// Place and time of the landing are found together (Khadiv et al., arXiv 1609.09822): of all times within bounds the
+// plan takes the one where the time, the place and the offset together differ least from what was meant. Place and time
+// are weak in that, the offset is strong. The passive ankle roll of a robot needs no torque for this.
+//
+// Positions are relative to the foot `stance`, in the heading frame, which is set anew at each landing. One owner, the
+// control thread; nothing allocates.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "control/balance/dcm_measure.h"
+#include "control/balance/step_plan.h"
+
+namespace kadans {
+
+class WalkPlan {
+ public:
+  enum class Phase : std::uint8_t { stands, sways, steps, bears };
+
+  struct Config {
+    double step_s = 0.32, step_min_s = 0.24, step_max_s = 0.45;
+    double width_m = 0.18;  // between the feet, sideways
+    double apart_min_m = 0.13, apart_max_m = 0.36;
+    double reach_m = 0.38;     // longest step
+    double lift_m = 0.04;      // height of a swing
+    double place_share = 0.9;  // how long before the end of a swing the foot is over its foothold, as share of it
+    double sink_m_s = 0.25;    // how a late foot looks for the ground
+    double place_weight = 0.05, time_weight = 0.05;  // of place and time beside that of the offset, 1
+    double side_rate_share = 0.9;  // w across of the one along: the ankle roll's spring carries a part
+    double trust_per_s = 30;       // observer gain for the measured xi
+    double ankle_gain = 1.0;       // shift of the pressure per error of xi
+    double shift_x_m = 0.0;        // where the pressure is meant to be, before the foot's frame
+    double trim_per_s = 0.3;       // how fast the meant speed is corrected by the measured one
+    double trim_max_m_s = 0.1;
+    double touch_N = 15;          // a foot that bears this has landed
+    double early_share = 0.6;     // of a swing, before which no landing counts
+    double sway_gain = 1.0;       // shift of the load per error of xi, before the first step
+    double sway_s = 0.4;          // longest such time
+    double speed_max_m_s2 = 0.5;  // how fast the meant velocity changes
+    Sole sole{.heel_m = 0.06, .toe_m = 0.10, .half_width_m = 0.03};
+  };
+  struct Velocity {
+    double forward_m_s = 0, left_m_s = 0, turn_rad_s = 0;
+  };
+  struct Wanted {
+    Velocity velocity;
+    bool go = false;
+  };
+  struct Sight {
+    std::array<DcmMeasure::OverFoot, 2> over{};
+    std::array<double, 2> force_N{}, cop_x_m{}, cop_y_m{};  // of each foot, in its frame
+    double rate_per_s = 4;
+    GroundPoint slope;  // of the ground, per metre
+  };
+  struct Feet {
+    Vec3 from_m{};  // where the other foot lifted off, or landed
+    Vec3 at_m{};    // where the other foot shall be now; heights are over the slope
+    GroundPoint foothold;
+  };
+  struct Meant {
+    Velocity velocity;         // now
+    GroundPoint trim_m_s;      // added to it
+    GroundPoint step, offset;  // of the next landing; the offset is b
+    double turn_rad = 0;       // by which the heading turns at the next landing
+  };
+  struct State {
+    Phase phase = Phase::stands;
+    std::size_t stance = 0;  // 0 left, 1 right
+    std::uint32_t steps = 0;
+    double time_s = 0;  // in the phase
+    double step_s = 0;  // when the foot is meant to land
+    Feet feet;
+    Meant meant;
+    GroundPoint dcm;  // over the stance foot
+    double in_sole_x_m = 0;
+  };
+
+  void reset() noexcept { state_ = {}; }
+  // Begins with the foot that bears less. `sight` is in the frame of the heading.
+  void begin(const Config& config, const Sight& sight) noexcept;
+  // True in the tick of a landing: then turn the heading by step_turn_rad and call turned().
+  // Where xi shall be while both feet bear, and the gain toward that.
+  GroundPoint goal(const Config& config, const Sight& sight) const noexcept;
+  bool advance(const Config& config, const Wanted& wanted, const Sight& sight, double dt_s) noexcept;
+  void turned(double by_rad) noexcept;
+
+  const State& state() const noexcept { return state_; }
+  void pass_state(auto& bytes) noexcept { bytes(state_, from_com_m_, step_time_s_); }
+
+ private:
+  void follow_wanted(const Config& config, const Wanted& wanted, double dt_s) noexcept;
+  void look(const Config& config, const Sight& sight, double dt_s) noexcept;
+  void choose(const Config& config, const Sight& sight) noexcept;
+  void lead_foot(const Config& config) noexcept;
+  void leave(const Sight& sight) noexcept;
+  void land(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
+  void trim(const Config& config, const Sight& sight) noexcept;
+
+  State state_;
+  GroundPoint from_com_m_;  // the centre of mass over the stance foot at the last landing
+  double step_time_s_ = 0;  // of the last step
+};
+
+}  // namespace kadans

@@ -1,0 +1,155 @@
+// WalkPlan against a point mass on legs without mass: the linear inverted pendulum that its law assumes.
+#include "control/walk/walk_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+namespace walk_plan_test {
+
+using namespace kadans;
+
+namespace {
+
+constexpr double dt_s = 0.001, rate_per_s = 4;
+using Phase = WalkPlan::Phase;
+
+struct Pendulum {
+  WalkPlan plan;
+  WalkPlan::Config config{.side_rate_share = 1};
+  WalkPlan::Wanted wanted{.go = true};
+  std::array<GroundPoint, 2> foot{{{0, 0.09}, {0, -0.09}}};
+  GroundPoint com, velocity_m_s;
+  bool lands = false;  // the swing foot is on the ground in this tick
+
+  explicit Pendulum(double forward_m_s = 0, double left_m_s = 0) {
+    wanted.velocity = {.forward_m_s = forward_m_s, .left_m_s = left_m_s};
+    plan.begin(config, sight());
+  }
+  const WalkPlan::State& state() const { return plan.state(); }
+  WalkPlan::Sight sight() const {
+    WalkPlan::Sight seen{.rate_per_s = rate_per_s};
+    for (std::size_t i = 0; i < 2; ++i) {
+      DcmMeasure::OverFoot& over = seen.over[i];
+      over.foot_m = {foot[i].x_m - com.x_m, foot[i].y_m - com.y_m, -0.6};
+      over.com_m = {com.x_m - foot[i].x_m, com.y_m - foot[i].y_m, 0.6};
+      over.dcm_x_m = over.com_m[0] + velocity_m_s.x_m / rate_per_s;
+      over.dcm_y_m = over.com_m[1] + velocity_m_s.y_m / rate_per_s;
+      const bool bears = state().phase != Phase::steps || i == state().stance || lands;
+      seen.force_N[i] = bears ? (lands ? 20 : 70) : 0;
+    }
+    seen.cop_x_m[state().stance] = state().in_sole_x_m;
+    return seen;
+  }
+  GroundPoint pressure() const {
+    const GroundPoint &a = foot[state().stance], &b = foot[1 - state().stance];
+    if (state().phase == Phase::steps) return {a.x_m + state().in_sole_x_m, a.y_m};
+    const GroundPoint goal = plan.goal(config, sight());
+    const double y_m = a.y_m + 2 * state().dcm.y_m - goal.y_m;
+    return {(a.x_m + b.x_m) / 2, std::clamp(y_m, std::min(a.y_m, b.y_m), std::max(a.y_m, b.y_m))};
+  }
+  void tick() {
+    const GroundPoint at = pressure();
+    velocity_m_s.x_m += dt_s * rate_per_s * rate_per_s * (com.x_m - at.x_m);
+    velocity_m_s.y_m += dt_s * rate_per_s * rate_per_s * (com.y_m - at.y_m);
+    com.x_m += dt_s * velocity_m_s.x_m;
+    com.y_m += dt_s * velocity_m_s.y_m;
+    const std::size_t stance = state().stance;
+    if (state().phase == Phase::steps) {
+      foot[1 - stance] = {foot[stance].x_m + state().feet.at_m[0], foot[stance].y_m + state().feet.at_m[1]};
+      lands = state().time_s >= state().step_s;
+    }
+    (void)plan.advance(config, wanted, sight(), dt_s);
+    lands = false;
+  }
+  void run(double time_s) {
+    for (int i = 0; i < static_cast<int>(time_s / dt_s); ++i) tick();
+  }
+  void next_step() {
+    const std::uint32_t steps = state().steps;
+    while (state().steps == steps && std::abs(com.y_m) < 5) tick();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("WalkPlan sways first, then lifts the foot that bears less") {
+  Pendulum robot;
+  CHECK(robot.state().phase == Phase::sways);
+  CHECK(robot.state().stance == 0);
+  robot.run(0.35);
+  CHECK(robot.state().phase == Phase::steps);
+  CHECK(std::abs(robot.state().dcm.y_m) < 0.1);
+}
+
+TEST_CASE("WalkPlan walks at the velocity that is meant, in any direction") {
+  for (const auto& [forward_m_s, left_m_s] :
+       {std::pair{0.0, 0.0}, {0.3, 0.0}, {-0.15, 0.0}, {0.0, 0.1}, {0.2, -0.08}}) {
+    Pendulum robot(forward_m_s, left_m_s);
+    robot.run(6);
+    const GroundPoint before = robot.com;
+    const std::uint32_t steps = robot.state().steps;
+    robot.run(8);
+    CAPTURE(forward_m_s);
+    CAPTURE(left_m_s);
+    CHECK((robot.com.x_m - before.x_m) / 8 == doctest::Approx(forward_m_s).epsilon(0.1).scale(0.1));
+    CHECK((robot.com.y_m - before.y_m) / 8 == doctest::Approx(left_m_s).epsilon(0.15).scale(0.1));
+    CHECK(8.0 / (robot.state().steps - steps) == doctest::Approx(robot.config.step_s).epsilon(0.1));
+  }
+}
+
+TEST_CASE("WalkPlan answers a push to the side by a wider step that comes earlier, and goes on") {
+  Pendulum robot(0.2);
+  robot.run(5);
+  robot.next_step();
+  if (robot.state().stance == 0) robot.next_step();  // the left foot swings
+  robot.run(0.05);
+  const double width_m = robot.state().feet.foothold.y_m, time_s = robot.state().step_s;
+  robot.velocity_m_s.y_m += 0.25;
+  robot.run(0.06);
+  CHECK(robot.state().feet.foothold.y_m > width_m + 0.05);
+  CHECK(robot.state().step_s < time_s - 0.02);
+  robot.run(4);
+  CHECK(std::abs(robot.state().feet.foothold.y_m) < 0.25);
+}
+
+TEST_CASE("WalkPlan keeps its footholds within reach and its feet apart, whatever pushes") {
+  Pendulum robot(0.2);
+  robot.run(3);
+  for (const double push_m_s : {2.0, -2.0}) {
+    robot.velocity_m_s.x_m += push_m_s;
+    robot.velocity_m_s.y_m += push_m_s;
+    for (int i = 0; i < 200; ++i) {
+      robot.tick();
+      if (robot.state().time_s == 0) continue;  // landed: the next foothold comes with the next tick
+      const double side = robot.state().stance == 0 ? -1 : 1;
+      REQUIRE(std::abs(robot.state().feet.foothold.x_m) <= robot.config.reach_m + 1e-12);
+      REQUIRE(side * robot.state().feet.foothold.y_m >= robot.config.apart_min_m - 1e-12);
+      REQUIRE(side * robot.state().feet.foothold.y_m <= robot.config.apart_max_m + 1e-12);
+    }
+  }
+}
+
+TEST_CASE("WalkPlan stops beside its own foot, within a few steps, and xi comes to rest") {
+  Pendulum robot(0.1);
+  robot.run(5);
+  const std::uint32_t steps = robot.state().steps;
+  robot.wanted.go = false;
+  robot.run(1.2);
+  CHECK(robot.state().phase == Phase::bears);
+  CHECK(robot.state().steps - steps <= 3);
+}
+
+TEST_CASE("WalkPlan says by how much the heading turns at a landing") {
+  Pendulum robot;
+  robot.wanted.velocity.turn_rad_s = 0.5;
+  robot.run(4);
+  CHECK(robot.state().meant.turn_rad == doctest::Approx(0.5 * robot.config.step_s));
+  WalkPlan& plan = robot.plan;
+  const GroundPoint before = plan.state().dcm;
+  plan.turned(0.3);
+  CHECK(plan.state().dcm.x_m == doctest::Approx(std::cos(0.3) * before.x_m + std::sin(0.3) * before.y_m));
+}
+
+}  // namespace walk_plan_test
