@@ -82,7 +82,7 @@ TEST_CASE("within the bounds the robot goes where it is told: nothing is noticed
   CHECK(robot.hip_rad() == doctest::Approx(0.5).epsilon(0.05));
   CHECK(robot.status().level == SafetyLevel::normal);
   CHECK(robot.status().fault_count == 0);
-  const UdpStatistics& samples = robot.seen.statistics();
+  const DatagramCounts& samples = robot.seen.statistics();
   CHECK(samples.lost > 150);
   CHECK(samples.reordered > 100);
   CHECK(samples.duplicates > 100);

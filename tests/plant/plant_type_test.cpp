@@ -43,10 +43,10 @@ class MiddleFields final : public PlantFields {
 }  // namespace
 
 TEST_CASE("The types of plants are those whose folders stand in the tree, and those of the program") {
-  CHECK(plant_type_names() == std::vector<std::string>{"bullet", "dynamixel", "ideal", "udp", "bench"});
+  CHECK(plant_type_names() == std::vector<std::string>{"bullet", "dynamixel", "hm2-eth", "ideal", "udp", "bench"});
   CHECK(plant_type_names(&PlantType::is_model) == std::vector<std::string>{"bullet", "ideal"});
   CHECK(plant_type_names(&PlantType::has_objects) == std::vector<std::string>{"bullet"});
-  CHECK(plant_type_names(&PlantType::is_protocol) == std::vector<std::string>{"dynamixel", "udp"});
+  CHECK(plant_type_names(&PlantType::is_protocol) == std::vector<std::string>{"dynamixel", "hm2-eth", "udp"});
   for (const auto& type : plant_types()) CHECK(!type->doc().empty());
   CHECK_THROWS_AS((void)plant_type(plant_types(), "gone"), std::out_of_range);
 }
@@ -84,8 +84,8 @@ TEST_CASE("Types that others make come last") {
   };
   const MakePlantType others[] = {[]() -> std::unique_ptr<PlantType> { return std::make_unique<OtherType>(); }};
   CHECK(plant_type_names(plant_types(others)) ==
-        std::vector<std::string>{"bullet", "dynamixel", "ideal", "udp", "bench", "another"});
-  CHECK(plant_type_names(plant_types(others), &PlantType::is_protocol) == std::vector<std::string>{"dynamixel", "udp"});
+        std::vector<std::string>{"bullet", "dynamixel", "hm2-eth", "ideal", "udp", "bench", "another"});
+  CHECK(plant_type_names(plant_types(others), &PlantType::is_protocol) == std::vector<std::string>{"dynamixel", "hm2-eth", "udp"});
 }
 
 TEST_CASE("Two types of one name are refused") {

@@ -300,7 +300,7 @@ TEST_CASE("Robots whose joints or feet differ in number, name or order have othe
 
 TEST_CASE("The newest datagram wins, and what became of the others is counted") {
   Arrivals arrivals;
-  UdpStatistics s;
+  DatagramCounts s;
   CHECK(arrivals.is_newest(1, s));
   CHECK(arrivals.is_newest(5, s));
   CHECK(s.lost == 3);

@@ -22,6 +22,7 @@
 #include "kadans/plant/settings.h"
 #include "kadans/plant/world.h"
 #include "kadans/signal/fault.h"
+#include "kadans/signal/input_error.h"
 
 namespace kadans {
 
@@ -48,6 +49,11 @@ class PlantFields {
   // A mistake that only the type can see: told with file, line and column of the field's value, or of this object's key
   // when the name is "" or the field is not given.
   virtual void refuse(std::string_view name, const std::string& why) = 0;
+  // That place without a message, for a mistake that only the drives' answers show; without file while there is none.
+  virtual InputProblem place(std::string_view name) const {
+    (void)name;
+    return {};
+  }
 
  protected:
   ~PlantFields() = default;

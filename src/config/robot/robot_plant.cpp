@@ -70,15 +70,21 @@ class TypeFields final : public PlantFields {
   bool reading() const noexcept override { return fields_.reading(); }
   std::span<const std::string> drives() const noexcept override { return drives_; }
   void refuse(std::string_view name, const std::string& why) override {
-    const bool given = !name.empty() && fields_.has(name);
-    const bool entry = !fields_.key().empty();
-    problems_.add(given   ? fields_.place(name)
-                  : entry ? fields_.key_place()
-                          : fields_.place(),
-                  (given ? fields_.path(name) : fields_.path()) + ": " + why);
+    problems_.add(where(name), (given(name) ? fields_.path(name) : fields_.path()) + ": " + why);
+  }
+  InputProblem place(std::string_view name) const override {
+    if (!fields_.reading()) return {};
+    const TextPlace at = where(name);
+    return {.file = problems_.file(), .line = at.line, .column = at.column, .message = {}};
   }
 
  private:
+  bool given(std::string_view name) const { return !name.empty() && fields_.has(name); }
+  TextPlace where(std::string_view name) const {
+    if (given(name)) return fields_.place(name);
+    return fields_.key().empty() ? fields_.place() : fields_.key_place();
+  }
+
   Fields& fields_;
   Problems& problems_;
   std::span<const std::string> drives_;

@@ -9,6 +9,7 @@
 #include <pthread.h>
 
 #include "kadans/signal/input_error.h"
+#include "plant/drive_samples.h"
 
 namespace kadans::dynamixel {
 namespace {
@@ -172,16 +173,7 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
       if (!(sensors.supply_V <= is.supply_V)) sensors.supply_V = is.supply_V;  // the lowest
     }
   }
-  for (const Transmission& transmission : site_.transmissions) {
-    const std::vector<std::size_t>& joints = transmission.joints();
-    JointSample &first = sensors.joints[joints[0]], &second = sensors.joints[joints[transmission.coupled() ? 1 : 0]];
-    transmission.to_joints(sensors);
-    first.position_rad = first.motor_position_rad;
-    second.position_rad = second.motor_position_rad;
-    // A joint's reading is new when one of its drives was read, and as old as the older of both.
-    first.time_ns = second.time_ns = std::min(first.time_ns, second.time_ns);
-    first.sequence = second.sequence = std::min(first.sequence, second.sequence);
-  }
+  drives_to_joints(site_.transmissions, sensors);
 }
 
 std::vector<PlantCount> DynamixelPlant::link_counts() const {

@@ -2,90 +2,12 @@
 
 #include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <system_error>
 #include <utility>
 
-#include <netdb.h>
-#include <netinet/in.h>
-#include <netinet/ip.h>
 #include <poll.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
-
 namespace kadans {
-namespace {
-
-[[noreturn]] void fail(const std::string& message) { throw InputError({.message = message}); }
-
-struct HostPort {
-  std::string host, port;
-};
-
-HostPort parse(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  HostPort place{text.substr(0, colon == std::string::npos ? 0 : colon),
-                 colon == std::string::npos ? "" : text.substr(colon + 1)};
-  const bool digits =
-      !place.port.empty() && place.port.size() <= 5 && place.port.find_first_not_of("0123456789") == std::string::npos;
-  if (!digits || std::stoul(place.port) > 65535) fail("'" + text + "' must be HOST:PORT, such as 192.168.0.10:7100");
-  if (place.host.size() > 1 && place.host.front() == '[' && place.host.back() == ']')
-    place.host = place.host.substr(1, place.host.size() - 2);
-  return place;
-}
-
-struct AddressList {
-  addrinfo* first = nullptr;
-  AddressList() = default;
-  AddressList(const AddressList&) = delete;
-  AddressList& operator=(const AddressList&) = delete;
-  ~AddressList() {
-    if (first != nullptr) freeaddrinfo(first);
-  }
-};
-
-// Opens and tries `attach` (bind or connect) on each address of the place until one is taken.
-template <typename Attach>
-int open_at(const std::string& text, int flags, Attach attach) {
-  const HostPort place = parse(text);
-  addrinfo wanted{};
-  wanted.ai_family = AF_UNSPEC;
-  wanted.ai_socktype = SOCK_DGRAM;
-  wanted.ai_flags = flags | AI_NUMERICSERV;
-  AddressList list;
-  const char* host = place.host.empty() ? nullptr : place.host.c_str();
-  const int unknown = getaddrinfo(host, place.port.c_str(), &wanted, &list.first);
-  if (unknown != 0) fail("'" + text + "': " + gai_strerror(unknown));
-  int error = 0;
-  for (const addrinfo* at = list.first; at != nullptr; at = at->ai_next) {
-    const int descriptor = socket(at->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, at->ai_protocol);
-    if (descriptor >= 0 && attach(descriptor, at->ai_addr, at->ai_addrlen) == 0) {
-      const int urgent = IPTOS_LOWDELAY;  // a wish, nothing more
-      (void)setsockopt(descriptor, IPPROTO_IP, IP_TOS, &urgent, sizeof urgent);
-      return descriptor;
-    }
-    error = errno;
-    if (descriptor >= 0) close(descriptor);
-  }
-  fail("'" + text + "': " + std::system_category().message(error));
-}
-
-}  // namespace
-
-bool PeerAddress::operator==(const PeerAddress& other) const noexcept {
-  return size == other.size && std::memcmp(&address, &other.address, size) == 0;
-}
-
-std::string PeerAddress::text() const {
-  char host[NI_MAXHOST], port[NI_MAXSERV];
-  const auto* const raw = reinterpret_cast<const sockaddr*>(&address);
-  if (size == 0 || (address.ss_family != AF_INET && address.ss_family != AF_INET6) ||
-      getnameinfo(raw, size, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
-    return "the other end";
-  const std::string name = host;
-  return (name.find(':') == std::string::npos ? name : "[" + name + "]") + ":" + port;
-}
 
 struct DatagramSocket::Batch {
   std::array<std::array<std::byte, wire_bytes_max + 1>, batch_max> bytes;  // one more: what is too long shows
@@ -96,13 +18,9 @@ struct DatagramSocket::Batch {
 
 DatagramSocket::DatagramSocket(int descriptor) : descriptor_(descriptor), batch_(std::make_unique<Batch>()) {}
 
-DatagramSocket DatagramSocket::listening(const std::string& place) {
-  return DatagramSocket(open_at(place, AI_PASSIVE, bind));
-}
+DatagramSocket DatagramSocket::listening(const std::string& place) { return DatagramSocket(listening_socket(place)); }
 
-DatagramSocket DatagramSocket::connected(const std::string& place) {
-  return DatagramSocket(open_at(place, 0, connect));
-}
+DatagramSocket DatagramSocket::connected(const std::string& place) { return DatagramSocket(connected_socket(place)); }
 
 DatagramSocket::DatagramSocket(DatagramSocket&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)), batch_(std::move(other.batch_)) {}

@@ -10,19 +10,10 @@
 #include <memory>
 #include <string>
 
-#include <sys/socket.h>
-
+#include "plant/socket_address.h"
 #include "wire.h"
 
 namespace kadans {
-
-struct PeerAddress {
-  sockaddr_storage address{};
-  socklen_t size = 0;  // 0: without a name, the other end of a connected socket
-
-  bool operator==(const PeerAddress& other) const noexcept;
-  std::string text() const;  // "10.0.0.2:7000"
-};
 
 class DatagramSocket {
  public:

@@ -31,7 +31,7 @@ class PlantServer final : public PlantEmulator {
   std::string peer_name() const override { return peer_.text(); }
   const Session& session() const noexcept override { return session_; }
   std::vector<PlantCount> link_counts() const override { return counts_of(link_); }
-  const UdpStatistics& link() const noexcept { return link_; }
+  const DatagramCounts& link() const noexcept { return link_; }
   const PeerAddress& peer() const noexcept { return peer_; }
   bool released() const noexcept { return released_; }
 
@@ -66,7 +66,7 @@ class PlantServer final : public PlantEmulator {
   SensorFrame sensors_;
   Arrivals arrivals_;
   Session session_;
-  UdpStatistics link_;
+  DatagramCounts link_;
   Datagram out_{};
 };
 

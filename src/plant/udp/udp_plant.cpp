@@ -22,11 +22,6 @@ std::string shape(std::string_view robot, std::uint32_t joints, std::uint32_t fe
 
 }  // namespace
 
-std::vector<PlantCount> counts_of(const UdpStatistics& s) {
-  return {{"sent", s.sent},           {"unsent", s.unsent},         {"received", s.received}, {"lost", s.lost},
-          {"reordered", s.reordered}, {"duplicates", s.duplicates}, {"late", s.late},         {"refused", s.refused}};
-}
-
 UdpPlant::UdpPlant(const UdpSettings& settings, const PlantLayout& layout, DatagramSocket socket, std::uint64_t session)
     : settings_(settings), layout_(layout), wire_(layout), socket_(std::move(socket)), session_(session) {
   const double ticks = std::ceil(settings.round_trip_max_s * 1e9 / static_cast<double>(layout.period_ns));

@@ -40,7 +40,7 @@ class UdpPlant final : public Plant {
   void close() noexcept override;  // says goodbye, so that the plant need not wait for its timeout
 
   std::vector<PlantCount> link_counts() const override { return counts_of(statistics_); }
-  const UdpStatistics& statistics() const noexcept { return statistics_; }  // control thread, or after it
+  const DatagramCounts& statistics() const noexcept { return statistics_; }  // control thread, or after it
   bool released() const noexcept { return more_.released; }
   double round_trip_ticks() const noexcept { return round_trip_ticks_; }
 
@@ -67,7 +67,7 @@ class UdpPlant final : public Plant {
   SensorFrame newest_, held_;
   SensorsOnWire more_;
   Arrivals arrivals_;
-  UdpStatistics statistics_;
+  DatagramCounts statistics_;
   double round_trip_ticks_ = 0;
   Datagram out_{};
 };

@@ -16,16 +16,14 @@ std::uint8_t code_of_baud(std::uint32_t baud) {
 }  // namespace
 
 EmulatedRobot::EmulatedRobot(const DynamixelSettings& settings, const PlantSite& site, std::uint64_t seed)
-    : site_(site) {
-  const std::vector<std::string> drives = drive_names(site.layout.joints, site.transmissions);
+    : shafts_(site) {
   const auto latency_ns = static_cast<std::int64_t>(0.5e9 * settings.usb_latency_s);
   for (const PortSettings& port : settings.ports) {
     buses_.push_back(std::make_unique<EmulatedBus>(latency_ns, seed + buses_.size()));
     for (const ServoSettings& is : settings.servos) {
       if (is.port != port.name) continue;
       const ServoModel& model = *is.model;
-      const auto joint = static_cast<std::size_t>(std::ranges::find(drives, is.drive) - drives.begin());
-      wired_.push_back({buses_.size() - 1, buses_.back()->servos.size(), joint});
+      wired_.push_back({buses_.size() - 1, buses_.back()->servos.size(), shafts_.place(is.drive)});
       buses_.back()->servos.emplace_back(EmulatedServo::Settings{.id = static_cast<std::uint8_t>(is.id),
                                                                  .model = model.number,
                                                                  .firmware = 48,
@@ -37,7 +35,6 @@ EmulatedRobot::EmulatedRobot(const DynamixelSettings& settings, const PlantSite&
                                                                  .no_load_rad_s = model.no_load_rad_s});
     }
   }
-  last_rad_.resize(drives.size());
 }
 
 EmulatedServo& EmulatedRobot::servo(std::size_t joint) noexcept {
@@ -46,25 +43,18 @@ EmulatedServo& EmulatedRobot::servo(std::size_t joint) noexcept {
 }
 
 void EmulatedRobot::look(WorldRobot& robot) {
-  robot.read(sensors_);
-  for (const Transmission& transmission : site_.transmissions) transmission.to_drives(sensors_);
-  const double dt_s = seconds_between(last_ns_, sensors_.time_ns);
+  shafts_.look(robot);
   double current_A = 0;
   for (const Wired& w : wired_) current_A += buses_[w.bus]->servos[w.servo].current_A();
   for (const Wired& w : wired_) {
-    const JointSample& drive = sensors_.joints[w.joint];
-    const double velocity_rad_s = dt_s > 0 ? (drive.motor_position_rad - last_rad_[w.joint]) / dt_s : 0;
-    buses_[w.bus]->servos[w.servo].stands(drive.motor_position_rad, velocity_rad_s, drive.motor_effort_Nm,
-                                          supply_V - supply_Ohm * current_A);
-    last_rad_[w.joint] = drive.motor_position_rad;
+    buses_[w.bus]->servos[w.servo].stands(shafts_.position_rad(w.joint), shafts_.velocity_rad_s(w.joint),
+                                          shafts_.effort_Nm(w.joint), supply_V - supply_Ohm * current_A);
   }
-  last_ns_ = sensors_.time_ns;
 }
 
 void EmulatedRobot::drive(WorldRobot& robot) {
-  drives_.joint_count = sensors_.joint_count;
-  for (const Wired& w : wired_) drives_.joints[w.joint] = buses_[w.bus]->servos[w.servo].drives();
-  robot.write_drives(drives_);
+  for (const Wired& w : wired_) shafts_.set(w.joint, buses_[w.bus]->servos[w.servo].drives());
+  shafts_.drive(robot);
 }
 
 void EmulatedRobot::pass(std::int64_t dt_ns) noexcept {
@@ -78,7 +68,7 @@ void EmulatedRobot::switch_power() noexcept {
     bus->drop_answers();
     for (EmulatedServo& servo : bus->servos) servo.switch_power();
   }
-  last_ns_ = 0;
+  shafts_.rest();
 }
 
 bool EmulatedRobot::any_torque() const noexcept {

@@ -9,6 +9,7 @@
 
 #include "emulated_bus.h"
 #include "kadans/plant/plant_type.h"
+#include "plant/drive_shafts.h"
 #include "plant/dynamixel/settings.h"
 
 namespace kadans::dynamixel {
@@ -38,13 +39,9 @@ class EmulatedRobot {
   struct Wired {
     std::size_t bus, servo, joint;
   };
-  PlantSite site_;
+  DriveShafts shafts_;
   std::vector<std::unique_ptr<EmulatedBus>> buses_;
   std::vector<Wired> wired_;
-  SensorFrame sensors_;
-  ActuationFrame drives_;
-  std::vector<double> last_rad_;
-  std::int64_t last_ns_ = 0;
 };
 
 }  // namespace kadans::dynamixel

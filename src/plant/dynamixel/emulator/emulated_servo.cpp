@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "plant/drive_shafts.h"
+
 namespace kadans::dynamixel {
 namespace {
 
@@ -252,9 +254,8 @@ JointActuation EmulatedServo::drives() const noexcept {
     case by_velocity:
       return {.velocity_rad_s = sign * static_cast<double>(get(104, 4)) * rad_s, .mode = ActuationMode::velocity};
     case by_pwm:
-      return {.effort_Nm = sign * static_cast<double>(get(100, 2)) / 885 * settings_.stall_Nm,
-              .damping_Nms_per_rad = settings_.stall_Nm / settings_.no_load_rad_s,
-              .mode = ActuationMode::impedance};
+      return motor_at_voltage(sign * static_cast<double>(get(100, 2)) / 885, settings_.stall_Nm,
+                              settings_.no_load_rad_s);
     default: {
       const double way = static_cast<double>(get(116, 4) - get(132, 4)) / a_turn * turn_rad;
       return {.position_rad = position_rad_ + sign * way, .mode = ActuationMode::position};

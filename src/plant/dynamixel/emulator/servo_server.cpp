@@ -1,30 +1,24 @@
 #include "servo_server.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include <asm/termbits.h>
 #include <fcntl.h>
-#include <poll.h>
-#include <pthread.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
-#include "plant/dynamixel/serial_port.h"
 
 namespace kadans::dynamixel {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t session_over_ns = 1'000'000'000;
-constexpr int bus_priority = 85;              // servos answer whatever else this machine does
-constexpr std::int64_t look_ns = 50'000'000;  // how soon the thread sees that it shall end
 
 [[noreturn]] void no_terminal(const std::string& link, const std::string& why) {
   throw InputError({.file = "--listen", .message = link + ": " + why});
@@ -38,7 +32,7 @@ std::uint32_t baud_of(int terminal) noexcept {
 }  // namespace
 
 ServoServer::ServoServer(const DynamixelSettings& settings, const PlantSite& site, const std::string& listen)
-    : listen_(listen), period_ns_(site.layout.period_ns), robot_(settings, site, 1) {
+    : DriveServer(site.layout.period_ns), listen_(listen), robot_(settings, site, 1) {
   try {
     for (const PortSettings& port : settings.ports)
       open_terminal(settings.ports.size() == 1 ? listen : listen + "-" + port.name);
@@ -75,84 +69,30 @@ ServoServer::~ServoServer() {
   for (const int one : masters_) close(one);
 }
 
-bool ServoServer::await(int milliseconds) noexcept {
-  std::vector<pollfd> wanted;
-  for (const int master : masters_) wanted.push_back({master, POLLIN, 0});
-  if (poll(wanted.data(), wanted.size(), milliseconds) <= 0) return false;
-  session_ = {};
-  silent_ns_ = 0;
-  heard_ = 0;
-  for (std::size_t i = 0; i < robot_.bus_count(); ++i) heard_ += robot_.bus(i).instructions();
-  in_session_ = true;
-  time_runs_ = tripped_ = false;
-  return true;
-}
-
-void ServoServer::serve() noexcept {
-  sched_param parameter{};
-  parameter.sched_priority = bus_priority;
-  (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);  // without the right it is a usual thread
-  std::vector<pollfd> wanted;
-  for (const int master : masters_) wanted.push_back({master, POLLIN, 0});
+std::int64_t ServoServer::serve_bus(std::int64_t now_ns) noexcept {
   std::array<std::uint8_t, 4096> bytes;
-  while (!stop_.load(std::memory_order_relaxed)) {
-    std::int64_t wake_ns = monotonic_ns() + look_ns;
-    {
-      const std::lock_guard lock(mutex_);
-      for (std::size_t i = 0; i < masters_.size(); ++i) {
-        EmulatedBus& bus = robot_.bus(i);
-        const ssize_t got = ::read(masters_[i], bytes.data(), bytes.size());
-        if (got > 0) bus.receive({bytes.data(), static_cast<std::size_t>(got)}, monotonic_ns(), baud_of(masters_[i]));
-        const std::size_t count = bus.take(bytes, monotonic_ns());
-        if (count > 0) (void)!::write(masters_[i], bytes.data(), count);
-        wake_ns = std::min(wake_ns, bus.due_ns());
-      }
-    }
-    const std::int64_t left_ns = std::max<std::int64_t>(0, wake_ns - monotonic_ns());
-    const timespec wait{.tv_sec = 0, .tv_nsec = std::min(left_ns, look_ns)};
-    (void)ppoll(wanted.data(), wanted.size(), &wait, nullptr);
+  std::int64_t wake_ns = std::numeric_limits<std::int64_t>::max();
+  for (std::size_t i = 0; i < masters_.size(); ++i) {
+    EmulatedBus& bus = robot_.bus(i);
+    const ssize_t got = ::read(masters_[i], bytes.data(), bytes.size());
+    if (got > 0) bus.receive({bytes.data(), static_cast<std::size_t>(got)}, now_ns, baud_of(masters_[i]));
+    const std::size_t count = bus.take(bytes, now_ns);
+    if (count > 0) (void)!::write(masters_[i], bytes.data(), count);
+    wake_ns = std::min(wake_ns, bus.due_ns());
   }
+  return wake_ns;
 }
 
-bool ServoServer::end_session() noexcept {
-  in_session_ = false;
-  stop_.store(true, std::memory_order_relaxed);
-  if (thread_.joinable()) thread_.join();
-  robot_.switch_power();
-  return false;
-}
-
-bool ServoServer::beat(World& world, std::uint32_t periods) {
+std::uint64_t ServoServer::heard() const noexcept {
   std::uint64_t heard = 0;
-  {
-    const std::lock_guard lock(mutex_);
-    robot_.look(world.robot(0));
-    robot_.drive(world.robot(0));
-    robot_.pass(static_cast<std::int64_t>(periods) * period_ns_);
-    time_runs_ = time_runs_ || (thread_.joinable() && robot_.any_torque());
-    const bool tripped = robot_.any_watchdog_tripped();
-    if (tripped && !tripped_) ++session_.releases;
-    tripped_ = tripped;
-    for (std::size_t i = 0; i < robot_.bus_count(); ++i) heard += robot_.bus(i).instructions();
-    session_.left = !robot_.any_torque();
-  }
-  if (!thread_.joinable()) {  // from now on the servos know where they stand
-    stop_.store(false, std::memory_order_relaxed);
-    thread_ = std::thread([this] { serve(); });
-  }
-  for (std::uint32_t i = 0; time_runs_ && i < periods; ++i) world.step(period_ns_);
-  silent_ns_ = heard == heard_ ? silent_ns_ + static_cast<std::int64_t>(periods) * period_ns_ : 0;
-  heard_ = heard;
-  return silent_ns_ < session_over_ns || end_session();
+  for (const auto& bus : robot_.buses()) heard += bus->instructions();
+  return heard;
 }
 
 std::vector<PlantCount> ServoServer::link_counts() const {
-  std::uint64_t instructions = 0, not_understood = 0;
-  for (const auto& bus : robot_.buses()) {
-    instructions += bus->instructions();
-    not_understood += bus->not_understood();
-  }
-  return {{"instructions", instructions}, {"not understood", not_understood}};
+  std::uint64_t not_understood = 0;
+  for (const auto& bus : robot_.buses()) not_understood += bus->not_understood();
+  return {{"instructions", heard()}, {"not understood", not_understood}};
 }
 
 }  // namespace kadans::dynamixel

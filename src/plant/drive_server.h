@@ -1,0 +1,58 @@
+// Serves the emulated drives of a modelled robot on a bus of this machine, in real time, to whatever program speaks
+// their protocol.
+//
+// A session begins with the first bytes that somebody sends, and ends after a second without any that were understood.
+// Between two sessions the drives' power is off. The model's time begins when the first drive gets torque, so that the
+// robot does not fall while its drives are found and set up.
+//
+// Threads: await and beat by one thread at a time; a thread of its own serves the bus during a session. What a type
+// brings is called by one of them at a time.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "kadans/plant/plant_type.h"
+
+namespace kadans {
+
+class DriveServer : public PlantEmulator {
+ public:
+  bool await(int milliseconds) noexcept final;
+  bool beat(World& world, std::uint32_t periods) final;
+  const Session& session() const noexcept final { return session_; }
+
+ protected:
+  explicit DriveServer(std::int64_t period_ns) noexcept : period_ns_(period_ns) {}
+  // A destructor of a type calls it first.
+  bool end_session() noexcept;
+
+  // What becomes readable when somebody speaks.
+  virtual std::vector<int> descriptors() const = 0;
+  // Takes what came and answers it; returns when it is to be called again at the latest, on CLOCK_MONOTONIC.
+  virtual std::int64_t serve_bus(std::int64_t now_ns) noexcept = 0;
+  virtual std::uint64_t heard() const noexcept = 0;  // messages that were understood, ever
+  virtual void look(WorldRobot& robot) = 0;          // the drives stand where the robot's joints are
+  virtual void drive(WorldRobot& robot) = 0;         // the robot does what the drives do
+  virtual void pass(std::int64_t dt_ns) noexcept = 0;
+  virtual bool any_torque() const noexcept = 0;
+  virtual bool any_watchdog_tripped() const noexcept = 0;
+  virtual void switch_power() noexcept = 0;  // off and on again
+
+ private:
+  void serve() noexcept;
+
+  std::int64_t period_ns_;
+  std::mutex mutex_;  // of what the type brings
+  std::thread thread_;
+  std::atomic<bool> stop_{false};
+  Session session_;
+  std::uint64_t heard_ = 0;
+  std::int64_t silent_ns_ = 0;
+  bool time_runs_ = false, tripped_ = false;
+};
+
+}  // namespace kadans

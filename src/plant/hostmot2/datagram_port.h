@@ -1,0 +1,44 @@
+// Where the datagrams of one board go out and come in.
+//
+// One owner, one thread at a time. Nothing allocates or throws after the construction.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "board_link.h"
+
+namespace kadans::hostmot2 {
+
+class DatagramPort {
+ public:
+  virtual ~DatagramPort() = default;
+  DatagramPort() = default;
+  DatagramPort(const DatagramPort&) = delete;
+  DatagramPort& operator=(const DatagramPort&) = delete;
+
+  virtual bool send(Octets datagram) noexcept = 0;
+  // Takes one datagram; looks for it until this time, at least once. 0: none came. One that is longer than `into` is
+  // cut, and counts as longer.
+  virtual std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept = 0;
+  // Before the loop: sleeps until one has come, at most until then.
+  virtual void await(std::int64_t until_ns) noexcept = 0;
+  virtual std::int64_t now_ns() const noexcept = 0;
+};
+
+// Of the system, on CLOCK_MONOTONIC.
+class UdpPort final : public DatagramPort {
+ public:
+  explicit UdpPort(const std::string& place);  // "192.168.1.121:27181". Throws InputError.
+  ~UdpPort() override;
+  bool send(Octets datagram) noexcept override;
+  std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
+  void await(std::int64_t until_ns) noexcept override;
+  std::int64_t now_ns() const noexcept override;
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace kadans::hostmot2

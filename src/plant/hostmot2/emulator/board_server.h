@@ -1,0 +1,38 @@
+// Serves a modelled robot's boards as UDP on this machine's addresses (drive_server.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emulated_machine.h"
+#include "plant/drive_server.h"
+#include "plant/socket_address.h"
+
+namespace kadans::hostmot2 {
+
+class BoardServer final : public DriveServer {
+ public:
+  // Each board listens at its address. Throws InputError.
+  BoardServer(const HostMot2Settings& settings, const PlantSite& site);
+  ~BoardServer() override;
+
+  std::string peer_name() const override { return "whoever speaks LBP16 there"; }
+  std::vector<PlantCount> link_counts() const override;
+
+ private:
+  std::vector<int> descriptors() const override { return sockets_; }
+  std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
+  std::uint64_t heard() const noexcept override;
+  void look(WorldRobot& robot) override { machine_.look(robot); }
+  void drive(WorldRobot& robot) override { machine_.drive(robot); }
+  void pass(std::int64_t dt_ns) noexcept override { machine_.pass(dt_ns); }
+  bool any_torque() const noexcept override { return machine_.any_torque(); }
+  bool any_watchdog_tripped() const noexcept override { return machine_.any_watchdog_tripped(); }
+  void switch_power() noexcept override { machine_.switch_power(); }
+
+  EmulatedMachine machine_;
+  std::vector<int> sockets_;
+  std::vector<PeerAddress> peers_;  // who spoke last to each board
+};
+
+}  // namespace kadans::hostmot2

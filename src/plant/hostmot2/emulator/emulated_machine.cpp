@@ -1,0 +1,177 @@
+#include "emulated_machine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans::hostmot2 {
+namespace {
+
+struct Kind {
+  const char* name;
+  unsigned ports, width;
+};
+constexpr Kind kinds[] = {{"7I96", 3, 17}, {"7I92", 2, 17}, {"7I76E-16", 3, 17}, {"5I20", 3, 24}, {"4I65", 3, 24}};
+
+}  // namespace
+
+EmulatedMachine::EmulatedMachine(const HostMot2Settings& settings, const PlantSite& site, std::uint64_t seed)
+    : settings_(settings), site_(site), shafts_(site) {
+  for (const BoardSettings& board : settings.boards) {
+    const auto* const kind = std::ranges::find(kinds, board.card, &Kind::name);
+    if (kind == std::end(kinds)) {
+      InputProblem problem = board.place;
+      problem.message = "there is no emulator of a '" + board.card + "'; there are 7I96, 7I92, 7I76E-16, 5I20 and 4I65";
+      throw InputError(problem);
+    }
+    EmulatedBoard::Settings is{
+        .name = board.card, .ports = kind->ports, .width = kind->width, .encoders = 0, .pwms = 0};
+    for (const DriveWiring& drive : settings.drives) {
+      if (drive.board != board.name) continue;
+      is.encoders = std::max(is.encoders, drive.encoder + 1);
+      if (drive.pwm) is.pwms = std::max(is.pwms, *drive.pwm + 1);
+    }
+    try {
+      boards_.emplace_back(is);
+    } catch (const std::invalid_argument& error) {
+      InputProblem problem = board.place;
+      problem.message = error.what();
+      throw InputError(problem);
+    }
+    wires_.emplace_back(boards_.back(), seed + boards_.size());
+  }
+  for (const DriveWiring& drive : settings.drives)
+    wired_.push_back({.board = board_number(drive.board), .joint = shafts_.place(drive.drive), .is = drive});
+  inputs_active_.resize(settings.inputs.size());
+}
+
+std::size_t EmulatedMachine::board_number(const std::string& name) const {
+  return static_cast<std::size_t>(std::ranges::find(settings_.boards, name, &BoardSettings::name) -
+                                  settings_.boards.begin());
+}
+
+EmulatedMachine::Wired& EmulatedMachine::at(std::size_t joint) noexcept {
+  return *std::ranges::find(wired_, joint, &Wired::joint);
+}
+
+void EmulatedMachine::fail_amplifier(std::size_t joint, bool fails) noexcept { at(joint).fails = fails; }
+
+void EmulatedMachine::block(std::size_t joint, double low_rad, double high_rad) noexcept {
+  at(joint).low_rad = low_rad;
+  at(joint).high_rad = high_rad;
+}
+
+void EmulatedMachine::set_sensor(const std::string& name, bool active) noexcept {
+  for (std::size_t i = 0; i < settings_.inputs.size(); ++i) {
+    if (settings_.inputs[i].name == name) inputs_active_[i] = active;
+  }
+}
+
+bool EmulatedMachine::output(std::size_t board, const OptionalPin& pin) const noexcept {
+  if (!pin || !boards_[board].driven(pin->number)) return false;
+  return (boards_[board].level(pin->number) > 0.5) != pin->low;
+}
+
+void EmulatedMachine::input(std::size_t board, const OptionalPin& pin, bool active) noexcept {
+  if (pin) boards_[board].set_input(pin->number, active != pin->low);
+}
+
+void EmulatedMachine::look(WorldRobot& robot) {
+  shafts_.look(robot);
+  for (const Wired& w : wired_) {
+    EmulatedBoard& board = boards_[w.board];
+    const double position_rad = w.is.spring_Nm_per_rad > 0 ? shafts_.joint_rad(w.joint) : shafts_.position_rad(w.joint);
+    const double sign = w.is.reversed ? -1 : 1;
+    board.turn_to(w.is.encoder, std::llround(sign * (position_rad - w.is.home_rad) * w.is.counts_per_rad));
+    if (!looked_ && w.is.home != Home::power_on) (void)board.write(0x3000 + 4 * w.is.encoder, 0);
+    const bool past_home = w.is.home_rad_s >= 0 ? position_rad >= w.is.home_rad : position_rad <= w.is.home_rad;
+    board.probe(w.is.encoder, past_home);
+    input(w.board, w.is.home_switch, past_home);
+    input(w.board, w.is.low, position_rad <= w.low_rad);
+    input(w.board, w.is.high, position_rad >= w.high_rad);
+    input(w.board, w.is.fault, w.fails);
+  }
+  looked_ = true;
+  for (const FootWiring& foot : settings_.feet) {
+    const auto number =
+        static_cast<std::size_t>(std::ranges::find(site_.layout.feet, foot.foot) - site_.layout.feet.begin());
+    if (number >= site_.layout.feet.size()) continue;
+    for (std::size_t i = 0; i < foot.corners.size(); ++i)
+      input(board_number(foot.board), foot.corners[i], shafts_.sensors().feet[number].force_N[i] > foot.closed_N / 2);
+  }
+  for (std::size_t i = 0; i < settings_.inputs.size(); ++i)
+    input(board_number(settings_.inputs[i].board), settings_.inputs[i].pin, inputs_active_[i]);
+  if (settings_.emergency) input(board_number(settings_.emergency_board), settings_.emergency, emergency_pressed_);
+}
+
+bool EmulatedMachine::enabled(std::size_t joint) const noexcept {
+  const auto found = std::ranges::find(wired_, joint, &Wired::joint);
+  return found->is.pwm && !found->fails && (!found->is.enable || output(found->board, found->is.enable));
+}
+
+// What the amplifier makes of the two lines to it.
+double EmulatedMachine::duty(const Wired& w) const noexcept {
+  const EmulatedBoard& board = boards_[w.board];
+  const unsigned pin = board.pwm_pin(*w.is.pwm);
+  const double first = board.level(pin), second = board.level(pin + 1);
+  double is = 0;
+  switch (w.is.output) {
+    case PwmOutput::pwm_dir:
+    case PwmOutput::pdm:
+      is = second > 0.5 ? -first : first;
+      break;
+    case PwmOutput::dir_pwm:
+      is = first > 0.5 ? -second : second;
+      break;
+    case PwmOutput::up_down:
+      is = second - first;
+      break;
+  }
+  return w.is.pwm_reversed ? -is : is;
+}
+
+void EmulatedMachine::drive(WorldRobot& robot) {
+  for (const Wired& w : wired_) {
+    if (!w.is.pwm) continue;
+    const AmplifierSettings& a = w.is.amplifier;
+    const double turn_Nm_per_A = a.Nm_per_A * a.gear * a.efficiency;
+    JointActuation does;
+    if (enabled(w.joint) && a.kind == AmplifierSettings::Kind::current)
+      does = {.effort_Nm = duty(w) * a.full * turn_Nm_per_A, .mode = ActuationMode::effort};
+    if (enabled(w.joint) && a.kind == AmplifierSettings::Kind::voltage)
+      does = motor_at_voltage(duty(w), a.full / a.winding_Ohm * turn_Nm_per_A, a.full / (a.Nm_per_A * a.gear));
+    shafts_.set(w.joint, does);
+    if (w.is.brake) shafts_.set_brake(w.joint, output(w.board, w.is.brake));
+  }
+  shafts_.drive(robot);
+}
+
+void EmulatedMachine::pass(std::int64_t dt_ns) noexcept {
+  for (EmulatedBoard& board : boards_) board.pass(dt_ns);
+}
+
+void EmulatedMachine::switch_power() noexcept {
+  for (EmulatedBoard& board : boards_) board.switch_power();
+  for (EmulatedWire& wire : wires_) {
+    wire.responder.switch_power();
+    wire.drop_replies();
+  }
+  for (const Wired& w : wired_) {
+    // Its joint is put back to the jig before its power comes on.
+    if (w.is.home == Home::power_on) boards_[w.board].restore_origin(w.is.encoder);
+  }
+  shafts_.rest();
+  looked_ = false;
+}
+
+bool EmulatedMachine::any_torque() const noexcept {
+  return std::ranges::any_of(wired_, [&](const Wired& w) { return boards_[w.board].watching() && enabled(w.joint); });
+}
+
+bool EmulatedMachine::any_watchdog_tripped() const noexcept {
+  return std::ranges::any_of(boards_, [](const EmulatedBoard& board) { return board.bitten(); });
+}
+
+}  // namespace kadans::hostmot2

@@ -1,0 +1,68 @@
+// All boards of a robot, with what its configuration says is wired to them: encoders, amplifiers with their motors,
+// brakes and switches, and the model that these move.
+//
+// The counters are as after a start at the jig: an encoder whose joint is homed by power_on is 0 where home_rad is. The
+// others count from where the joint was when the power came on. An index or a probe lies at home_rad.
+//
+// One owner, one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "emulated_board.h"
+#include "emulated_wire.h"
+#include "plant/drive_shafts.h"
+#include "plant/hostmot2/settings.h"
+
+namespace kadans::hostmot2 {
+
+class EmulatedMachine {
+ public:
+  // Each board has the encoders and PWMs that the configuration names. Throws InputError when its pins do not suffice.
+  EmulatedMachine(const HostMot2Settings& settings, const PlantSite& site, std::uint64_t seed);
+
+  std::size_t board_count() const noexcept { return boards_.size(); }
+  EmulatedBoard& board(std::size_t number) noexcept { return boards_[number]; }
+  EmulatedWire& wire(std::size_t number) noexcept { return wires_[number]; }
+  const std::deque<EmulatedWire>& wires() const noexcept { return wires_; }
+
+  void look(WorldRobot& robot);   // encoders and switches show where the robot's joints are
+  void drive(WorldRobot& robot);  // the robot's drives do what the amplifiers do
+  void pass(std::int64_t dt_ns) noexcept;
+  void switch_power() noexcept;  // off and on again
+  bool any_torque() const noexcept;
+  bool any_watchdog_tripped() const noexcept;
+  bool enabled(std::size_t joint) const noexcept;  // its amplifier is
+
+  // What may happen.
+  void press_emergency(bool pressed) noexcept { emergency_pressed_ = pressed; }
+  void fail_amplifier(std::size_t joint, bool fails) noexcept;
+  void block(std::size_t joint, double low_rad, double high_rad) noexcept;  // where its limit switches are
+  void set_sensor(const std::string& name, bool active) noexcept;
+
+ private:
+  struct Wired {
+    std::size_t board, joint;
+    DriveWiring is;
+    double low_rad = -1e9, high_rad = 1e9;
+    bool fails = false;
+  };
+  double duty(const Wired& wired) const noexcept;
+  bool output(std::size_t board, const OptionalPin& pin) const noexcept;
+  void input(std::size_t board, const OptionalPin& pin, bool active) noexcept;
+  std::size_t board_number(const std::string& name) const;
+  Wired& at(std::size_t joint) noexcept;
+
+  HostMot2Settings settings_;
+  PlantSite site_;
+  DriveShafts shafts_;
+  std::deque<EmulatedBoard> boards_;
+  std::deque<EmulatedWire> wires_;
+  std::vector<Wired> wired_;
+  std::vector<bool> inputs_active_;
+  bool emergency_pressed_ = false, looked_ = false;
+};
+
+}  // namespace kadans::hostmot2

@@ -1,0 +1,71 @@
+#include "network_check.h"
+
+#include <array>
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+
+namespace kadans::hostmot2 {
+namespace {
+
+struct CardList {
+  ifaddrs* first = nullptr;
+  CardList() { (void)getifaddrs(&first); }
+  CardList(const CardList&) = delete;
+  CardList& operator=(const CardList&) = delete;
+  ~CardList() { freeifaddrs(first); }
+};
+
+std::uint32_t ipv4(const sockaddr* address) { return reinterpret_cast<const sockaddr_in*>(address)->sin_addr.s_addr; }
+
+std::string text_of(std::uint32_t address) {
+  std::array<char, INET_ADDRSTRLEN> text{};
+  inet_ntop(AF_INET, &address, text.data(), text.size());
+  return text.data();
+}
+
+}  // namespace
+
+CardFinding network_card_for(const std::string& address) {
+  const std::string host = address.substr(0, address.find(':'));
+  in_addr wanted{};
+  if (inet_pton(AF_INET, host.c_str(), &wanted) != 1)
+    return {.is = "no address", .how = "an address such as 192.168.1.121"};
+  const CardList cards;
+  for (const ifaddrs* at = cards.first; at != nullptr; at = at->ifa_next) {
+    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET || at->ifa_netmask == nullptr) continue;
+    if (((ipv4(at->ifa_addr) ^ wanted.s_addr) & ipv4(at->ifa_netmask)) != 0) continue;
+    const std::string card = std::string(at->ifa_name) + " (" + text_of(ipv4(at->ifa_addr)) + ")";
+    if ((at->ifa_flags & IFF_UP) == 0)
+      return {.is = card + " is down", .how = std::string("sudo ip link set ") + at->ifa_name + " up"};
+    if ((at->ifa_flags & IFF_RUNNING) == 0)
+      return {.is = card + " has no cable in, or nothing is powered at its other end", .how = "plug the cable in"};
+    return {.good = true, .is = card + " is in its network", .how = {}};
+  }
+  return {.is = "no network card of this machine is in the network of " + host,
+          .how = "give the card to it an address there, such as `sudo ip address add " +
+                 host.substr(0, host.rfind('.')) + ".1/24 dev eth0`"};
+}
+
+std::vector<PlantType::Finding> examine_boards(const HostMot2Settings& settings, std::int64_t control_period_ns) {
+  std::vector<PlantType::Finding> findings;
+  for (const BoardSettings& board : settings.boards) {
+    const CardFinding card = network_card_for(board.address);
+    findings.push_back({.topic = "board " + board.name,
+                        .good = card.good,
+                        .is = board.address + ": " + card.is,
+                        .should = "a network card of this machine in its network",
+                        .how = card.how});
+  }
+  const double periods = 1e9 * settings.watchdog_s / static_cast<double>(control_period_ns);
+  findings.push_back({.topic = "watchdog",
+                      .good = periods >= 3,
+                      .is = "after " + std::to_string(static_cast<int>(periods)) + " control periods of silence",
+                      .should = "at least 3",
+                      .how = "a longer plant.hm2-eth.watchdog_s: a tick that is late would release the joints"});
+  return findings;
+}
+
+}  // namespace kadans::hostmot2

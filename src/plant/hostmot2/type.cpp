@@ -1,0 +1,60 @@
+#include <cmath>
+
+#include "emulator/board_server.h"
+#include "hostmot2_plant.h"
+#include "lbp_link.h"
+#include "network_check.h"
+
+namespace kadans {
+namespace {
+
+class HostMot2EthernetType final : public PlantType {
+ public:
+  std::string_view name() const noexcept override { return "hm2-eth"; }
+  std::string_view doc() const noexcept override { return "Mesa boards with HostMot2 on Ethernet"; }
+  bool has_fields() const noexcept override { return true; }
+  void fields(PlantFields& f) override { settings_.fields(f); }
+
+  std::unique_ptr<Plant> make_plant(const PlantSite& site) const override {
+    const hostmot2::HostMot2Settings settings = settings_at(site, "--peer", site.peer);
+    std::vector<std::unique_ptr<hostmot2::BoardLink>> links;
+    for (const hostmot2::BoardSettings& board : settings.boards) {
+      auto port = std::make_unique<hostmot2::UdpPort>(hostmot2::board_place(board.address));
+      links.push_back(std::make_unique<hostmot2::LbpLink>(std::move(port), std::llround(1e9 * settings.patience_s),
+                                                          std::llround(1e9 * settings.reply_wait_s)));
+    }
+    return std::make_unique<hostmot2::HostMot2Plant>(settings, site, std::move(links));
+  }
+  bool is_protocol() const noexcept override { return true; }
+  std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const override {
+    return std::make_unique<hostmot2::BoardServer>(settings_at(site, "--listen", listen), site);
+  }
+  std::vector<Finding> examine(const PlantSite& site) const override {
+    return settings_.boards.empty() ? std::vector<Finding>()
+                                    : hostmot2::examine_boards(settings_, site.layout.period_ns);
+  }
+  DriveWords drive_words() const noexcept override { return hostmot2::drive_code_words; }
+
+ private:
+  // The configuration's, with the boards at addresses that the command line names.
+  hostmot2::HostMot2Settings settings_at(const PlantSite& site, const char* option, const std::string& address) const {
+    hostmot2::HostMot2Settings settings = settings_;
+    if (settings.drives.empty())
+      throw InputError({.file = site.file,
+                        .message = "says no plant.hm2-eth.drives: which modules move which joint (docs/hostmot2.md)"});
+    try {
+      if (!address.empty()) settings.move_boards(address);
+    } catch (const InputError& error) {
+      throw InputError({.file = option, .message = error.problems().front().message});
+    }
+    return settings;
+  }
+
+  hostmot2::HostMot2Settings settings_;
+};
+
+}  // namespace
+
+std::unique_ptr<PlantType> make_hostmot2_type() { return std::make_unique<HostMot2EthernetType>(); }
+
+}  // namespace kadans

@@ -1,0 +1,43 @@
+#include <ctime>
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "datagram_port.h"
+#include "kadans/signal/frames.h"
+#include "plant/socket_address.h"
+
+namespace kadans::hostmot2 {
+
+UdpPort::UdpPort(const std::string& place) : descriptor_(connected_socket(place)) {}
+
+UdpPort::~UdpPort() { close(descriptor_); }
+
+bool UdpPort::send(Octets datagram) noexcept {
+  return ::sendto(descriptor_, datagram.data(), datagram.size(), MSG_DONTWAIT | MSG_NOSIGNAL, nullptr, 0) ==
+         static_cast<ssize_t>(datagram.size());
+}
+
+std::size_t UdpPort::receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept {
+  for (;;) {
+    const ssize_t got = ::recvfrom(descriptor_, into.data(), into.size(), MSG_DONTWAIT | MSG_TRUNC, nullptr, nullptr);
+    if (got > 0) return static_cast<std::size_t>(got);
+    // None, an empty one, or the news that nobody listens there.
+    if (now_ns() >= until_ns) return 0;
+  }
+}
+
+void UdpPort::await(std::int64_t until_ns) noexcept {
+  const std::int64_t left_ms = (until_ns - now_ns()) / 1'000'000;
+  pollfd wanted{descriptor_, POLLIN, 0};
+  if (left_ms > 0) (void)poll(&wanted, 1, static_cast<int>(left_ms));
+}
+
+std::int64_t UdpPort::now_ns() const noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * ns_per_s + now.tv_nsec;
+}
+
+}  // namespace kadans::hostmot2

@@ -1,0 +1,277 @@
+// The driver and the emulated boards, on virtual time, with an ideal model behind them.
+#include "plant/hostmot2/hostmot2_plant.h"
+
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "hostmot2_world.h"
+#include "kadans/plant/ideal_world.h"
+#include "kadans/signal/input_error.h"
+#include "kadans/testing/allocation_count.h"
+#include "two_joints.h"
+
+namespace kadans::hostmot2 {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+PinSettings high(std::uint32_t number) { return {.number = number}; }
+PinSettings low(std::uint32_t number) { return {.number = number, .low = true}; }
+
+HostMot2Settings two_axes() {
+  HostMot2Settings settings;
+  settings.boards = {{.name = "io", .address = "192.168.1.121", .card = "7I96"}};
+  DriveWiring hip{.drive = "hip", .board = "io", .encoder = 0, .pwm = 0, .counts_per_rad = 4000};
+  hip.amplifier = {.full = 10, .current_max_A = 5, .Nm_per_A = 0.05, .gear = 10, .efficiency = 0.8};  // 0.4 Nm/A
+  hip.position_gain_Nm_per_rad = 40;
+  hip.velocity_gain_Nms_per_rad = 8;
+  hip.enable = high(20);
+  hip.fault = low(21);
+  DriveWiring knee = hip;
+  knee.drive = "knee";
+  knee.encoder = knee.pwm.emplace(1);
+  knee.reversed = knee.pwm_reversed = true;
+  knee.enable = low(22);
+  knee.fault.reset();
+  settings.drives = {hip, knee};
+  return settings;
+}
+
+PlantSite site() { return {.file = "robot.json", .layout = {.robot = "walker", .joints = {"hip", "knee"}}}; }
+
+struct Bench {
+  // `there`: what the boards are, where that is not what the driver's configuration says.
+  explicit Bench(const HostMot2Settings& settings = two_axes(), const HostMot2Settings* there = nullptr)
+      : world(std::make_unique<IdealWorld>(test::two_joints(), PlantSettings{.position_rad = {0.1, -0.2}}), settings,
+              there == nullptr ? settings : *there, site()) {}
+
+  void run(const JointActuation& first, const JointActuation& second, int milliseconds) {
+    actuation.joint_count = 2;
+    actuation.joints[0] = first;
+    actuation.joints[1] = second;
+    for (int i = 0; i < milliseconds; ++i) {
+      world.read(sensors);
+      world.write(actuation);
+      world.step(ms);
+    }
+    world.read(sensors);
+  }
+  void order(std::size_t joint, DriveOrder what) {
+    actuation.drives[joint] = {what, static_cast<std::uint8_t>(actuation.drives[joint].number + 1)};
+  }
+  std::uint64_t count(std::string_view name) {
+    for (const PlantCount& one : world.driver().link_counts()) {
+      if (one.name == name) return one.value;
+    }
+    FAIL_CHECK(name);
+    return 0;
+  }
+  std::string why_not() {
+    try {
+      world.start();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  EmulatedBoard& board() { return world.machine().board(0); }
+
+  test::HostMot2World world;
+  ActuationFrame actuation;
+  SensorFrame sensors;
+};
+
+constexpr JointActuation off{};
+JointActuation effort(double Nm) { return {.effort_Nm = Nm, .mode = ActuationMode::effort}; }
+JointActuation position(double rad) { return {.position_rad = rad, .mode = ActuationMode::position}; }
+JointActuation velocity(double rad_s) { return {.velocity_rad_s = rad_s, .mode = ActuationMode::velocity}; }
+
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("Encoders are read in the joints' coordinates, one control period old, with that time") {
+  Bench bench;
+  bench.run(off, off, 10);
+  CHECK(bench.sensors.joints[0].position_rad == doctest::Approx(0.1).epsilon(0.003));
+  CHECK(bench.sensors.joints[1].position_rad == doctest::Approx(-0.2).epsilon(0.003));
+  CHECK(bench.sensors.joints[0].drive == DriveState::ready);
+  CHECK(bench.sensors.joints[0].time_ns == 9 * ms);
+  CHECK(bench.sensors.time_ns == 10 * ms);
+  const std::uint32_t before = bench.sensors.joints[0].sequence;
+  bench.run(off, off, 20);
+  CHECK(bench.sensors.joints[0].sequence - before == 20 + 1 - 1);
+  CHECK(bench.count("lost") == 0);
+  CHECK(bench.count("refused") == 0);
+}
+
+TEST_CASE("Effort, impedance, position and velocity reach the joints") {
+  Bench bench;
+  bench.run(effort(0), effort(0.5), 20);
+  const double before = bench.world.truth().velocity_rad_s[1];
+  bench.run(effort(0), effort(0.5), 100);
+  CHECK(bench.world.truth().velocity_rad_s[1] - before == doctest::Approx(0.05).epsilon(0.02));  // of 1 kg m2
+  CHECK(bench.sensors.joints[1].motor_effort_Nm == doctest::Approx(0.5));
+  CHECK(bench.sensors.joints[1].drive == DriveState::enabled);
+  bench.run(position(0.3), position(-0.4), 3000);
+  CHECK(bench.sensors.joints[0].position_rad == doctest::Approx(0.3).epsilon(0.01));
+  CHECK(bench.sensors.joints[1].position_rad == doctest::Approx(-0.4).epsilon(0.01));
+  bench.run(velocity(0.2), velocity(-0.2), 2000);
+  CHECK(bench.world.truth().velocity_rad_s[0] > 0.15);  // of a loop without an integral
+  CHECK(bench.world.truth().velocity_rad_s[1] < -0.15);
+  const JointActuation spring{
+      .position_rad = 0, .stiffness_Nm_per_rad = 20, .damping_Nms_per_rad = 9, .mode = ActuationMode::impedance};
+  bench.run(spring, spring, 4000);
+  CHECK(std::abs(bench.sensors.joints[1].position_rad) < 0.01);
+}
+
+TEST_CASE("Every output type drives the amplifier that takes it, in both directions") {
+  for (const PwmOutput output : {PwmOutput::pwm_dir, PwmOutput::dir_pwm, PwmOutput::up_down, PwmOutput::pdm}) {
+    CAPTURE(static_cast<int>(output));
+    HostMot2Settings settings = two_axes();
+    for (DriveWiring& drive : settings.drives) drive.output = output;
+    Bench bench(settings);
+    bench.run(effort(0.4), effort(-0.4), 20);
+    const double first = bench.world.truth().velocity_rad_s[0], second = bench.world.truth().velocity_rad_s[1];
+    bench.run(effort(0.4), effort(-0.4), 100);
+    CHECK(bench.world.truth().velocity_rad_s[0] - first == doctest::Approx(0.04).epsilon(0.01));
+    CHECK(bench.world.truth().velocity_rad_s[1] - second == doctest::Approx(-0.04).epsilon(0.01));
+  }
+}
+
+TEST_CASE("An amplifier of voltage gives the same effort, against the motor's own voltage") {
+  HostMot2Settings settings = two_axes();
+  for (DriveWiring& drive : settings.drives) {
+    drive.amplifier.kind = AmplifierSettings::Kind::voltage;
+    drive.amplifier.full = 24;
+    drive.amplifier.winding_Ohm = 2;
+  }
+  Bench bench(settings);
+  bench.run(effort(0.4), effort(-0.4), 20);
+  const double first = bench.world.truth().velocity_rad_s[0];
+  bench.run(effort(0.4), effort(-0.4), 1000);
+  CHECK(bench.world.truth().velocity_rad_s[0] - first == doctest::Approx(0.4).epsilon(0.02));
+}
+
+TEST_CASE("No more current flows than the amplifier's limit, and cuts are counted") {
+  Bench bench;
+  bench.run(effort(100), effort(-100), 20);
+  CHECK(bench.count("limited") > 30);
+  double worst = 0;
+  for (int i = 0; i < 50; ++i) {
+    bench.run(effort(100), effort(-100), 1);
+    worst = std::max(worst, std::abs(bench.world.truth().motor_torque_Nm[0]));
+  }
+  CHECK(worst <= 2.0001);  // 5 A of 0.4 Nm/A
+  CHECK(worst > 1.99);
+  bench.run(effort(std::nan("")), effort(0), 5);
+  CHECK(bench.world.truth().motor_torque_Nm[0] == 0);
+}
+
+TEST_CASE("What does not fit is told before anything moves") {
+  SUBCASE("no board") {
+    Bench bench;
+    bench.world.machine().wire(0).pulled = true;
+    CHECK(has(bench.why_not(), "board 'io' at 192.168.1.121 does not answer"));
+  }
+  SUBCASE("another board") {
+    HostMot2Settings there = two_axes();
+    there.boards[0].card = "7I92";
+    Bench bench(two_axes(), &there);
+    CHECK(has(bench.why_not(), "board 'io' at 192.168.1.121 is a 7I92, the configuration says 7I96"));
+  }
+  SUBCASE("an encoder that its firmware has not") {
+    HostMot2Settings settings = two_axes();
+    settings.drives[1].encoder = 2;
+    settings.drives[1].encoder_place = {.file = "robot.json", .line = 12, .column = 30, .message = {}};
+    const HostMot2Settings there = two_axes();
+    Bench bench(settings, &there);
+    CHECK(bench.why_not() ==
+          "robot.json:12:30: board 'io' at 192.168.1.121 has no encoder 2: its firmware has 3 ioports, 2 encoders, 2 "
+          "pwmgens, 1 watchdog; also there: phase-locked loop");
+  }
+  SUBCASE("a PWM that its firmware has not") {
+    HostMot2Settings settings = two_axes();
+    settings.drives[1].pwm = 7;
+    const HostMot2Settings there = two_axes();
+    Bench bench(settings, &there);
+    CHECK(has(bench.why_not(), "has no pwm 7"));
+  }
+  SUBCASE("a pin that is an encoder's") {
+    HostMot2Settings settings = two_axes();
+    settings.drives[0].brake = high(9);
+    Bench bench(settings);
+    CHECK(has(bench.why_not(), "has encoder 1 of drive 'knee' on pin 9: choose another pin"));
+  }
+  SUBCASE("a pin that is not there") {
+    HostMot2Settings settings = two_axes();
+    settings.drives[0].brake = high(51);
+    const HostMot2Settings there = two_axes();
+    Bench bench(settings, &there);
+    CHECK(has(bench.why_not(), "has no pin 51, only 0..50"));
+  }
+  SUBCASE("a watchdog that would bite between two ticks") {
+    HostMot2Settings settings = two_axes();
+    settings.watchdog_s = 0.0019;
+    CHECK_THROWS_WITH_AS(Bench{settings},
+                         "robot.json: plant.hm2-eth.watchdog_s must be at least two control periods, each of which "
+                         "pets it",
+                         InputError);
+  }
+  CHECK(Bench().why_not().empty());
+}
+
+TEST_CASE("When the driver falls silent the board releases its outputs, and obeys again after reset and enable") {
+  Bench bench;
+  bench.run(effort(0.2), velocity(0.2), 100);
+  CHECK(bench.world.machine().enabled(0));
+  CHECK(bench.world.machine().enabled(1));
+  bench.world.silent = true;
+  bench.run(effort(0.2), velocity(0.2), 8);
+  CHECK_FALSE(bench.board().bitten());
+  bench.run(effort(0.2), velocity(0.2), 1);  // 10 ms after the last word
+  CHECK(bench.board().bitten());
+  CHECK_FALSE(bench.world.machine().enabled(0));
+  CHECK_FALSE(bench.world.machine().enabled(1));
+  const double speed = bench.world.truth().velocity_rad_s[0];
+  bench.run(effort(0.2), velocity(0.2), 50);
+  CHECK(bench.world.truth().velocity_rad_s[0] == doctest::Approx(speed));
+  bench.world.silent = false;
+  bench.run(effort(0.2), velocity(0.2), 50);
+  CHECK(bench.board().bitten());  // by itself it stays off
+  CHECK(bench.sensors.joints[0].drive == DriveState::fault);
+  CHECK(bench.count("bites") == 1);
+  bench.order(0, DriveOrder::reset);
+  bench.order(1, DriveOrder::reset);
+  bench.run(effort(0.2), velocity(0.2), 20);
+  CHECK_FALSE(bench.board().bitten());
+  CHECK(bench.sensors.joints[0].drive == DriveState::off);
+  CHECK_FALSE(bench.world.machine().enabled(0));
+  bench.order(0, DriveOrder::enable);
+  bench.order(1, DriveOrder::enable);
+  bench.run(effort(0.2), velocity(0.2), 20);
+  CHECK(bench.sensors.joints[0].drive == DriveState::enabled);
+  CHECK(bench.world.machine().enabled(0));
+  CHECK(bench.world.machine().enabled(1));
+}
+
+TEST_CASE("At the end the amplifiers are off at once") {
+  Bench bench;
+  bench.run(effort(0.2), effort(0.2), 50);
+  bench.world.driver().close();
+  bench.board().pass(1);
+  bench.board().pass(ms);
+  CHECK(bench.board().bitten());
+  CHECK_FALSE(bench.world.machine().enabled(0));
+}
+
+TEST_CASE("A tick neither allocates nor takes more than one datagram each way") {
+  Bench bench;
+  bench.run(effort(0.1), position(0.1), 50);
+  // A board that answers each datagram as it answered the last one, with the number of the request.
+  CHECK(bench.count("sent") == 51);  // with the one before the loop
+  CHECK(bench.count("received") == 51);
+}
+
+}  // namespace kadans::hostmot2

@@ -1,0 +1,107 @@
+// A model that is driven through HostMot2 boards: the driver, the datagrams and the boards, all on virtual time, on one
+// thread.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "kadans/plant/world.h"
+#include "plant/hostmot2/emulator/emulated_machine.h"
+#include "plant/hostmot2/hostmot2_plant.h"
+#include "plant/hostmot2/lbp_link.h"
+
+namespace kadans::test {
+
+class VirtualCable final : public hostmot2::DatagramPort {
+ public:
+  explicit VirtualCable(hostmot2::EmulatedWire& wire) : wire_(wire) {}
+  bool send(hostmot2::Octets datagram) noexcept override {
+    sent = datagram.size();
+    wire_.receive(datagram, now_);
+    return true;
+  }
+  std::size_t receive(std::span<std::uint8_t> into, std::int64_t) noexcept override {
+    const std::vector<std::uint8_t> bytes = wire_.take(now_);
+    std::copy_n(bytes.begin(), std::min(bytes.size(), into.size()), into.begin());
+    if (!bytes.empty()) received = bytes.size();
+    return bytes.size();
+  }
+  void await(std::int64_t until_ns) noexcept override { now_ = std::max(now_, std::min(until_ns, wire_.due_ns())); }
+  std::int64_t now_ns() const noexcept override { return now_; }
+  void set(std::int64_t now) noexcept { now_ = now; }
+  std::size_t sent = 0, received = 0;  // bytes of the last datagrams
+
+ private:
+  hostmot2::EmulatedWire& wire_;
+  std::int64_t now_ = -1'000'000'000'000;
+};
+
+class HostMot2World final : public OneRobotWorld {
+ public:
+  HostMot2World(std::unique_ptr<World> model, const hostmot2::HostMot2Settings& settings,
+                const hostmot2::HostMot2Settings& there, const PlantSite& site)
+      : model_(std::move(model)), machine_(there, site, 1), wired_feet_(!settings.feet.empty()) {
+    std::vector<std::unique_ptr<hostmot2::BoardLink>> links;
+    for (std::size_t i = 0; i < settings.boards.size(); ++i) {
+      auto cable = std::make_unique<VirtualCable>(machine_.wire(i));
+      cables_.push_back(cable.get());
+      links.push_back(std::make_unique<hostmot2::LbpLink>(std::move(cable), 50'000'000, 0));
+    }
+    plant_ = std::make_unique<hostmot2::HostMot2Plant>(settings, site, std::move(links));
+    machine_.look(inner());
+  }
+
+  // Throws InputError, as at the start of a run.
+  void start() {
+    set_time();
+    (void)plant_->open();
+    started_ = true;
+  }
+
+  void read(SensorFrame& sensors) noexcept override {
+    if (!started_) start();
+    set_time();
+    // What no board measures comes from the model.
+    inner().read(sensors);
+    const auto feet = sensors.feet;
+    plant_->read(sensors);
+    if (!wired_feet_) sensors.feet = feet;
+  }
+  void write(const ActuationFrame& actuation) noexcept override {
+    if (!silent) plant_->write(actuation);
+  }
+  void push(std::size_t link, const Vec3& force_N, const Vec3& point_m) override {
+    inner().push(link, force_N, point_m);
+  }
+  void step(std::int64_t dt_ns) override {
+    if (!started_) start();
+    machine_.drive(inner());
+    model_->step(dt_ns);
+    machine_.pass(dt_ns);
+    time_ns_ += dt_ns;
+    machine_.look(inner());
+  }
+  const PlantTruth& truth() const noexcept override { return model_->robot(0).truth(); }
+  void hash(StateHash& hash) const noexcept override { model_->hash(hash); }
+
+  hostmot2::HostMot2Plant& driver() noexcept { return *plant_; }
+  hostmot2::EmulatedMachine& machine() noexcept { return machine_; }
+  VirtualCable& cable(std::size_t number) noexcept { return *cables_[number]; }
+  bool silent = false;  // the driver hangs
+
+ private:
+  WorldRobot& inner() noexcept { return model_->robot(0); }
+  void set_time() noexcept {
+    for (VirtualCable* cable : cables_) cable->set(time_ns_);
+  }
+
+  std::unique_ptr<World> model_;
+  hostmot2::EmulatedMachine machine_;
+  bool wired_feet_;
+  std::vector<VirtualCable*> cables_;
+  std::unique_ptr<hostmot2::HostMot2Plant> plant_;
+  std::int64_t time_ns_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace kadans::test
