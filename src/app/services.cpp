@@ -96,9 +96,6 @@ RobotTexts robot_texts(const Assembly& assembly) {
 LiveService::LiveService(const LiveServiceOptions& place, Instance& instance, const Assembly& assembly,
                          LivePace* pace) {
   if (!place.wanted()) return;
-  if (assembly.own_host() == nullptr)
-    throw InputError(
-        InputProblem{.file = "--live", .message = "shows behaviors of this process: leave out --behaviors process"});
   hub_ = std::make_unique<LiveHub>(LiveHub::Parts{.instance = instance,
                                                   .port = instance.open_port(),
                                                   .texts = robot_texts(assembly),

@@ -218,8 +218,6 @@ TEST_CASE("ctl commands a run whose behaviors play in a process of their own, an
   const auto project = project_copy("ctl_process");
   REQUIRE(beside(project, live + " --behaviors process",
                  "ctl status && ctl set posture.l_knee.kp_Nm_per_rad 123 && ctl pause && ctl status && ctl resume\n"
-                 "ctl reload; echo $?\n"
-                 "ctl set squat.hold_s 2; echo $?\n"
                  "echo '1 + 1' | ctl repl; echo $?\n"
                  "ctl reload squat && ctl stop\n") == 0);
   const std::string said = read(project / "said"), wrong = read(project / "wrong");
@@ -228,9 +226,49 @@ TEST_CASE("ctl commands a run whose behaviors play in a process of their own, an
   CHECK_FALSE(has(said, "squat in state "));
   CHECK(has(said, "paused; squat"));
   CHECK(has(said, std::string(kp) + ": "));
-  CHECK(has(wrong, "name the one to be read again"));
-  CHECK(has(wrong, "parameters of behaviors cannot be set while they play in a process of their own"));
   CHECK(has(wrong, "there is no console while behaviors play in a process of their own"));
+}
+
+TEST_CASE("ctl tells of behaviors in a process of their own what it tells of those in a thread") {
+  const auto project = project_copy("ctl_tables");
+  write(project / "behaviors/tulip/listen.lua", listener);
+  write(project / "behaviors/tulip/count.lua", R"(local k = require "kadans"
+k.params { steps = { 3, "", min = 1, max = 9, doc = "how many" } }
+return k.behavior "count" { k.final "over" { outcome = "done", result = function() return { steps = 3 } end } })");
+  write(project / "behaviors/tulip/broken.lua", R"(local k = require "kadans"
+return k.behavior "broken" { k.state "x" { endless = true, run = function(m) m:wait(0.01) error "it broke" end } })");
+  const std::string commands =
+      "until ctl list behaviors --json | grep -q 'it broke'; do kill -0 $run || exit 8; done\n"
+      "ctl list behaviors --json | sed 's/behaviors.tulip.broken.lua:2: //'; ctl list events --json\n"
+      "ctl list parameters | grep -v '[.].*[.]'\n"
+      "ctl why listen | grep -v ' s left'; ctl why nobody; echo $?\n"
+      "ctl set count.steps 5 && ctl get count.steps && ctl undo && ctl get count.steps\n"
+      "ctl set count.steps 50; ctl set count.stepz 5; ctl undo; echo $?\n"
+      "ctl reload; ctl reload nobody; echo $?\n"
+      "sed -i 's/min = -1/min = -0.5/' behaviors/tulip/listen.lua; ctl reload; ctl list events\n"
+      "sed -i 's/endless/endles/' behaviors/tulip/listen.lua; ctl reload listen; echo $?\n"
+      "sed -i 's/min = -0.5/min = -1/; s/endles /endless /' behaviors/tulip/listen.lua; ctl reload listen\n"
+      "ctl play wavee; ctl play 'count{steps=7}'; echo $?; ctl emit swing to_rad=9; ctl emit swng; ctl emit swing\n";
+  const auto told = [&](const std::string& where) {
+    REQUIRE(beside(project,
+                   "run config/tulip/robot.json --plant ideal --play 'listen | count | broken' "
+                   "--threads-on-virtual-time --behaviors " +
+                       where,
+                   commands) == 0);
+    return read(project / "said") + "--\n" + read(project / "wrong");
+  };
+  const std::string thread = told("thread");
+  CHECK(told("process") == thread);
+  CAPTURE(thread);
+  CHECK(has(thread, "\"result\":\"{ steps = 3 }\""));
+  CHECK(has(thread, "to_rad: a number in rad, -1..1"));
+  CHECK(has(thread, "to_rad: a number in rad, -0.5..1"));
+  CHECK(has(thread, "count.steps: 3 -> 5"));
+  CHECK(has(thread, "count.steps: 5 -> 3"));
+  CHECK(has(thread, "listen: reloaded behaviors/tulip/listen.lua"));
+  CHECK(has(thread, "count.steps = 50 is outside its range 1..9"));
+  CHECK(has(thread, "did you mean 'count.steps'?"));
+  CHECK(has(thread, "unknown behavior 'nobody'"));
 }
 
 TEST_CASE("ctl finds a simulation too, and says where it looked when there is none") {

@@ -122,3 +122,26 @@ TEST_CASE("A scenario's events are refused with their place when something in th
                              "\"behaviors/tulip/squat.lua\" }"),
                      "did you mean 'squat'?"));
 }
+
+TEST_CASE("params lists the arguments of a behavior with type, default, unit and range") {
+  const auto project = program::project_copy("params_arguments");
+  program::write(project / "behaviors/tulip/bow.lua", R"(local k = require "kadans"
+k.params { hold_s = { 1, unit = "s", min = 0, max = 9, doc = "how long" } }
+local A = k.args { depth_m = { 0.1, min = 0.02, max = 0.2, unit = "m", doc = "how far down" }, again = { false },
+                   side = { "left", one_of = { "left", "right" } }, path = { { 1, 2 } } }
+return k.behavior "bow" { k.final "over" { outcome = A and "done" } })");
+  const auto listed = program::run("params behaviors/tulip/bow.lua", project);
+  CAPTURE(listed.out + listed.err);
+  std::string text = listed.out;  // with single blanks
+  text.erase(std::unique(text.begin(), text.end(), [](char a, char b) { return a == ' ' && b == ' '; }), text.end());
+  CHECK(text ==
+        "hold_s 1 s 0..9 how long\n"
+        "arguments:\n"
+        "again false any boolean \n"
+        "depth_m 0.1 m 0.02..0.2 how far down\n"
+        "path a table any table \n"
+        "side \"left\" one of left, right \n");
+  const std::string json = program::run("params behaviors/tulip/bow.lua --json", project).out;
+  CHECK(program::has(json, R"({"name":"depth_m","argument":"number","value":0.1,"unit":"m","min":0.02,"max":0.2,)"));
+  CHECK(program::has(json, R"("argument":"text","value":"left","unit":"","min":null,"max":null,"one_of":["left",)"));
+}

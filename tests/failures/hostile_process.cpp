@@ -29,8 +29,9 @@ struct Harm {
 
   // Where counts and positions are.
   std::size_t start_of(std::size_t which) const {
-    const std::array<const void*, 4> parts{&link.answer, &link.answer.kept, &link.commands, &link.lines};
-    return static_cast<std::size_t>(static_cast<const char*>(parts[which % 4]) - reinterpret_cast<const char*>(&link));
+    const std::array<const void*, 5> parts{&link.answer, &link.answer.kept, &link.answer.reply_size, &link.commands,
+                                           &link.lines};
+    return static_cast<std::size_t>(static_cast<const char*>(parts[which % 5]) - reinterpret_cast<const char*>(&link));
   }
 
   [[noreturn]] void scribble() {
@@ -85,6 +86,9 @@ struct Harm {
     link.answer.kept_changed = static_cast<std::uint32_t>(random.next() % 2);
     link.answer.kept.size = static_cast<std::uint32_t>(random.next() % 3 == 0 ? random.next() : random.next() % 70000);
     link.answer.kept.hash = random.next();
+    link.answer.reply_size = static_cast<std::uint32_t>(random.next() % 4 == 0 ? random.next() : random.next() % 200);
+    for (std::size_t i = 0; i < 200; ++i)
+      link.answer.replies[i] = std::byte(random.next() % 3 == 0 ? random.next() & 0xff : random.next() % 3);
     for (auto& numbers : link.answer.status) numbers.fill(static_cast<std::uint32_t>(random.next()));
     answer();
   }

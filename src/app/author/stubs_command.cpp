@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -44,27 +45,60 @@ std::vector<Row> rows_of_robot(const std::string& file) {
   return rows;
 }
 
-std::vector<Row> rows_of_behavior(const ParamsOptions& options) {
+struct Tables {
+  std::vector<Row> parameters{};
+  std::vector<ScriptArgument> arguments{};
+};
+
+Tables tables_of_behavior(const ParamsOptions& options) {
   (void)read_input_file(options.file);  // throws when it does not exist
   const Robot robot = read_robot(options.robot.empty() ? robot_of_behavior(options.file) : fs::path(options.robot));
   const auto system = make_control_system(robot);
   RunLog log;
   const Behavior behavior({.root = project_root(options.file), .file = fs::absolute(options.file)}, system->catalog,
                           log);
-  std::vector<Row> rows;
+  Tables tables{.arguments = behavior.arguments()};
   for (const ScriptParameter& each : behavior.parameters()) {
-    rows.push_back({each.name, each.unit, each.doc, each.value, each.min, each.max});
+    tables.parameters.push_back({each.name, each.unit, each.doc, each.value, each.min, each.max});
   }
-  return rows;
+  return tables;
 }
 
 nlohmann::ordered_json number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-void print_json(const std::vector<Row>& rows) {
+const char* type_of(const ScriptArgument& argument) {
+  constexpr std::array types{"number", "boolean", "text"};
+  return argument.initial ? types[argument.initial->index()] : "table";
+}
+
+nlohmann::ordered_json default_of(const ScriptArgument& argument) {
+  if (!argument.initial) return nullptr;
+  return std::visit([](const auto& value) { return nlohmann::ordered_json(value); }, *argument.initial);
+}
+
+// An argument has the key "argument", its type; its value is the default.
+nlohmann::ordered_json json_of(const ScriptArgument& argument) {
+  nlohmann::ordered_json one{{"name", argument.name}, {"argument", type_of(argument)}, {"value", default_of(argument)},
+                             {"unit", argument.unit}, {"min", number(argument.min)},   {"max", number(argument.max)}};
+  if (!argument.one_of.empty()) one["one_of"] = argument.one_of;
+  one["doc"] = argument.doc;
+  return one;
+}
+
+// "0.02..0.2", "one of left, right", "any text".
+std::string allowed_by(const ScriptArgument& argument) {
+  std::string choices;
+  for (const std::string& choice : argument.one_of) choices += (choices.empty() ? "one of " : ", ") + choice;
+  if (!choices.empty()) return choices;
+  const bool bounded = std::isfinite(argument.min) || std::isfinite(argument.max);
+  return bounded ? printed("%g..%g", argument.min, argument.max) : std::string("any ") + type_of(argument);
+}
+
+void print_json(const Tables& tables) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const Row& row : rows) {
+  for (const Row& row : tables.parameters) {
     all.push_back({{"name", row.name},
                    {"value", number(row.value)},
                    {"unit", row.unit},
@@ -72,6 +106,7 @@ void print_json(const std::vector<Row>& rows) {
                    {"max", number(row.max)},
                    {"doc", row.doc}});
   }
+  for (const ScriptArgument& argument : tables.arguments) all.push_back(json_of(argument));
   std::puts(json_text(all).c_str());
 }
 
@@ -100,7 +135,8 @@ int run_stubs(const StubsOptions& options) {
 }
 
 void add_params(CLI::App& app, ParamsOptions& options) {
-  CLI::App* params = app.add_subcommand("params", "List the parameters of a behavior or a robot");
+  CLI::App* params =
+      app.add_subcommand("params", "List the parameters of a behavior or a robot, and a behavior's arguments");
   params->add_option("file", options.file, "Behavior (Lua) or robot configuration (JSON)")
       ->required()
       ->type_name("FILE");
@@ -111,14 +147,20 @@ void add_params(CLI::App& app, ParamsOptions& options) {
 
 int run_params(const ParamsOptions& options) {
   const bool behavior = fs::path(options.file).extension() == ".lua";
-  const std::vector<Row> rows = behavior ? rows_of_behavior(options) : rows_of_robot(options.file);
+  const Tables tables = behavior ? tables_of_behavior(options) : Tables{rows_of_robot(options.file)};
   if (options.json) {
-    print_json(rows);
+    print_json(tables);
     return exit_passed;
   }
-  for (const Row& row : rows) {
+  for (const Row& row : tables.parameters) {
     print_text(printed("%-40s %10g %-8s %g..%g  ", row.name.c_str(), row.value, row.unit.c_str(), row.min, row.max) +
                row.doc + "\n");
+  }
+  if (!tables.arguments.empty()) print_text("arguments:\n");
+  for (const ScriptArgument& argument : tables.arguments) {
+    const std::string initial = argument.initial ? json_text(default_of(argument)) : "a table";
+    print_text(printed("%-40s %10s %-8s ", argument.name.c_str(), initial.c_str(), argument.unit.c_str()) +
+               allowed_by(argument) + "  " + argument.doc + "\n");
   }
   return exit_passed;
 }

@@ -7,6 +7,7 @@
 #include "estimate/estimator.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/placement.h"
+#include "remote/instance/run_description.h"
 #include "run_threads.h"
 #include "script/process/behavior_server.h"
 
@@ -89,7 +90,7 @@ int run_behavior_process(const RunOptions& options) {
   const std::unique_ptr<ScriptHost> host =
       make_script_host(scenario, robot.config, system->catalog, scenario.seed, log, bytes);
   settle(link.setup);
-  return BehaviorServer(link, bell, *host, log, lines, system->catalog, sets).serve();
+  return BehaviorServer(link, bell, *host, log, lines, system->catalog, sets, behaviors_description).serve();
 }
 
 }  // namespace kadans

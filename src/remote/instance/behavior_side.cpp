@@ -59,6 +59,10 @@ std::string undone_text(DriveOrder order, JointMask joints, const PowerStatus& p
   return text;
 }
 
+bool asks_only(Order::Kind kind) noexcept {
+  return kind == Order::Kind::report || kind == Order::Kind::why || kind == Order::Kind::describe;
+}
+
 // Whether the line is about the event of this order: others may have come in the same tick.
 bool tells_of(const std::string& line, const Order& order) {
   const std::string name = order.text.substr(0, order.text.find_first_of(" \t{"));
@@ -115,11 +119,11 @@ bool BehaviorSide::begin(Pending& pending) {
   Answer& answer = pending.order->answer;
   switch (order.kind) {
     case Order::Kind::report:
-      return report(answer), true;
+      return ask(pending, {});
     case Order::Kind::why:
-      return tell_why(order.text, answer), true;
+      return ask_why(pending);
     case Order::Kind::describe:
-      return answer.text = behaviors_description(p_.host), true;
+      return ask(pending, {.kind = BehaviorQuestion::Kind::describe});
     case Order::Kind::play:
       return give(pending, PlayOrder::Kind::play), false;
     case Order::Kind::replace:
@@ -192,12 +196,16 @@ bool BehaviorSide::begin(Pending& pending) {
 
 bool BehaviorSide::waits_for_tick(const Pending& pending) const noexcept {
   const Order::Kind kind = pending.order->order.kind;
+  if (pending.asked != 0) return true;
   return pending.sequence == 0 && kind != Order::Kind::line && kind != Order::Kind::clear_faults &&
          p_.engine.ticks() == pending.asked_tick;
 }
 
 void BehaviorSide::settle(std::int64_t time_ns) {
   if (pending_.empty()) return;
+  for (Pending& pending : pending_) {
+    if (pending.asked != 0) hear(pending, time_ns);
+  }
   const auto snapshot = p_.exchange.snapshot.read(0);
   const bool ticked = std::ranges::none_of(pending_, [this](const Pending& one) { return waits_for_tick(one); });
   if (ticked) lines_ = p_.echo.take();
@@ -224,6 +232,7 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
     if (!lifted && late) answer.text = "the control thread did not clear them within a second, or was stopped again";
     return lifted || late;
   }
+  if (pending.failed) return true;
   if (waits_for_tick(pending)) {
     if (late) answer.text = "the behaviors did not tick within a second";
     return late;
@@ -232,7 +241,7 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
     answer.done = true;
     if (order.kind == Order::Kind::set_parameter || order.kind == Order::Kind::undo) {
       finish(pending);
-    } else {
+    } else if (!asks_only(order.kind)) {
       answer.text = told(pending, answer.done);
     }
     return true;
@@ -299,15 +308,6 @@ void BehaviorSide::say(std::int64_t time_ns, const std::string& who, const std::
 
 namespace {
 
-// The parameters of behaviors are where their process is.
-void check_is_no_behavior(const std::vector<std::string>& behaviors, const std::string& parameter) {
-  const std::string name = parameter.substr(0, parameter.find('.'));
-  if (std::find(behaviors.begin(), behaviors.end(), name) == behaviors.end()) return;
-  throw InputError({.message = "parameters of behaviors cannot be set while they play in a process of their own: "
-                               "change its file, then `kadans ctl reload " +
-                               name + "`; or run with --behaviors thread"});
-}
-
 constexpr ScriptLimits console_limits{.tick_instructions = 200'000,
                                       .load_instructions = 5'000'000,
                                       .tick_wall_ns = 20'000'000,
@@ -316,54 +316,51 @@ constexpr ScriptLimits console_limits{.tick_instructions = 200'000,
 
 }  // namespace
 
-void BehaviorSide::report(Answer& answer) const {
-  if (p_.host == nullptr) return report_process(answer);
-  const ScriptHost& host = *p_.host;
-  answer.paused = host.paused();
-  for (std::size_t i = 0; i < host.size(); ++i) {
-    const Behavior& behavior = host.behavior(i);
-    answer.behaviors.push_back({.name = behavior.name(),
-                                .outcome = behavior.outcome(),
-                                .error = behavior.failed() ? behavior.error().text() : "",
-                                .result = behavior.result(),
-                                .active = behavior.active(),
-                                .lane = host.lane(i),
-                                .over = host.over(i),
-                                .chart = chart_sign(behavior.chart()),
-                                .parameters = behavior.parameters()});
-    if (!host.over(i)) answer.behaviors.back().events = behavior.events();
+// True: the behaviors have replied, as they do in this process. One of their own replies with its next answer.
+bool BehaviorSide::ask(Pending& pending, const BehaviorQuestion& question) {
+  if (p_.process != nullptr) {
+    pending.asked = p_.process->ask(question);
+    return false;
   }
+  const bool charts = question.kind == BehaviorQuestion::Kind::describe;
+  const auto snapshot = p_.exchange.snapshot.read(0);
+  take(pending, charts ? BehaviorReply{.text = behaviors_description(p_.host)} : p_.host->reply(question, *snapshot));
+  return true;
 }
 
-// Of all that play, or of the one with this name.
-void BehaviorSide::tell_why(const std::string& name, Answer& answer) {
-  if (p_.host == nullptr) {
-    throw InputError({.message = "behaviors play in a process of their own, which tells no reasons: "
-                                 "run with --behaviors thread"});
-  }
+bool BehaviorSide::ask_why(Pending& pending) {
   if (std::exchange(why_tick_, p_.engine.ticks()) == p_.engine.ticks())  // it costs a reload
     throw InputError({.message = "somebody else asked why in the same tick: ask again"});
-  const auto snapshot = p_.exchange.snapshot.read(0);
-  answer.reasons = p_.host->why(name, *snapshot);
-  answer.text = reasons_text(answer.reasons);
+  return ask(pending, {.kind = BehaviorQuestion::Kind::why, .text = pending.order->order.text});
 }
 
-// What a process tells of its behaviors while it plays.
-void BehaviorSide::report_process(Answer& answer) const {
-  const ProcessHost& process = *p_.process;
-  const auto& active = p_.echo.active().by_behavior();
-  answer.paused = process.paused();
-  for (const std::string& name : process.names()) {
-    const auto told = active.find(name);
-    const bool silent = process.down() || told == active.end();
-    answer.behaviors.push_back({.name = name,
-                                .outcome = "",
-                                .error = process.down() ? "its process stays down" : "",
-                                .active = silent ? std::vector<std::string>() : told->second,
-                                .lane = 0,
-                                .over = process.down() || process.finished(),
-                                .chart = 0,
-                                .parameters = {}});
+void BehaviorSide::take(Pending& pending, BehaviorReply&& reply) {
+  Answer& answer = pending.order->answer;
+  if (!reply.error.empty()) throw InputError({.message = reply.error});
+  answer.paused = reply.paused;
+  answer.behaviors = std::move(reply.behaviors);
+  answer.reasons = std::move(reply.reasons);
+  answer.text = pending.order->order.kind == Order::Kind::why ? reasons_text(answer.reasons) : std::move(reply.text);
+  pending.change.before = reply.before;
+  pending.change.chunk = std::move(reply.chunk);
+}
+
+// What the behaviors' process replies. One that is late is not waited for; a report then tells what it told last.
+void BehaviorSide::hear(Pending& pending, std::int64_t time_ns) {
+  std::optional<BehaviorReply> reply = p_.process->reply(pending.asked);
+  if (!reply && time_ns - pending.asked_ns <= control_answers_in_ns) return;
+  if (!reply) {
+    p_.process->forget(pending.asked);
+    reply = pending.order->order.kind == Order::Kind::report
+                ? p_.process->last_report()
+                : BehaviorReply{.error = "the behaviors' process did not answer within a second"};
+  }
+  pending.asked = 0;
+  try {
+    take(pending, std::move(*reply));
+  } catch (const InputError& error) {
+    pending.order->answer.text = error.what();
+    pending.failed = true;
   }
 }
 
@@ -371,14 +368,6 @@ void BehaviorSide::report_process(Answer& answer) const {
 void BehaviorSide::give(Pending& pending, PlayOrder::Kind kind) {
   const Order& order = pending.order->order;
   pending.given = kind;
-  if (kind == PlayOrder::Kind::reload && order.text.empty()) {
-    p_.echo.listen();
-    for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
-      if (!p_.host->over(i)) p_.host->order({.kind = kind, .behavior = {p_.host->behavior(i).name(), {}}});
-    }
-    if (p_.host != nullptr) return;
-    throw InputError({.message = "behaviors play in a process of their own: name the one to be read again"});
-  }
   const bool plays = kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace;
   if ((plays || kind == PlayOrder::Kind::resume) && stopped_)
     throw InputError(
@@ -390,7 +379,11 @@ void BehaviorSide::give(Pending& pending, PlayOrder::Kind kind) {
     given.event.who = order.who;
     given.event.ordered = true;
   }
-  orders().order(given);
+  if (p_.process != nullptr) {
+    pending.asked = p_.process->ask(given);
+  } else {
+    p_.host->order(given);
+  }
   p_.echo.listen();
 }
 
@@ -485,20 +478,8 @@ void BehaviorSide::set_parameter(Pending& pending, const std::string& name, doub
     }
     return send(pending, std::array{Command{.kind = CommandKind::set_parameter, .index = *id, .value = value}});
   }
-  std::vector<std::string> names = table.names();
-  for (std::size_t i = 0; p_.host != nullptr && i < p_.host->size(); ++i) {
-    Behavior& behavior = p_.host->behavior(i);
-    for (const ScriptParameter& own : behavior.parameters()) {
-      names.push_back(behavior.name() + "." + own.name);
-      if (names.back() != name) continue;
-      if (!behavior.set_parameter(own.name, value))
-        throw InputError({.message = outside_range(name, value, own.min, own.max, own.unit)});
-      pending.change = {name, own.value, value, own.chunk};
-      return;
-    }
-  }
-  if (p_.process != nullptr) check_is_no_behavior(p_.process->names(), name);
-  throw InputError({.message = unknown_name("parameter", name, names)});
+  pending.change = {name, 0, value, {}};
+  (void)ask(pending, {.kind = BehaviorQuestion::Kind::set_parameter, .text = name, .value = value});
 }
 
 // Consoles of clients have a smaller budget than that of a simulation, because the robot waits for them.

@@ -35,9 +35,6 @@ class LineEcho final : public LineSink {
     lines_.push_back({line.severity, std::string(line.behavior), std::string(line.text)});
   }
 
-  void tell_active(const ActiveStates& active) override { active_.take(active); }
-  const ActiveNow& active() const noexcept { return active_; }
-
   void listen() {
     if (!listens_) lines_.clear();
     listens_ = true;
@@ -52,7 +49,6 @@ class LineEcho final : public LineSink {
   static constexpr std::size_t lines_max = 64;
   bool listens_ = false;
   std::vector<Heard> lines_;
-  ActiveNow active_;
 };
 
 class BehaviorSide final : public BesideTick {
@@ -85,8 +81,10 @@ class BehaviorSide final : public BesideTick {
     ParameterChange change{};    // for set_parameter and undo
     PlayOrder::Kind given{};     // for orders to the list of behaviors: what it was told
     std::uint16_t lifts = 0;     // for clear_faults: SafetyStatus::lifts before it
+    std::uint32_t asked = 0;     // number of what the behaviors' process was asked; 0: nothing, or it has replied
     JointMask joints = 0;        // for orders to drives
     bool logged = false;         // likewise: the log has it
+    bool failed = false;         // the behaviors' process has refused it; the answer's text says why
   };
 
   void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
@@ -99,9 +97,10 @@ class BehaviorSide final : public BesideTick {
   void say(std::int64_t time_ns, const std::string& who, const std::string& what);
 
   OrderTaker& orders() const noexcept { return p_.host != nullptr ? static_cast<OrderTaker&>(*p_.host) : *p_.process; }
-  void report_process(Answer& answer) const;
-  void report(Answer& answer) const;
-  void tell_why(const std::string& name, Answer& answer);
+  bool ask(Pending& pending, const BehaviorQuestion& question);
+  bool ask_why(Pending& pending);
+  static void take(Pending& pending, BehaviorReply&& reply);
+  void hear(Pending& pending, std::int64_t time_ns);
   void give(Pending& pending, PlayOrder::Kind kind);
   void set_parameter(Pending& pending, const std::string& name, double value);
   void send(Pending& pending, std::span<const Command> commands);

@@ -191,16 +191,4 @@ std::string run_description(const RobotConfig& robot, const Catalog& catalog, co
 
 std::string behaviors_description(const ScriptHost* host) { return json_text(behaviors_of(host)); }
 
-// FNV-1a.
-std::uint64_t chart_sign(const Chart& chart) noexcept {
-  std::uint64_t sign = 14695981039346656037ULL;
-  const auto mix = [&](std::uint64_t value) { sign = (sign ^ value) * 1099511628211ULL; };
-  for (const Chart::State& state : chart.states) {
-    for (const char c : state.path) mix(static_cast<unsigned char>(c));
-    mix(state.parent);
-  }
-  for (const Chart::Transition& transition : chart.transitions) mix(transition.source), mix(transition.target);
-  return sign;
-}
-
 }  // namespace kadans

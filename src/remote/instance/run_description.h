@@ -41,7 +41,5 @@ std::string run_description(const RobotConfig& robot, const Catalog& catalog, co
 // The array "behaviors" of that text alone, which changes when other behaviors or new versions play. Call it between
 // two behavior ticks.
 std::string behaviors_description(const ScriptHost* host);
-// A number that differs for different charts. Behavior thread.
-std::uint64_t chart_sign(const Chart& chart) noexcept;
 
 }  // namespace kadans

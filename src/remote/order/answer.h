@@ -8,22 +8,9 @@
 
 #include "order.h"
 #include "order_queue.h"
-#include "script/behavior/behavior_why.h"
-#include "script/host/script_event.h"
-#include "script/host/script_parameter.h"
+#include "script/host/behavior_tables.h"
 
 namespace kadans {
-
-struct BehaviorReport {
-  std::string name, outcome, error;
-  std::string result{};             // with the outcome
-  std::vector<std::string> active;  // all innermost active states, by path
-  std::uint32_t lane = 0;
-  bool over = false;
-  std::uint64_t chart = 0;  // a number that changes when the chart's states or transitions change
-  std::vector<ScriptParameter> parameters;
-  std::vector<ScriptEvent> events{};  // that it takes now
-};
 
 struct Answer {
   std::uint64_t number = 0;  // of the order

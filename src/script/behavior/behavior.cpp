@@ -570,6 +570,24 @@ std::vector<ScriptParameter> Behavior::parameters() const {
   return {all.begin(), all.end()};
 }
 
+std::vector<ScriptArgument> Behavior::arguments() const {
+  struct Asked {
+    int declared;
+    std::vector<ScriptArgument> arguments{};
+  } asked{parts_->chart.machines.front().arguments};
+  if (asked.declared == Chart::no_function) return {};
+  const auto read = [](lua_State* state) {
+    Asked& to = *static_cast<Asked*>(lua_touserdata(state, 1));
+    lua_rawgeti(state, LUA_REGISTRYINDEX, to.declared);
+    to.arguments = read_declarations(state, 2);
+    return 0;
+  };
+  const ScriptLimits& limits = parts_->settings.limits;
+  if (!parts_->lua->call(read, &asked, limits.load_instructions, limits.load_wall_ns))
+    throw InputError({.message = parts_->lua->error().text()});
+  return asked.arguments;
+}
+
 bool Behavior::set_parameter(const std::string& name, double value) noexcept {
   for (ScriptParameter& parameter : parts_->lua->core().parameters) {
     if (parameter.name != name || !(value >= parameter.min && value <= parameter.max)) continue;

@@ -30,6 +30,7 @@
 #include "kadans/control/set_partition.h"
 #include "kadans/signal/status.h"
 #include "script/chart/chart.h"
+#include "script/host/script_argument.h"
 #include "script/host/script_event.h"
 #include "script/host/script_parameter.h"
 #include "script/lua/budget.h"
@@ -116,6 +117,7 @@ class Behavior {
   SetMask control_sets() const noexcept;
   ObjectMask objects() const noexcept;
   std::vector<ScriptParameter> parameters() const;
+  std::vector<ScriptArgument> arguments() const;  // of k.args, by name; throws InputError
   // Behavior thread, between ticks. False, and nothing changes, on an unknown name or a value outside its range.
   [[nodiscard]] bool set_parameter(const std::string& name, double value) noexcept;
 

@@ -1,12 +1,14 @@
 #include "skill_reference.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
 
 #include <lua.hpp>
 
 #include "kadans/signal/input_error.h"
+#include "script/chart/chart_arguments.h"
 #include "script/chart/chart_skills.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
@@ -28,38 +30,20 @@ std::string text_of_field(lua_State* state, int table, const char* key) {
   return text;
 }
 
-// The default of a declaration.
-std::string default_text(lua_State* state, int declared) {
-  lua_rawgeti(state, declared, 1);
-  std::string text = "a table";
-  if (lua_type(state, -1) == LUA_TNUMBER) text = number_text(lua_tonumber(state, -1));
-  if (lua_type(state, -1) == LUA_TBOOLEAN) text = lua_toboolean(state, -1) != 0 ? "true" : "false";
-  if (lua_type(state, -1) == LUA_TSTRING) text = "\"" + std::string(lua_tostring(state, -1)) + "\"";
-  lua_pop(state, 1);
-  return text;
-}
-
-std::string number_of_field(lua_State* state, int declared, const char* key) {
-  lua_getfield(state, declared, key);
-  const std::string text = lua_type(state, -1) == LUA_TNUMBER ? number_text(lua_tonumber(state, -1)) : "";
-  lua_pop(state, 1);
-  return text;
+std::string default_text(const ScriptArgument& argument) {
+  if (!argument.initial) return "a table";
+  if (const auto* number = std::get_if<double>(&*argument.initial)) return number_text(*number);
+  if (const auto* flag = std::get_if<bool>(&*argument.initial)) return *flag ? "true" : "false";
+  return "\"" + std::get<std::string>(*argument.initial) + "\"";
 }
 
 // "0.1..10 s", "\"left\", \"right\"".
-std::string allowed_text(lua_State* state, int declared) {
-  const std::string min = number_of_field(state, declared, "min"), max = number_of_field(state, declared, "max");
-  const std::string unit = text_of_field(state, declared, "unit");
-  std::string text = min.empty() && max.empty() ? unit : min + ".." + max + (unit.empty() ? "" : " " + unit);
-  lua_getfield(state, declared, "one_of");
-  const int choices = lua_gettop(state);
-  const auto count = lua_istable(state, choices) ? static_cast<int>(lua_objlen(state, choices)) : 0;
-  for (int i = 1; i <= count; ++i) {
-    lua_rawgeti(state, choices, i);
-    text += (text.empty() ? "\"" : ", \"") + std::string(lua_tostring(state, -1)) + "\"";
-    lua_pop(state, 1);
-  }
-  lua_pop(state, 1);
+std::string allowed_text(const ScriptArgument& argument) {
+  const auto end = [](double value) { return std::isfinite(value) ? number_text(value) : ""; };
+  std::string text = end(argument.min) + ".." + end(argument.max);
+  if (text == "..") text.clear();
+  if (!argument.unit.empty()) text += (text.empty() ? "" : " ") + argument.unit;
+  for (const std::string& choice : argument.one_of) text += (text.empty() ? "\"" : ", \"") + choice + "\"";
   return text;
 }
 
@@ -68,15 +52,13 @@ std::string skill_text(lua_State* state, int skill) {
   std::string text = text_of_field(state, skill, "doc") + ".\n";
   lua_getfield(state, skill, "args");
   const int declared = lua_gettop(state);
-  std::map<std::string, std::string> rows;
-  for (lua_pushnil(state); lua_next(state, declared) != 0; lua_pop(state, 1)) {
-    const int one = lua_gettop(state);
-    rows[lua_tostring(state, one - 1)] =
-        default_text(state, one) + " | " + allowed_text(state, one) + " | " + text_of_field(state, one, "doc");
-  }
+  const std::vector<ScriptArgument> arguments = read_declarations(state, declared);
   lua_pop(state, 1);
-  if (!rows.empty()) text += "\n| argument | default | allowed | |\n|---|---|---|---|\n";
-  for (const auto& [name, row] : rows) text += "| `" + name + "` | " + row + " |\n";
+  if (!arguments.empty()) text += "\n| argument | default | allowed | |\n|---|---|---|---|\n";
+  for (const ScriptArgument& argument : arguments) {
+    text += "| `" + argument.name + "` | " + default_text(argument) + " | " + allowed_text(argument) + " | " +
+            argument.doc + " |\n";
+  }
   return text;
 }
 

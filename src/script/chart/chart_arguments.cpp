@@ -1,5 +1,6 @@
 #include "chart_arguments.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -144,6 +145,23 @@ int read_argument(lua_State* state) {  // (handle, key)
   return 1;
 }
 
+std::string text_at(lua_State* state, int declared, const char* key) {
+  lua_getfield(state, declared, key);
+  const std::string text = lua_type(state, -1) == LUA_TSTRING ? lua_tostring(state, -1) : "";
+  lua_pop(state, 1);
+  return text;
+}
+
+std::optional<PlayValue> default_of(lua_State* state, int declared) {
+  std::optional<PlayValue> value;
+  lua_rawgeti(state, declared, 1);
+  if (lua_type(state, -1) == LUA_TNUMBER) value = lua_tonumber(state, -1);
+  if (lua_type(state, -1) == LUA_TBOOLEAN) value = lua_toboolean(state, -1) != 0;
+  if (lua_type(state, -1) == LUA_TSTRING) value = std::string(lua_tostring(state, -1));
+  lua_pop(state, 1);
+  return value;
+}
+
 int refuse_argument_write(lua_State* state) {
   return luaL_error(state, "a behavior does not set its own arguments: keep what changes in m.vars");
 }
@@ -231,6 +249,31 @@ bool push_followed_refusal(lua_State* state, int declared, const ScriptParameter
     lua_settop(state, number - 1);
   }
   return false;
+}
+
+std::vector<ScriptArgument> read_declarations(lua_State* state, int index) {
+  std::vector<ScriptArgument> all;
+  luaL_checkstack(state, 8, "arguments");
+  for (lua_pushnil(state); lua_next(state, index) != 0; lua_pop(state, 1)) {
+    const int one = lua_gettop(state);
+    ScriptArgument& argument = all.emplace_back();
+    argument.name = lua_tostring(state, one - 1);
+    argument.unit = text_at(state, one, "unit");
+    argument.doc = text_at(state, one, "doc");
+    argument.initial = default_of(state, one);
+    (void)bound(state, one, "min", argument.min);
+    (void)bound(state, one, "max", argument.max);
+    lua_getfield(state, one, "one_of");
+    const auto count = lua_istable(state, -1) ? static_cast<int>(lua_objlen(state, -1)) : 0;
+    for (int i = 1; i <= count; ++i) {
+      lua_rawgeti(state, one + 1, i);
+      argument.one_of.emplace_back(lua_tostring(state, -1));
+      lua_pop(state, 1);
+    }
+    lua_pop(state, 1);
+  }
+  std::ranges::sort(all, {}, &ScriptArgument::name);
+  return all;
 }
 
 void open_arguments(lua_State* state) {

@@ -10,8 +10,11 @@
 // give. The same check serves k.call, skills, and lists of behaviors.
 #pragma once
 
+#include <vector>
+
 #include <lua.hpp>
 
+#include "script/host/script_argument.h"
 #include "script/host/script_parameter.h"
 #include "script/lua/script_error.h"
 
@@ -30,6 +33,9 @@ bool push_refusal(lua_State* state, int declared, int value, const char* name, c
 // [-0 +1 when true] The same for all values that a parameter may have: the argument follows it.
 bool push_followed_refusal(lua_State* state, int declared, const ScriptParameter& parameter, const char* name,
                            const char* of);
+
+// [-0 +0] The declarations in the table at `index`, by name.
+std::vector<ScriptArgument> read_declarations(lua_State* state, int index);
 
 // [-1 +1] Adds args to the module's table at the top of the stack.
 void open_arguments(lua_State* state);

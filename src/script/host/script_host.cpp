@@ -9,11 +9,24 @@
 #include "play_list.h"
 #include "script/bindings/machine_sets.h"
 #include "signal/byte_order.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::uint32_t kept_format = 3;
+
+// FNV-1a.
+std::uint64_t chart_sign(const Chart& chart) noexcept {
+  std::uint64_t sign = 14695981039346656037ULL;
+  const auto mix = [&](std::uint64_t value) { sign = (sign ^ value) * 1099511628211ULL; };
+  for (const Chart::State& state : chart.states) {
+    for (const char c : state.path) mix(static_cast<unsigned char>(c));
+    mix(state.parent);
+  }
+  for (const Chart::Transition& transition : chart.transitions) mix(transition.source), mix(transition.target);
+  return sign;
+}
 
 // Each state with the signal of the region that it is in; not those in regions that have no signal.
 void add_states(const Chart& chart, const std::string& name, const SignalTable& signals, std::vector<SignalState>& to) {
@@ -202,8 +215,9 @@ void ScriptHost::order(const PlayOrder& order) {
   }
   if (order.kind == PlayOrder::Kind::emit) check_event(order);
   const std::vector<std::string> known = names();
-  if (order.kind == PlayOrder::Kind::reload && std::ranges::find(known, order.behavior.name) == known.end())
-    throw InputError({.message = unknown_name("behavior", order.behavior.name, known)});
+  const std::string& named = order.behavior.name;
+  if (order.kind == PlayOrder::Kind::reload && !named.empty() && std::ranges::find(known, named) == known.end())
+    throw InputError({.message = unknown_name("behavior", named, known)});
   orders_.push_back(std::move(due));
 }
 
@@ -271,7 +285,8 @@ void ScriptHost::begin(std::vector<PlayList::Entry>& entries) {
 
 void ScriptHost::reload(const PlayOrder& order, const Snapshot& snapshot, CommandSender& commands) noexcept {
   for (PlayList::Entry& entry : list_.entries()) {
-    if (entry.over || entry.behavior->name() != order.behavior.name) continue;
+    const bool named = order.behavior.name.empty() || entry.behavior->name() == order.behavior.name;
+    if (entry.over || !named) continue;
     entry.behavior->hold_clock(pause_.held_ns());
     (void)entry.behavior->reload(snapshot, commands, order.file, PlayList::sets_beside(entry.lane, list_.entries()));
   }
@@ -297,6 +312,52 @@ void ScriptHost::watch_folders() {
   for (const PlayList::Entry& entry : list_.entries()) {
     for (const std::filesystem::path& file : entry.behavior->files()) (void)watch_->add(file.parent_path());
   }
+}
+
+BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
+  switch (question.kind) {
+    case BehaviorQuestion::Kind::report:
+      return {.paused = paused(), .behaviors = reports()};
+    case BehaviorQuestion::Kind::why:
+      return {.reasons = why(question.text, snapshot)};
+    case BehaviorQuestion::Kind::set_parameter:
+      return set_parameter(question.text, question.value);
+    case BehaviorQuestion::Kind::describe:
+      break;
+  }
+  return {};
+}
+
+std::vector<BehaviorReport> ScriptHost::reports() const {
+  std::vector<BehaviorReport> all;
+  for (const PlayList::Entry& entry : list_.entries()) {
+    const Behavior& behavior = *entry.behavior;
+    all.push_back({.name = behavior.name(),
+                   .outcome = behavior.outcome(),
+                   .error = behavior.failed() ? behavior.error().text() : "",
+                   .result = behavior.result(),
+                   .active = behavior.active(),
+                   .lane = entry.lane,
+                   .over = entry.over,
+                   .chart = chart_sign(behavior.chart()),
+                   .parameters = behavior.parameters()});
+    if (!entry.over) all.back().events = behavior.events();
+  }
+  return all;
+}
+
+BehaviorReply ScriptHost::set_parameter(const std::string& name, double value) {
+  std::vector<std::string> names = catalog_.parameters.names();
+  for (const PlayList::Entry& entry : list_.entries()) {
+    for (const ScriptParameter& own : entry.behavior->parameters()) {
+      names.push_back(entry.behavior->name() + "." + own.name);
+      if (names.back() != name) continue;
+      if (!entry.behavior->set_parameter(own.name, value))
+        throw InputError({.message = outside_range(name, value, own.min, own.max, own.unit)});
+      return {.before = own.value, .chunk = own.chunk};
+    }
+  }
+  throw InputError({.message = unknown_name("parameter", name, names)});
 }
 
 std::vector<BehaviorReasons> ScriptHost::why(const std::string& name, const Snapshot& snapshot) const {

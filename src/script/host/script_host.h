@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "behavior_tables.h"
 #include "config/scenario/play_item.h"
 #include "engine/behavior_host.h"
 #include "engine/behavior_log.h"
@@ -22,7 +23,6 @@
 #include "pause.h"
 #include "play_list.h"
 #include "safe_posture.h"
-#include "script/behavior/behavior_why.h"
 #include "script/bindings/signal_expressions.h"
 
 namespace kadans {
@@ -60,7 +60,9 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   // motions, too.
   void note(const Snapshot& snapshot, const CommandSender& commands) noexcept { pause_.note(snapshot, commands); }
 
-  // Behavior thread, between ticks: of the playing behavior with this name, or of all that play. Throws InputError.
+  // Behavior thread, between ticks: reports, reasons and changes of parameters (charts are described by
+  // remote/instance). Throws InputError.
+  BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot);
   std::vector<BehaviorReasons> why(const std::string& name, const Snapshot& snapshot) const;
 
   // Behavior thread, between ticks: writes the state of everything that plays as bytes. Returns "", or why it is
@@ -112,6 +114,9 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   // Those of the list and of events.
   std::vector<const Behavior*> loaded() const;
   void check_event(const PlayOrder& order);
+
+  std::vector<BehaviorReport> reports() const;
+  BehaviorReply set_parameter(const std::string& name, double value);
 
   std::vector<PlayList::Entry> load_kept(std::vector<InputProblem>& problems);
   void go_on(const Snapshot& snapshot, CommandSender& commands) noexcept;

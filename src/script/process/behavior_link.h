@@ -36,7 +36,8 @@ struct KeptState {
 std::uint64_t hash_of_kept(const std::byte* bytes, std::size_t size) noexcept;
 
 struct BehaviorLink {
-  static constexpr std::size_t behaviors_max = 32, name_bytes = 64, order_bytes = 8192;
+  static constexpr std::size_t behaviors_max = 32, name_bytes = 64, order_bytes = 8192, question_bytes = 4096;
+  static constexpr std::size_t reply_bytes = std::size_t{512} << 10U;  // only pages that are written take memory
   using Name = std::array<char, name_bytes>;
   using Numbers = std::array<std::uint32_t, 5>;
   using PlayNumbers = std::array<std::uint32_t, 7>;
@@ -73,7 +74,9 @@ struct BehaviorLink {
     std::uint32_t last_sequence = 0;  // the answer's transactions are numbered from the next number on
     std::uint32_t room = 0;           // for commands, headers included
     std::uint32_t order_size = 0;
-    std::array<std::byte, order_bytes> order{};  // one, or several events, one after the other
+    std::array<std::byte, order_bytes> order{};  // one, or several events, each behind its number
+    std::uint32_t question_size = 0;
+    std::array<std::byte, question_bytes> questions{};  // behavior_tables.h, each behind its number
     std::uint32_t parameter_count = 0;
     std::array<ParameterValue, parameters_max> parameters{};
     Snapshot snapshot;
@@ -85,6 +88,9 @@ struct BehaviorLink {
     OfRegions<std::uint32_t> regions{};           // the active state of each region
     std::uint32_t kept_changed = 0;
     KeptState kept;
+    // To each question, and to each order that was refused, behind its number.
+    std::uint32_t reply_size = 0;
+    std::array<std::byte, reply_bytes> replies{};
   };
 
   Setup setup;

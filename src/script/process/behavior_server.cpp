@@ -59,7 +59,7 @@ void SpokenLines::tell_emitted(const EmittedEvent& event) {
 }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,
-                               SpokenLines& lines, Catalog& catalog, ControlSets& sets)
+                               SpokenLines& lines, Catalog& catalog, ControlSets& sets, Describe describe)
     : link_(link),
       bell_(bell),
       host_(host),
@@ -67,6 +67,7 @@ BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& h
       lines_(lines),
       catalog_(catalog),
       sets_(sets),
+      describe_(describe),
       commands_(link.commands) {
   link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
@@ -93,12 +94,14 @@ bool BehaviorServer::answer() {
   lines_.tell_dropped(snapshot_.time_ns);  // the lines of the tick before have been taken since
   commands_.follow(link_.request.last_sequence, link_.request.room);
   take_parameters();
+  replies_.clear();
   take_orders();
   host_.tick(snapshot_, commands_);
   if (!host_.lost().empty()) {
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", "cannot go on: " + host_.lost());
     return false;
   }
+  answer_questions();
   tell_status();
   keep(snapshot_.time_ns);
   return true;
@@ -122,18 +125,45 @@ void BehaviorServer::take_orders() {
   if (size == 0 || size > BehaviorLink::order_bytes) return;
   ByteReader bytes(std::span(link_.request.order).first(size));
   while (bytes.left() > 0) {
+    const auto number = bytes.take<std::uint32_t>();
     const PlayOrder order = take_order(bytes);
     if (!bytes.ok()) return;
-    const bool event = order.kind == PlayOrder::Kind::emit;
     try {
       host_.order(order);
     } catch (const InputError& error) {
-      const std::string whose =
-          event ? "event " + in_quotes(order.event.name) + " from " + order.event.who + " was refused: " : "";
-      log_.message(snapshot_.time_ns, event ? BehaviorLog::Severity::warning : BehaviorLog::Severity::error,
-                   "supervisor", whose + error.what());
+      put(number, {.error = error.what()});
     }
   }
+}
+
+// After the tick, as in a thread: what is told is what the next tick begins with.
+void BehaviorServer::answer_questions() {
+  const std::uint32_t size = std::min<std::uint32_t>(link_.request.question_size, BehaviorLink::question_bytes);
+  ByteReader bytes(std::span(link_.request.questions).first(size));
+  while (bytes.left() > 0) {
+    const auto number = bytes.take<std::uint32_t>();
+    BehaviorQuestion question;
+    if (!take_question(bytes, question)) break;
+    try {
+      const bool charts = question.kind == BehaviorQuestion::Kind::describe;
+      put(number, charts ? BehaviorReply{.text = describe_(&host_)} : host_.reply(question, snapshot_));
+    } catch (const InputError& error) {
+      put(number, {.error = error.what()});
+    }
+  }
+  link_.answer.reply_size = static_cast<std::uint32_t>(replies_.size());
+  std::ranges::copy(replies_.bytes(), link_.answer.replies.begin());
+}
+
+void BehaviorServer::put(std::uint32_t number, const BehaviorReply& reply) {
+  constexpr std::size_t spare = 16384;  // for the refusals of all others
+  const std::size_t before = replies_.size();
+  replies_.put(number);
+  put_reply(reply, replies_);
+  if (replies_.size() + spare <= BehaviorLink::reply_bytes) return;
+  replies_.shrink(before);
+  replies_.put(number);
+  put_reply({.error = "the behaviors' process has too much to tell in one tick: ask again, or for less"}, replies_);
 }
 
 void BehaviorServer::tell_status() {

@@ -37,9 +37,11 @@ class SpokenLines final : public LineSink {
 
 class BehaviorServer {
  public:
+  using Describe = std::string (*)(const ScriptHost*);  // the charts for viewers
+
   // `log` and `catalog` are those of the host, `sets` those of the catalog; `lines` is a sink of the log.
   BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log, SpokenLines& lines,
-                 Catalog& catalog, ControlSets& sets);
+                 Catalog& catalog, ControlSets& sets, Describe describe);
 
   // Serves until the runtime closes the doorbell. Returns the exit code of the process: 0, or 1 when the host cannot
   // continue from the kept state.
@@ -49,6 +51,8 @@ class BehaviorServer {
   bool answer();
   void take_parameters() noexcept;
   void take_orders();
+  void answer_questions();
+  void put(std::uint32_t number, const BehaviorReply& reply);
   void tell_status();
   void keep(std::int64_t time_ns);
 
@@ -59,9 +63,10 @@ class BehaviorServer {
   SpokenLines& lines_;
   Catalog& catalog_;
   ControlSets& sets_;
+  Describe describe_;
   CommandSender commands_;
   Snapshot snapshot_;
-  ByteWriter kept_;
+  ByteWriter kept_, replies_;
   std::vector<std::byte> kept_last_;
   std::string unkept_;  // the last logged reason why the state cannot be kept
   std::uint32_t done_ = 0;

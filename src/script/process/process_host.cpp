@@ -29,10 +29,6 @@ T copy_of(const T& shared) noexcept {
   return copy;
 }
 
-bool is_event(const std::vector<std::byte>& order) noexcept {
-  return !order.empty() && order.front() == std::byte{static_cast<std::uint8_t>(PlayOrder::Kind::emit)};
-}
-
 // Whether a line of the process is a message, and neither a transition nor another event of the run.
 bool is_said(std::span<const std::byte> line) noexcept {
   return !line.empty() && std::to_integer<std::uint8_t>(line.front()) < transition_line;
@@ -178,6 +174,20 @@ bool ChildAnswer::take_kept(BehaviorLink& link, std::optional<std::vector<std::b
   return true;
 }
 
+bool ChildAnswer::take_replies(BehaviorLink& link, std::map<std::uint32_t, BehaviorReply>& replies) {
+  const std::uint32_t size = once(link.answer.reply_size);
+  if (size > BehaviorLink::reply_bytes) return false;
+  bytes_.resize(size);
+  std::memcpy(bytes_.data(), link.answer.replies.data(), size);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  ByteReader bytes(bytes_);
+  while (bytes.left() > 0) {
+    const auto number = bytes.take<std::uint32_t>();
+    if (!take_reply(bytes, replies[number])) return false;
+  }
+  return true;
+}
+
 void ChildAnswer::take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept {
   const auto store = [](std::atomic<std::uint32_t>& to, std::uint32_t& from) {
     to.store(once(from), std::memory_order_relaxed);
@@ -265,13 +275,19 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
     BehaviorStatus& status = behaviors_.emplace_back();
     status.region_paths = ChildAnswer::regions(child_->link, i);
     (void)status.declare_numbered(catalog.signals, names_[i]);
+    reported_.push_back({.name = names_[i]});
   }
   play_.phase.store(behaviors_.empty() ? 0 : 1, std::memory_order_relaxed);
   phase_ = Phase::playing;
 }
 
-void ProcessHost::order(const PlayOrder& order) {
+bool ProcessHost::is_event(const Sent& order) noexcept {
+  return order.bytes[sizeof order.number] == std::byte{static_cast<std::uint8_t>(PlayOrder::Kind::emit)};
+}
+
+std::uint32_t ProcessHost::send(const PlayOrder& order) {
   ByteWriter bytes;
+  bytes.put(sent_ + 1);
   put_order(order, bytes);
   if (bytes.size() > BehaviorLink::order_bytes) throw InputError({.message = "the order is too long"});
   if (phase_ == Phase::down) throw InputError({.message = "the behaviors' process is down"});
@@ -280,8 +296,57 @@ void ProcessHost::order(const PlayOrder& order) {
     if (std::ranges::count_if(orders_, is_event) >= static_cast<std::ptrdiff_t>(EventQueue::sent_max))
       throw InputError({.message = std::to_string(EventQueue::sent_max) + " events wait for the next tick already"});
   }
-  orders_.emplace_back(bytes.bytes().begin(), bytes.bytes().end());
+  orders_.push_back({++sent_, {bytes.bytes().begin(), bytes.bytes().end()}});
   stopping_ = order.kind == PlayOrder::Kind::stop;
+  return sent_;
+}
+
+std::uint32_t ProcessHost::ask(const PlayOrder& order) {
+  const std::uint32_t number = send(order);
+  asked_for_[number];
+  return number;
+}
+
+std::uint32_t ProcessHost::ask(const BehaviorQuestion& question) {
+  const bool report = question.kind == BehaviorQuestion::Kind::report;
+  if (phase_ == Phase::down && !report) throw InputError({.message = "the behaviors' process is down"});
+  ByteWriter bytes;
+  bytes.put(sent_ + 1);
+  put_question(question, bytes);
+  if (bytes.size() > BehaviorLink::question_bytes) throw InputError({.message = "the question is too long"});
+  asked_for_[++sent_];
+  questions_.push_back({sent_, {bytes.bytes().begin(), bytes.bytes().end()}, report});
+  if (phase_ == Phase::down) fail_questions(questions_.size(), "");
+  return sent_;
+}
+
+std::optional<BehaviorReply> ProcessHost::reply(std::uint32_t number) {
+  const auto found = asked_for_.find(number);
+  if (found == asked_for_.end() || !found->second) return std::nullopt;
+  std::optional<BehaviorReply> reply = std::move(found->second);
+  asked_for_.erase(found);
+  return reply;
+}
+
+BehaviorReply ProcessHost::last_report() const {
+  BehaviorReply report{.paused = paused(), .behaviors = reported_};
+  for (BehaviorReport& behavior : report.behaviors) {
+    if (behavior.over) continue;
+    behavior.error = down() ? "its process stays down" : "its process does not answer";
+    behavior.over = down();
+    behavior.active.clear();
+    behavior.events.clear();
+  }
+  return report;
+}
+
+// The first ones.
+void ProcessHost::fail_questions(std::size_t count, const std::string& why) {
+  for (; count > 0; --count, questions_.pop_front()) {
+    const auto asked = asked_for_.find(questions_.front().number);
+    if (asked == asked_for_.end()) continue;
+    asked->second = questions_.front().report ? last_report() : BehaviorReply{.error = why};
+  }
 }
 
 void ProcessHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -323,14 +388,26 @@ void ProcessHost::look_if_ready() noexcept {
 void ProcessHost::put_orders(BehaviorLink::Request& request) noexcept {
   std::size_t size = 0;
   asked_orders_ = 0;
-  for (const std::vector<std::byte>& order : orders_) {
+  for (const Sent& order : orders_) {
     const bool next = asked_orders_ == 0 || (is_event(order) && is_event(orders_.front()));
-    if (!next || size + order.size() > BehaviorLink::order_bytes) break;
-    std::ranges::copy(order, request.order.begin() + static_cast<std::ptrdiff_t>(size));
-    size += order.size();
+    if (!next || size + order.bytes.size() > BehaviorLink::order_bytes) break;
+    std::ranges::copy(order.bytes, request.order.begin() + static_cast<std::ptrdiff_t>(size));
+    size += order.bytes.size();
     ++asked_orders_;
   }
   request.order_size = static_cast<std::uint32_t>(size);
+}
+
+void ProcessHost::put_questions(BehaviorLink::Request& request) noexcept {
+  std::size_t size = 0;
+  asked_questions_ = 0;
+  for (const Sent& question : questions_) {
+    if (size + question.bytes.size() > BehaviorLink::question_bytes) break;
+    std::ranges::copy(question.bytes, request.questions.begin() + static_cast<std::ptrdiff_t>(size));
+    size += question.bytes.size();
+    ++asked_questions_;
+  }
+  request.question_size = static_cast<std::uint32_t>(size);
 }
 
 // The process reads the robot's files; what was changed since it has to be told.
@@ -349,6 +426,7 @@ void ProcessHost::ask(const Snapshot& snapshot, const CommandSender& commands) n
   request.last_sequence = asked_sequence_ = commands.last_sequence();
   request.room = static_cast<std::uint32_t>(std::min(commands.room(), CommandQueue::capacity()));
   put_orders(request);
+  put_questions(request);
   put_parameters(request);
   request.snapshot = snapshot;
   asked_for_ns_ = snapshot.time_ns;
@@ -382,8 +460,7 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
   // nobody wants behaviors to stop; its motions go by the transaction that has their number.
   if (commands.last_sequence() == asked_sequence_ || !stopping_) answer_.send_on(commands, asked_for_ns_);
   ChildAnswer::take_status(link, play_, behaviors_);
-  orders_.erase(orders_.begin(), orders_.begin() + static_cast<std::ptrdiff_t>(asked_orders_));
-  asked_orders_ = 0;
+  if (!take_replies()) return false;
   order_deaths_ = 0;
   policy_.answered();
   if (died_ns_ < 0) return true;
@@ -392,6 +469,23 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
   died_ns_ = -1;
   safe_->forget();
   say(Severity::info, "the behaviors' process goes on as " + std::to_string(child_->process.pid()));
+  return true;
+}
+
+// What was in the request is done: an order without a reply was carried out.
+bool ProcessHost::take_replies() {
+  std::map<std::uint32_t, BehaviorReply> replies;
+  if (!answer_.take_replies(child_->link, replies)) return false;
+  const auto settle = [&](std::deque<Sent>& sent, std::size_t& asked) {
+    for (; asked > 0; --asked, sent.pop_front()) {
+      BehaviorReply& reply = replies[sent.front().number];
+      if (sent.front().report) reported_ = reply.behaviors;
+      if (const auto waits = asked_for_.find(sent.front().number); waits != asked_for_.end())
+        waits->second = std::move(reply);
+    }
+  };
+  settle(orders_, asked_orders_);
+  settle(questions_, asked_questions_);
   return true;
 }
 
@@ -409,6 +503,8 @@ void ProcessHost::bury(const std::string& why, bool alive) noexcept {
     if (play_.phase.load(std::memory_order_relaxed) != 0) safe_->failed(now_ns_, ~ObjectMask{0});
   }
   give_up_order();
+  fail_questions(asked_questions_, "the behaviors' process died of it, or at the same time: ask again");
+  asked_questions_ = 0;
   const std::optional<std::int64_t> due_ns = policy_.died(now_ns_);
   if (!kept_) return stay_down(how + ", and its state could not be kept");
   if (!due_ns) return stay_down(how + ", " + std::to_string(policy_.in_a_row()) + " times in a row");
@@ -421,16 +517,25 @@ void ProcessHost::bury(const std::string& why, bool alive) noexcept {
 void ProcessHost::give_up_order() noexcept {
   constexpr std::uint32_t deaths_max = 3;
   if (!asked_ || asked_orders_ == 0 || ++order_deaths_ < deaths_max) return;
-  orders_.erase(orders_.begin(), orders_.begin() + static_cast<std::ptrdiff_t>(asked_orders_));
+  drop_orders(asked_orders_, "the behaviors' process died of it three times");
   order_deaths_ = 0;
   say(Severity::error, "an order was dropped: the behaviors' process died of it three times");
+}
+
+void ProcessHost::drop_orders(std::size_t count, const std::string& why) {
+  for (; count > 0; --count, orders_.pop_front()) {
+    if (const auto asked = asked_for_.find(orders_.front().number); asked != asked_for_.end())
+      asked->second = BehaviorReply{.error = why};
+  }
+  asked_orders_ = 0;
 }
 
 void ProcessHost::stay_down(const std::string& why) noexcept {
   child_.reset();
   phase_ = Phase::down;
-  orders_.clear();
-  asked_orders_ = 0;
+  drop_orders(orders_.size(), "the behaviors' process stays down: " + why);
+  fail_questions(questions_.size(), "the behaviors' process stays down: " + why);
+  asked_questions_ = 0;
   say(Severity::error, "the behaviors' process stays down: " + why);
 }
 

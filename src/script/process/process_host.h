@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,6 +36,7 @@
 #include "realtime/machine/child_process.h"
 #include "script/behavior/behavior_status.h"
 #include "script/chart/event_queue.h"
+#include "script/host/behavior_tables.h"
 #include "script/host/play_list.h"
 #include "script/host/safe_posture.h"
 
@@ -66,6 +68,8 @@ class ChildAnswer {
   [[nodiscard]] bool tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t time_ns, bool counts = true);
   // Replaces `kept` when it changed; nullopt: the state cannot be kept.
   [[nodiscard]] bool take_kept(BehaviorLink& link, std::optional<std::vector<std::byte>>& kept);
+  // The replies by their numbers; there may be some that nobody asked for.
+  [[nodiscard]] bool take_replies(BehaviorLink& link, std::map<std::uint32_t, BehaviorReply>& replies);
   static void take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept;
 
  private:
@@ -131,9 +135,18 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   void attach(Catalog& catalog, const SafePosture::Settings& safe);
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
-  // Mistakes in the order are reported later in the log. Throws InputError only when the order is too long, when the
-  // process is down, and for an event that comes in a pause or finds too many waiting.
-  void order(const PlayOrder& order) override;
+  // What is wrong with the order comes with its reply, which nobody reads here. Throws InputError only when the order
+  // is too long, when the process is down, and for an event that comes in a pause or finds too many waiting.
+  void order(const PlayOrder& order) override { (void)send(order); }
+  // The same, and a question. Returns the number by which reply() knows it. An order is carried out by the next process
+  // when this one dies; a question is then answered with an error, but a report tells what was known last.
+  std::uint32_t ask(const PlayOrder& order);
+  std::uint32_t ask(const BehaviorQuestion& question);
+  // Once: an order has been carried out, or a question answered. nullopt: not yet.
+  std::optional<BehaviorReply> reply(std::uint32_t number);
+  void forget(std::uint32_t number) { asked_for_.erase(number); }
+  // As a report told them last, each with what is wrong with the process.
+  BehaviorReply last_report() const;
 
   // The behaviors that the process was started with.
   const std::vector<std::string>& names() const noexcept { return names_; }
@@ -148,18 +161,29 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
 
  private:
   enum class Phase : std::uint8_t { waiting, starting, playing, down };
+  struct Sent {
+    std::uint32_t number = 0;
+    std::vector<std::byte> bytes;
+    bool report = false;  // of a question
+  };
+  static bool is_event(const Sent& order) noexcept;
   struct Incarnation;  // a process and the memory shared with it
 
   void start();
   void start_when_due() noexcept;
   void look_if_ready() noexcept;
+  std::uint32_t send(const PlayOrder& order);
   void put_orders(BehaviorLink::Request& request) noexcept;
+  void put_questions(BehaviorLink::Request& request) noexcept;
+  bool take_replies();
+  void fail_questions(std::size_t count, const std::string& why);
   void put_parameters(BehaviorLink::Request& request) noexcept;
   void ask(const Snapshot& snapshot, const CommandSender& commands) noexcept;
   void wait_for_answer(CommandSender& commands) noexcept;
   bool take_answer(CommandSender& commands) noexcept;
   void bury(const std::string& why, bool alive) noexcept;
   void give_up_order() noexcept;
+  void drop_orders(std::size_t count, const std::string& why);
   void stay_down(const std::string& why) noexcept;
   void say(BehaviorLog::Severity severity, const std::string& text) noexcept;
 
@@ -175,15 +199,18 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   PlayStatus play_;
   std::vector<std::string> names_;
   std::deque<BehaviorStatus> behaviors_;
-  std::deque<std::vector<std::byte>> orders_;
+  std::deque<Sent> orders_, questions_;
+  std::uint32_t sent_ = 0;
+  std::map<std::uint32_t, std::optional<BehaviorReply>> asked_for_;  // by those who will ask for the reply
+  std::vector<BehaviorReport> reported_;
   const Catalog* catalog_ = nullptr;
   struct Foreseen {  // a parameter of an object that foresees
     ParameterId id = 0;
     double sent = 0;  // NaN: this process has not got it
   };
   std::vector<Foreseen> foreseen_;
-  std::size_t asked_orders_ = 0;  // the first of them are in the request
-  bool stopping_ = false;         // the last order was to stop
+  std::size_t asked_orders_ = 0, asked_questions_ = 0;  // the first of them are in the request
+  bool stopping_ = false;                               // the last order was to stop
   WallClock clock_;
 
   std::int64_t now_ns_ = 0;         // on the engine's clock

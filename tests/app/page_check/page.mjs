@@ -2,6 +2,7 @@
 import { existsSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { WebSocket } from 'ws';
+import { check_forms } from './forms.mjs';
 import { check_between, check_files, check_keyboard, check_plots, check_tabs, check_theme } from './hands.mjs';
 import { check, chromium_options, folder, live_address, project, run, scenario, start, until } from './program.mjs';
 
@@ -230,5 +231,6 @@ run(async () => {
   await check_record(page, record);
   await check_files(page, record);
   await check_gaze(page);
+  await check_forms(page);
   check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
 });
