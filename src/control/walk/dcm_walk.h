@@ -16,7 +16,8 @@
 //
 // Joints      of both legs *_hip_yaw, *_hip_roll, *_hip_pitch, *_knee, *_ankle_pitch.
 // Options     left_foot, right_foot: the links that stand; required. The foot sensors are in this order too.
-// Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand; it reads 1 until it stands.
+// Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand; it reads 1 until it
+// stands.
 //             x_m, y_m, heading_rad: where the base is by joints and IMU; setting one sets it there.
 // Parameters  Config and WalkPlan::Config.
 // Signals     State of the plan.
