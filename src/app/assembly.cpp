@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/run/read_only_plant.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
 #include "scenario/disturb/planned_faults.h"
@@ -164,6 +165,12 @@ void Assembly::complete() {
   Catalog& catalog = control_system_->catalog;
   try {
     make_plant();
+    if (scenario_.read_only) {
+      read_only_ = std::make_unique<ReadOnlyPlant>(plant());
+      // Nobody enables the drives, and torque that is asked for moves nothing.
+      robot_.config.safety.drives.enable_s = std::numeric_limits<double>::infinity();
+      robot_.config.safety.sensors.stuck_ticks = std::numeric_limits<std::uint32_t>::max();
+    }
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
     robot_.config.safety.drive_words = plant_type().drive_words();
     estimator_ =
@@ -309,6 +316,7 @@ World* Assembly::world() noexcept { return faulty_ ? faulty_.get() : shared_; }
 WorldRobot& Assembly::world_robot() noexcept { return faulty_ ? *faulty_ : shared_->robot(number_); }
 
 Plant& Assembly::plant() noexcept {
+  if (read_only_) return *read_only_;
   if (elsewhere_) return *elsewhere_;
   return linked_ ? static_cast<Plant&>(*linked_) : world_robot();
 }

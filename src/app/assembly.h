@@ -135,6 +135,7 @@ class Assembly {
   std::vector<std::unique_ptr<Assembly>> others_;
   std::unique_ptr<LinkedPlant> linked_;  // when the world is on another thread
   std::unique_ptr<Plant> elsewhere_;     // when there is no world
+  std::unique_ptr<Plant> read_only_;     // when the drives are asked for nothing; stands before the plant
   std::unique_ptr<LastWord> last_word_;
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;

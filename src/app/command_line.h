@@ -31,6 +31,7 @@ struct CommandLine {
   RunOptions run;
   RunOptions behavior_process;
   PlantOptions plant;
+  JogOptions jog;
   DynamixelOptions dynamixel;
   JitterOptions jitter;
   CtlOptions ctl;

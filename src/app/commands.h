@@ -78,10 +78,11 @@ int run_check(const CheckOptions& options);
 struct RunOptions {
   std::string robot;
   std::string plant = "bullet";
-  std::string peer;      // address of the drives; "": the robot's own
-  std::string play;      // a list; "": nothing plays, the robot holds
-  std::string joystick;  // a device or a recording; "": the robot's own
-  std::string record;    // "" = none
+  std::string peer;        // address of the drives; "": the robot's own
+  bool read_only = false;  // nothing is asked of the drives
+  std::string play;        // a list; "": nothing plays, the robot holds
+  std::string joystick;    // a device or a recording; "": the robot's own
+  std::string record;      // "" = none
   RecordOptions recording;
   std::optional<double> duration_s;
   std::optional<std::uint64_t> seed;
@@ -135,6 +136,16 @@ struct JitterOptions {
 };
 void add_jitter(CLI::App& app, JitterOptions& options);
 int run_jitter(const JitterOptions& options);
+
+struct JogOptions {
+  std::string robot, joint;
+  std::string plant = "bullet";
+  std::string peer;          // address of the drives; "": the robot's own
+  double share = 0.1;        // of the joint's greatest torque
+  double speed_rad_s = 0.5;  // at which none is left
+};
+void add_jog(CLI::App& app, JogOptions& options);
+int run_jog(const JogOptions& options);
 
 // The bench of servos: each of its commands is one of `kadans dynamixel`.
 struct DynamixelOptions {

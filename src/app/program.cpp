@@ -38,6 +38,7 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("TYPE");
   run->add_option("--peer", options.peer, "Address of the drives, or of `kadans plant` (default: the configuration's)")
       ->type_name("HOST:PORT");
+  run->add_flag("--read-only", options.read_only, "Read every sensor, and ask nothing of the drives: none is enabled");
   run->add_option("--play", options.play,
                   "Behaviors to play: \"squat, wave\" (default: none, the robot holds its position)")
       ->type_name("LIST");
@@ -162,6 +163,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("run")) return run_live(line.run);
   if (app.got_subcommand("behavior-process")) return run_behavior_process(line.behavior_process);
   if (app.got_subcommand("plant")) return run_plant(line.plant);
+  if (app.got_subcommand("jog")) return run_jog(line.jog);
   if (app.got_subcommand("dynamixel")) return run_dynamixel(app, line.dynamixel);
   if (app.got_subcommand("jitter")) return run_jitter(line.jitter);
   if (app.got_subcommand("ctl")) {

@@ -1,13 +1,18 @@
 // JIWIY and TULip on HostMot2 boards: their whole control systems, the driver, the datagrams and the boards, on virtual
 // time.
+#include <cstdlib>
 #include <fstream>
 
 #include <doctest/doctest.h>
 
 #include "app/assembly.h"
+#include "plant/dynamixel_world.h"
 #include "plant/hostmot2_world.h"
 #include "plant/json_plant_fields.h"
+#include "plant/udp_world.h"
 #include "program.h"
+
+namespace hostmot2_test {
 
 using namespace kadans;
 using namespace kadans::program;
@@ -17,6 +22,8 @@ namespace {
 const std::string source = KADANS_SOURCE_DIR "/";
 std::string robot_on_boards;  // the configuration of the robot that stands there
 test::HostMot2World* newest_machine = nullptr;
+test::DynamixelWorld* newest_servos = nullptr;
+test::UdpWorld* newest_udp = nullptr;
 
 // A model for scenarios: Bullet's, driven through the boards that the robot's configuration names.
 class BoardsType final : public PlantType {
@@ -40,6 +47,54 @@ class BoardsType final : public PlantType {
     return made;
   }
 };
+// The same robot on servos as strong as its motors, a port for each leg.
+class LegServosType final : public PlantType {
+ public:
+  std::string_view name() const noexcept override { return "leg_servos"; }
+  std::string_view doc() const noexcept override { return "of the test"; }
+  bool is_model() const noexcept override { return true; }
+  std::unique_ptr<World> make_world(const WorldSite& world) const override {
+    dynamixel::DynamixelSettings settings;
+    settings.ports = {{.name = "l", .device = "left", .baud = 4'000'000},
+                      {.name = "r", .device = "right", .baud = 4'000'000}};
+    settings.usb_latency_s = 0.0005;
+    std::uint32_t id = 0;
+    PlantSite site{.file = robot_on_boards, .layout = {.robot = "tulip"}};
+    for (const auto& joint : world.model.joints) {
+      site.layout.joints.push_back(joint.name);
+      if (joint.passive()) continue;
+      settings.servos.push_back({.drive = joint.name,
+                                 .port = joint.name.substr(0, 1),
+                                 .id = ++id,
+                                 .model = dynamixel::find_model("XM430-W350"),
+                                 .Nm_per_A = 12});
+    }
+    const PlantTypes types = plant_types();
+    auto made = std::make_unique<test::DynamixelWorld>(plant_type(types, "bullet").make_world(world), settings, site);
+    newest_servos = made.get();
+    return made;
+  }
+};
+
+class UdpWorldType final : public PlantType {
+ public:
+  std::string_view name() const noexcept override { return "udp_in_step"; }
+  std::string_view doc() const noexcept override { return "of the test"; }
+  bool is_model() const noexcept override { return true; }
+  std::unique_ptr<World> make_world(const WorldSite& world) const override {
+    PlantLayout layout{.robot = "tulip"};
+    for (const auto& joint : world.model.joints) layout.joints.push_back(joint.name);
+    for (const FootSettings& foot : world.settings.feet) layout.feet.push_back(foot.link);
+    const PlantTypes types = plant_types();
+    auto made = std::make_unique<test::UdpWorld>(plant_type(types, "bullet").make_world(world), layout);
+    newest_udp = made.get();
+    return made;
+  }
+};
+std::unique_ptr<PlantType> make_leg_servos_type() { return std::make_unique<LegServosType>(); }
+KADANS_REGISTER_PLANT_TYPE(make_leg_servos_type);
+std::unique_ptr<PlantType> make_udp_world_type() { return std::make_unique<UdpWorldType>(); }
+KADANS_REGISTER_PLANT_TYPE(make_udp_world_type);
 std::unique_ptr<PlantType> make_boards_type() { return std::make_unique<BoardsType>(); }
 KADANS_REGISTER_PLANT_TYPE(make_boards_type);
 
@@ -48,7 +103,23 @@ struct Through {
   std::string why;
   std::uint64_t hash = 0;
   std::vector<PlantCount> counts;
+  double delay_ticks = 0;  // mean age of a joint's reading
+  std::vector<CheckResult> checks;
 };
+
+// Over the 20 ticks behind the end of a run.
+double delay_ticks_of(OneRobotWorld& world) {
+  SensorFrame sensors;
+  double sum = 0;
+  for (int i = 0; i < 20; ++i) {
+    world.read(sensors);
+    const std::int64_t time_ns = sensors.joints[0].time_ns != 0 ? sensors.joints[0].time_ns : sensors.time_ns;
+    sum += 1e3 * seconds_between(time_ns, sensors.time_ns);
+    world.write({});
+    world.step(1'000'000);
+  }
+  return sum / 20;
+}
 
 Through run_through(const char* plant, const std::string& file, const char* scenario_name, std::uint64_t seed) {
   robot_on_boards = source + file;
@@ -66,7 +137,14 @@ Through run_through(const char* plant, const std::string& file, const char* scen
   for (const RunFault& one : result.faults) is.why += std::string(name(one.code)) + "; ";
   is.hash = result.state_hash;
   is.why += result.error;
-  if (std::string_view(plant) == "boards") is.counts = newest_machine->driver().link_counts();
+  const std::string_view through = plant;
+  if (through == "boards") is.counts = newest_machine->driver().link_counts();
+  if (through == "leg_servos") is.counts = newest_servos->driver().link_counts();
+  if (through == "udp_in_step") is.counts = newest_udp->driver().link_counts();
+  if (through == "boards") is.delay_ticks = delay_ticks_of(*newest_machine);
+  if (through == "leg_servos") is.delay_ticks = delay_ticks_of(*newest_servos);
+  if (through == "udp_in_step") is.delay_ticks = newest_udp->driver().round_trip_ticks();
+  is.checks = result.checks;
   return is;
 }
 
@@ -108,3 +186,82 @@ TEST_CASE("TULip squats, gets up and catches pushes through two HostMot2 boards,
   }
   CHECK(run_through("boards", file, "squat", 1).hash == run_through("boards", file, "squat", 1).hash);
 }
+
+TEST_CASE("The same squat goes through every bus, and the table says how well") {
+  const auto worst = [](const Through& run, std::string_view name) {
+    for (const CheckResult& check : run.checks) {
+      if (check.name.starts_with(name)) return check.value;
+    }
+    return 1e9;
+  };
+  std::string table = "through, height error mm, tilt rad, delay ticks, lost\n";
+  for (const std::string plant : {"bullet", "udp_in_step", "boards", "leg_servos"}) {
+    const std::string file = plant == "boards" ? "config/tulip/anything_io.json" : "config/tulip/robot.json";
+    const Through run = run_through(plant.c_str(), file, "squat", 1);
+    CAPTURE(plant);
+    CAPTURE(run.why);
+    // Servos on a serial line are read and driven anew every other tick: it squats, and sways.
+    if (plant == "leg_servos") {
+      for (const char* what : {"stays up", "crouches", "stands at the end"}) CHECK_FALSE(has(run.why, what));
+    } else {
+      CHECK(run.passed);
+    }
+    std::array<char, 200> row{};
+    std::snprintf(row.data(), row.size(), "%s, %.3f, %.4f, %.2f, %llu\n", plant.c_str(),
+                  1e3 * worst(run, "height follows"), worst(run, "torso upright"), run.delay_ticks,
+                  static_cast<unsigned long long>(run.counts.empty() ? 0 : count_of(run, "lost")));
+    table += row.data();
+  }
+  MESSAGE(table);
+}
+
+TEST_CASE("mesaflash reads the emulated board as it reads a real one") {
+  const auto folder = fresh_folder("mesaflash");
+  if (std::system("command -v mesaflash > /dev/null") != 0) {
+    MESSAGE("mesaflash is not installed");
+    return;
+  }
+  Running plant(folder, "plant " + source + "config/jiwiy/anything_io.json --as hm2-eth --listen 127.0.7.96 --soft");
+  REQUIRE(plant.says("serves 'jiwiy'"));
+  const auto read_out = folder / "read.txt";
+  const std::string command = "timeout 60 mesaflash --device 7I96 --addr 127.0.7.96 --readhmid > " + read_out.string();
+  CHECK(std::system(command.c_str()) == 0);
+  const std::string out = read(read_out);
+  for (const char* part : {"BoardName : MESA7I96", "There are 1 of WatchDog", "There are 3 of IOPort",
+                           "There are 2 of QCount", "There are 2 of PWM", "Clock High frequency: 200.0000 MHz"})
+    CHECK_MESSAGE(has(out, part), out);
+  CHECK(plant.end(SIGTERM) == 0);
+}
+
+TEST_CASE("After kill -9 of a run its boards have released their outputs by themselves, and its servos have stopped") {
+  const auto folder = fresh_folder("killed_bus");
+  const auto killed = [&](const std::string& robot, const std::string& as, const std::string& where) {
+    Running plant(folder, "plant " + source + robot + " --as " + as + " --listen " + where + " --soft --once");
+    REQUIRE(plant.says("serves 'jiwiy'"));
+    Running driver(folder,
+                   "run " + source + robot + " --plant " + as + " --peer " + where + " --soft --no-ctl --play sine -v");
+    REQUIRE(driver.says("ahead -> follow"));
+    CHECK(driver.end(SIGKILL) == 128 + SIGKILL);
+    CHECK(plant.says("the watchdog released the joints 1 times"));
+    CHECK(plant.end() == 0);
+  };
+  killed("config/jiwiy/anything_io.json", "hm2-eth", "127.0.7.98");
+  killed("config/jiwiy/servos.json", "dynamixel", (folder / "bus").string());
+}
+
+TEST_CASE("A robot on boards that are not there is refused, with what to do") {
+  const auto folder = project_copy("boards");
+  const std::string command = "run config/jiwiy/anything_io.json --plant hm2-eth --soft --no-ctl ";
+  Outcome outcome = run(command + "--peer 127.0.7.97", folder);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "config/jiwiy/anything_io.json:"));
+  CHECK(has(outcome.err, "board 'io' at 127.0.7.97 does not answer: is it powered, is its cable in"));
+  outcome = run(command + "--peer nowhere", folder);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "--peer: 'nowhere' must be an address such as 192.168.1.121"));
+  outcome = run("run config/tulip/robot.json --plant hm2-eth --soft --no-ctl", folder);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "says no plant.hm2-eth.drives"));
+}
+
+}  // namespace hostmot2_test

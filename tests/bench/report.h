@@ -59,6 +59,7 @@ void keep(T& value) {
   asm volatile("" : : "r"(&value) : "memory");
 }
 
+void bench_bus(Report& report);
 void bench_body(Report& report);
 void bench_control(Report& report);
 void bench_exchange(Report& report);

@@ -76,7 +76,9 @@ class DynamixelWorld final : public OneRobotWorld {
     held_.time_ns = time_ns_;
     // What no servo measures comes from the model.
     inner().read(sensors);
-    for (std::size_t i = 0; i < held_.joint_count; ++i) sensors.joints[i] = held_.joints[i];
+    for (std::size_t i = 0; i < held_.joint_count; ++i) {
+      if (held_.joints[i].sequence > 0) sensors.joints[i] = held_.joints[i];
+    }
     sensors.supply_V = held_.supply_V;
     sensors.time_ns = time_ns_;
   }

@@ -1,95 +1,9 @@
 // The driver and the emulated boards, on virtual time, with an ideal model behind them.
-#include "plant/hostmot2/hostmot2_plant.h"
-
-#include <cmath>
-
-#include <doctest/doctest.h>
-
-#include "hostmot2_world.h"
-#include "kadans/plant/ideal_world.h"
-#include "kadans/signal/input_error.h"
-#include "kadans/testing/allocation_count.h"
-#include "two_joints.h"
+#include "hostmot2_bench.h"
 
 namespace kadans::hostmot2 {
-namespace {
 
-constexpr std::int64_t ms = 1'000'000;
-
-PinSettings high(std::uint32_t number) { return {.number = number}; }
-PinSettings low(std::uint32_t number) { return {.number = number, .low = true}; }
-
-HostMot2Settings two_axes() {
-  HostMot2Settings settings;
-  settings.boards = {{.name = "io", .address = "192.168.1.121", .card = "7I96"}};
-  DriveWiring hip{.drive = "hip", .board = "io", .encoder = 0, .pwm = 0, .counts_per_rad = 4000};
-  hip.amplifier = {.full = 10, .current_max_A = 5, .Nm_per_A = 0.05, .gear = 10, .efficiency = 0.8};  // 0.4 Nm/A
-  hip.position_gain_Nm_per_rad = 40;
-  hip.velocity_gain_Nms_per_rad = 8;
-  hip.enable = high(20);
-  hip.fault = low(21);
-  DriveWiring knee = hip;
-  knee.drive = "knee";
-  knee.encoder = knee.pwm.emplace(1);
-  knee.reversed = knee.pwm_reversed = true;
-  knee.enable = low(22);
-  knee.fault.reset();
-  settings.drives = {hip, knee};
-  return settings;
-}
-
-PlantSite site() { return {.file = "robot.json", .layout = {.robot = "walker", .joints = {"hip", "knee"}}}; }
-
-struct Bench {
-  // `there`: what the boards are, where that is not what the driver's configuration says.
-  explicit Bench(const HostMot2Settings& settings = two_axes(), const HostMot2Settings* there = nullptr)
-      : world(std::make_unique<IdealWorld>(test::two_joints(), PlantSettings{.position_rad = {0.1, -0.2}}), settings,
-              there == nullptr ? settings : *there, site()) {}
-
-  void run(const JointActuation& first, const JointActuation& second, int milliseconds) {
-    actuation.joint_count = 2;
-    actuation.joints[0] = first;
-    actuation.joints[1] = second;
-    for (int i = 0; i < milliseconds; ++i) {
-      world.read(sensors);
-      world.write(actuation);
-      world.step(ms);
-    }
-    world.read(sensors);
-  }
-  void order(std::size_t joint, DriveOrder what) {
-    actuation.drives[joint] = {what, static_cast<std::uint8_t>(actuation.drives[joint].number + 1)};
-  }
-  std::uint64_t count(std::string_view name) {
-    for (const PlantCount& one : world.driver().link_counts()) {
-      if (one.name == name) return one.value;
-    }
-    FAIL_CHECK(name);
-    return 0;
-  }
-  std::string why_not() {
-    try {
-      world.start();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
-  EmulatedBoard& board() { return world.machine().board(0); }
-
-  test::HostMot2World world;
-  ActuationFrame actuation;
-  SensorFrame sensors;
-};
-
-constexpr JointActuation off{};
-JointActuation effort(double Nm) { return {.effort_Nm = Nm, .mode = ActuationMode::effort}; }
-JointActuation position(double rad) { return {.position_rad = rad, .mode = ActuationMode::position}; }
-JointActuation velocity(double rad_s) { return {.velocity_rad_s = rad_s, .mode = ActuationMode::velocity}; }
-
-bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
-
-}  // namespace
+using namespace bench;
 
 TEST_CASE("Encoders are read in the joints' coordinates, one control period old, with that time") {
   Bench bench;
@@ -269,9 +183,33 @@ TEST_CASE("At the end the amplifiers are off at once") {
 TEST_CASE("A tick neither allocates nor takes more than one datagram each way") {
   Bench bench;
   bench.run(effort(0.1), position(0.1), 50);
-  // A board that answers each datagram as it answered the last one, with the number of the request.
   CHECK(bench.count("sent") == 51);  // with the one before the loop
   CHECK(bench.count("received") == 51);
+  CHECK(bench.world.cable(0).sent < 160);
+  CHECK(bench.world.cable(0).received < 80);
+}
+
+TEST_CASE("The same modules are driven through the registers of a card on PCI") {
+  HostMot2Settings settings = two_axes();
+  settings.boards = {{.name = "io", .resource = "hostmot2_resource", .card = "5I20"}};
+  for (DriveWiring& drive : settings.drives) drive.home = Home::power_on;
+  Bench bench(settings);
+  bench.run(position(0.3), position(-0.4), 3000);
+  CHECK(bench.sensors.joints[0].position_rad == doctest::Approx(0.3).epsilon(0.01));
+  CHECK(bench.sensors.joints[1].position_rad == doctest::Approx(-0.4).epsilon(0.01));
+  CHECK(bench.sensors.joints[0].drive == DriveState::enabled);
+  bench.world.silent = true;
+  bench.run(position(0.3), position(-0.4), 12);
+  CHECK(bench.board().bitten());
+  bench.world.silent = false;
+  bench.run(position(0.3), position(-0.4), 3);
+  CHECK(drive_code_words(bench.sensors.joints[0].code) == "its board's watchdog let go");
+  settings.boards[0].card = "4I65";
+  HostMot2Settings there = settings;
+  there.boards[0].card = "5I20";
+  Bench other(settings, &there);
+  CHECK(has(other.why_not(), "board 'io' at hostmot2_resource is a MESA5I20, the configuration says 4I65"));
+  std::remove("hostmot2_resource");
 }
 
 }  // namespace kadans::hostmot2

@@ -7,8 +7,10 @@
 
 #include "kadans/plant/world.h"
 #include "plant/hostmot2/emulator/emulated_machine.h"
+#include "plant/hostmot2/emulator/register_file.h"
 #include "plant/hostmot2/hostmot2_plant.h"
 #include "plant/hostmot2/lbp_link.h"
+#include "plant/hostmot2/mapped_link.h"
 
 namespace kadans::test {
 
@@ -36,6 +38,28 @@ class VirtualCable final : public hostmot2::DatagramPort {
   std::int64_t now_ = -1'000'000'000'000;
 };
 
+// A card on PCI answers at once; its register file does so here at each write outside of the tick's.
+class VirtualCard final : public hostmot2::MappedLink {
+ public:
+  VirtualCard(const std::string& path, hostmot2::RegisterFile& file) : MappedLink(path), file_(file) {}
+  bool write(hostmot2::RegisterWrite one) override {
+    const bool good = MappedLink::write(one);
+    answer();
+    return good;
+  }
+  void write_all(std::span<const hostmot2::RegisterWrite> writes) noexcept override {
+    MappedLink::write_all(writes);
+    answer();
+  }
+
+ private:
+  void answer() noexcept {
+    file_.take();
+    file_.show();
+  }
+  hostmot2::RegisterFile& file_;
+};
+
 class HostMot2World final : public OneRobotWorld {
  public:
   HostMot2World(std::unique_ptr<World> model, const hostmot2::HostMot2Settings& settings,
@@ -43,12 +67,18 @@ class HostMot2World final : public OneRobotWorld {
       : model_(std::move(model)), machine_(there, site, 1), wired_feet_(!settings.feet.empty()) {
     std::vector<std::unique_ptr<hostmot2::BoardLink>> links;
     for (std::size_t i = 0; i < settings.boards.size(); ++i) {
+      if (!settings.boards[i].resource.empty()) {  // a card on PCI
+        files_.push_back(std::make_unique<hostmot2::RegisterFile>(machine_.board(i), settings.boards[i].resource));
+        links.push_back(std::make_unique<VirtualCard>(settings.boards[i].resource, *files_.back()));
+        continue;
+      }
       auto cable = std::make_unique<VirtualCable>(machine_.wire(i));
       cables_.push_back(cable.get());
       links.push_back(std::make_unique<hostmot2::LbpLink>(std::move(cable), 50'000'000, 0));
     }
     plant_ = std::make_unique<hostmot2::HostMot2Plant>(settings, site, std::move(links));
     machine_.look(inner());
+    for (const auto& file : files_) file->show();
   }
 
   // Throws InputError, as at the start of a run.
@@ -75,11 +105,13 @@ class HostMot2World final : public OneRobotWorld {
   }
   void step(std::int64_t dt_ns) override {
     if (!started_) start();
+    for (const auto& file : files_) file->take();
     machine_.drive(inner());
     model_->step(dt_ns);
     machine_.pass(dt_ns);
     time_ns_ += dt_ns;
     machine_.look(inner());
+    for (const auto& file : files_) file->show();
   }
   const PlantTruth& truth() const noexcept override { return model_->robot(0).truth(); }
   void hash(StateHash& hash) const noexcept override { model_->hash(hash); }
@@ -99,6 +131,7 @@ class HostMot2World final : public OneRobotWorld {
   hostmot2::EmulatedMachine machine_;
   bool wired_feet_;
   std::vector<VirtualCable*> cables_;
+  std::vector<std::unique_ptr<hostmot2::RegisterFile>> files_;
   std::unique_ptr<hostmot2::HostMot2Plant> plant_;
   std::int64_t time_ns_ = 0;
   bool started_ = false;

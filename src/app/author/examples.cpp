@@ -83,7 +83,12 @@ constexpr Examples all_examples[] = {
      "  kadans run config/tulip/robot.json --soft --duration 10 --record walk.mcap\n"
      "  kadans run config/tulip/robot.json --play squat --live         in the browser\n"
      "  kadans run config/jiwiy/robot.json --play stick --joystick /dev/input/event5\n"
-     "  kadans run config/tulip/robot.json --plant udp --peer robot:7100\n"},
+     "  kadans run config/tulip/robot.json --plant udp --peer robot:7100\n"
+     "  kadans run config/jiwiy/anything_io.json --plant hm2-eth --read-only    what the sensors say, without "
+     "torque\n"},
+    {"jog",
+     "  kadans jog config/jiwiy/robot.json pan\n"
+     "  kadans jog config/jiwiy/anything_io.json pan --plant hm2-eth --share 0.05\n"},
     {"plant",
      "  kadans plant config/tulip/robot.json --listen :7100\n"
      "  kadans plant config/jiwiy/servos.json --as dynamixel --listen /tmp/bus\n"},

@@ -117,6 +117,7 @@ struct ScenarioConfig {
   std::string plant = "bullet";  // name of a plant type (plant_type.h); a file may name only a model
   TextPlace plant_place;         // in a file that names one
   std::string peer;  // not in the file: address of a plant that is no model; "": the one in the robot's configuration
+  bool read_only = false;  // not in the file: nothing is asked of the drives
   double duration_s = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> tags;

@@ -10,11 +10,11 @@ constexpr std::uint32_t strange_max = 5;  // readings in a row
 }  // namespace
 
 std::string_view drive_code_words(std::uint32_t code) noexcept {
-  if ((code & code_silent) != 0) return "its board does not answer";
   if ((code & code_forgot) != 0) return "its board lost its settings";
-  if ((code & code_watchdog) != 0) return "its board's watchdog released the outputs";
+  if ((code & code_watchdog) != 0) return "its board's watchdog let go";
+  if ((code & code_silent) != 0) return "its board does not answer";
   if ((code & code_amplifier) != 0) return "its amplifier reports a fault";
-  if ((code & code_strange) != 0) return "its encoder shows what no joint can do";
+  if ((code & code_strange) != 0) return "its encoder jumps";
   if ((code & code_no_zero) != 0) return "its zero was not found";
   return "";
 }

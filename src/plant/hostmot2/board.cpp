@@ -26,7 +26,7 @@ Board::Board(BoardSettings settings, std::unique_ptr<BoardLink> link, double wat
 
 void Board::fail(const InputProblem& place, const std::string& why) const {
   InputProblem problem = place;
-  problem.message = "board '" + settings_.name + "' at " + settings_.address + " " + why;
+  problem.message = "board '" + settings_.name + "' at " + settings_.where() + " " + why;
   throw InputError(problem);
 }
 
@@ -89,6 +89,8 @@ void Board::open(const HostMot2Settings& all) {
   } catch (const std::runtime_error& error) {
     fail(settings_.place, error.what());
   }
+  if (card.empty() && modules_.board != "MESA" + settings_.card.substr(0, 4))
+    fail(settings_.place, "is a " + modules_.board + ", the configuration says " + settings_.card);
   check_wiring(all);
   try {
     lay_out();

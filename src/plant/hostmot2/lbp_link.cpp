@@ -171,9 +171,11 @@ bool LbpLink::collect(std::span<std::uint32_t> words, Sample& sample) noexcept {
       continue;
     }
     if (!arrivals_.is_newest(sent_ - behind, counts_)) continue;
-    const std::uint32_t lag = number - 1 - written, before = number - 1 - heard_;
-    sample.forgot = sample.forgot || lag > before;
-    if (lag <= before) counts_.unheard += lag;
+    // A request that came twice shows its own number; beyond that a board goes back only when it was off.
+    const auto back = static_cast<std::int32_t>(heard_ - written),
+               lag = static_cast<std::int32_t>(number - 1 - written);
+    sample.forgot = sample.forgot || (heard_ != 0 && (written == 0 || back > static_cast<std::int32_t>(kept_times)));
+    if (!sample.forgot && lag > 0) counts_.unheard += static_cast<std::uint32_t>(lag);
     heard_ = number;
     sample.number = number;
     sample.heard = written;

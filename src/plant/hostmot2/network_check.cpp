@@ -6,6 +6,7 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <netinet/in.h>
+#include <unistd.h>
 
 namespace kadans::hostmot2 {
 namespace {
@@ -52,6 +53,15 @@ CardFinding network_card_for(const std::string& address) {
 std::vector<PlantType::Finding> examine_boards(const HostMot2Settings& settings, std::int64_t control_period_ns) {
   std::vector<PlantType::Finding> findings;
   for (const BoardSettings& board : settings.boards) {
+    if (!board.resource.empty()) {
+      const bool there = access(board.resource.c_str(), R_OK | W_OK) == 0;
+      findings.push_back({.topic = "board " + board.name,
+                          .good = there,
+                          .is = board.resource + (there ? " may be opened" : " is not there, or may not be opened"),
+                          .should = "the file of the card's registers",
+                          .how = "`lspci` shows the card; a rule for udev may give the file to a group"});
+      continue;
+    }
     const CardFinding card = network_card_for(board.address);
     findings.push_back({.topic = "board " + board.name,
                         .good = card.good,

@@ -77,21 +77,29 @@ class Reader {
   void board(PlantFields& f, const std::string& key) {
     BoardSettings is{.name = key, .place = f.place("")};
     f.string("address", is.address, "its address, such as 192.168.1.121");
-    f.string("board", is.card, "what it is, as it names itself: 7I96, 7I92, 7I76E-16");
+    f.string("resource", is.resource,
+             "of a PCI card instead: the file of its registers, /sys/bus/pci/devices/*/resource3");
+    f.string("board", is.card, "what it is, as it names itself: 7I96, 7I92, 7I76E-16, 5I20");
     f.number("pwm_Hz", is.pwm_Hz, {100, 200'000, "Hz"}, "frequency of its PWMs");
     if (!f.reading()) return;
     if (!is_word(key)) f.refuse("", "'" + key + "' is no name for a board: letters, digits and '_'");
     if (is.card.empty()) f.refuse("", "board '" + key + "' does not say what it is, such as \"board\": \"7I96\"");
+    if (!is.resource.empty()) {
+      if (!is.address.empty()) f.refuse("resource", "a board has an address or a resource, not both");
+      settings_.boards.push_back(is);
+      return;
+    }
     try {
       (void)board_place(is.address);
       for (const BoardSettings& other : settings_.boards) {
-        if (board_place(other.address) == board_place(is.address))
+        if (other.resource.empty() && board_place(other.address) == board_place(is.address))
           f.refuse("address", "board '" + other.name + "' already has the address " + is.address);
       }
-      settings_.boards.push_back(is);
     } catch (const InputError& error) {
       f.refuse("address", error.problems().front().message);
+      is.address = "0.0.0.0";
     }
+    settings_.boards.push_back(is);
   }
 
   void drive(PlantFields& f, const std::string& key) {

@@ -23,10 +23,13 @@ using OptionalPin = std::optional<PinSettings>;
 
 struct BoardSettings {
   std::string name;
-  std::string address;  // "192.168.1.121" or with ":PORT"
-  std::string card;     // what it calls itself: "7I96"
+  std::string address;   // "192.168.1.121" or with ":PORT"
+  std::string resource;  // or the file of a PCI card's registers
+  std::string card;      // what it calls itself: "7I96"
   double pwm_Hz = 20'000;
   InputProblem place{};
+
+  const std::string& where() const noexcept { return resource.empty() ? address : resource; }
 };
 
 enum class PwmOutput : std::uint8_t { pwm_dir = 0, dir_pwm = 1, up_down = 2, pdm = 3 };

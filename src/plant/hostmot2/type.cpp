@@ -3,6 +3,7 @@
 #include "emulator/board_server.h"
 #include "hostmot2_plant.h"
 #include "lbp_link.h"
+#include "mapped_link.h"
 #include "network_check.h"
 
 namespace kadans {
@@ -11,7 +12,7 @@ namespace {
 class HostMot2EthernetType final : public PlantType {
  public:
   std::string_view name() const noexcept override { return "hm2-eth"; }
-  std::string_view doc() const noexcept override { return "Mesa boards with HostMot2 on Ethernet"; }
+  std::string_view doc() const noexcept override { return "Mesa boards with HostMot2 on Ethernet or PCI"; }
   bool has_fields() const noexcept override { return true; }
   void fields(PlantFields& f) override { settings_.fields(f); }
 
@@ -19,6 +20,10 @@ class HostMot2EthernetType final : public PlantType {
     const hostmot2::HostMot2Settings settings = settings_at(site, "--peer", site.peer);
     std::vector<std::unique_ptr<hostmot2::BoardLink>> links;
     for (const hostmot2::BoardSettings& board : settings.boards) {
+      if (!board.resource.empty()) {
+        links.push_back(std::make_unique<hostmot2::MappedLink>(board.resource));
+        continue;
+      }
       auto port = std::make_unique<hostmot2::UdpPort>(hostmot2::board_place(board.address));
       links.push_back(std::make_unique<hostmot2::LbpLink>(std::move(port), std::llround(1e9 * settings.patience_s),
                                                           std::llround(1e9 * settings.reply_wait_s)));

@@ -99,7 +99,7 @@ void EmulatedBus::carry_out(std::uint8_t id, const Message& body, bool crc_good)
   ++instructions_;
   if (crc_good) {
     for (EmulatedServo& servo : servos) {
-      if (servo.baud() == baud_) servo.heard();
+      if (servo.hears() && servo.baud() == baud_) servo.heard();
     }
   }
   if (!crc_good) {

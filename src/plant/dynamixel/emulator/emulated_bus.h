@@ -36,6 +36,7 @@ class EmulatedBus {
   std::size_t take(std::span<std::uint8_t> into, std::int64_t now_ns);
   void drop_answers() noexcept { answers_.clear(); }
 
+  void set_usb_latency(std::int64_t latency_ns) noexcept { usb_latency_ns_ = latency_ns; }
   std::uint64_t instructions() const noexcept { return instructions_; }
   std::uint64_t not_understood() const noexcept { return not_understood_; }
   std::int64_t busy_ns() const noexcept { return busy_ns_; }  // how long bytes were on the wire, in all

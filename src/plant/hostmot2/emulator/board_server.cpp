@@ -12,7 +12,10 @@ namespace kadans::hostmot2 {
 BoardServer::BoardServer(const HostMot2Settings& settings, const PlantSite& site)
     : DriveServer(site.layout.period_ns), machine_(settings, site, 1), peers_(settings.boards.size()) {
   try {
-    for (const BoardSettings& board : settings.boards) sockets_.push_back(listening_socket(board_place(board.address)));
+    for (const BoardSettings& board : settings.boards) {
+      if (!board.resource.empty()) throw InputError({.message = "board '" + board.name + "' is no board on Ethernet"});
+      sockets_.push_back(listening_socket(board_place(board.address)));
+    }
   } catch (const InputError& error) {
     for (const int one : sockets_) close(one);
     throw InputError({.file = "--listen", .message = error.problems().front().message});

@@ -16,8 +16,9 @@ void EmulatedWire::receive(std::span<const std::uint8_t> datagram, std::int64_t 
   if (pulled || happens(faults.lost)) return;
   const int times = happens(faults.duplicated) ? 2 : 1;
   for (int i = 0; i < times; ++i) {
-    const std::vector<std::uint8_t> bytes = responder.answer(datagram);
+    std::vector<std::uint8_t> bytes = responder.answer(datagram);
     if (bytes.empty()) continue;
+    if (replace) replace(bytes);
     send(bytes, now_ns);
     if (happens(faults.duplicated)) send(bytes, now_ns);
   }

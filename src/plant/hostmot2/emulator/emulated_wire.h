@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,9 @@ class EmulatedWire {
 
   Lbp16Responder responder;
   WireFaults faults;
-  std::int64_t delay_ns = 0;  // there and back
-  bool pulled = false;        // the cable
+  std::int64_t delay_ns = 0;                                // there and back
+  bool pulled = false;                                      // the cable
+  std::function<void(std::vector<std::uint8_t>&)> replace;  // what else happens to a reply
 
   // The host sends this datagram now.
   void receive(std::span<const std::uint8_t> datagram, std::int64_t now_ns);

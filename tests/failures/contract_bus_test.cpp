@@ -1,0 +1,306 @@
+// Rows of the failure contract for drives on a bus: servos on a serial line and HostMot2 boards on Ethernet, with the
+// driver, the true bytes and the emulated drives, on virtual time.
+#include <doctest/doctest.h>
+
+#include "engine/bench.h"
+#include "kadans/signal/input_error.h"
+#include "plant/dynamixel_world.h"
+#include "plant/hostmot2_world.h"
+
+namespace contract_bus_test {
+
+using namespace kadans;
+using doctest::description;
+
+namespace {
+
+constexpr std::int64_t tick_ns = 1'000'000;
+
+PlantSite site() { return {.file = "robot.json", .layout = {.robot = "bench", .joints = {"hip", "knee"}}}; }
+
+// The robot of bench.h on a bus. The hip is led to 0.5 rad.
+template <typename DrivenWorld>
+struct BusRobot {
+  DrivenWorld world;
+  EngineSettings settings;
+  RobotModel model = bench::robot();
+  Catalog catalog;
+  Estimator estimator{model, {}, 0.001};
+  Safety safety;
+  std::vector<std::unique_ptr<ControlObject>> objects = bench::posture(catalog, model);
+  ControlSets sets{catalog, std::move(objects)};
+  std::unique_ptr<EngineExchange> exchange = std::make_unique<EngineExchange>();
+  ControlEngine control{settings, world, estimator, safety, sets, catalog, *exchange};
+  BehaviorEngine behaviors{sets, *exchange, nullptr};
+  std::int64_t time_ns = 0;
+  double effort_max_Nm = 0;
+
+  template <typename... Parts>
+  BusRobot(DriveWords words, double lowest_V, Parts&&... parts)
+      : world(std::make_unique<IdealWorld>(bench::robot(), bench::plant_settings()), parts...),
+        safety(watched(words, lowest_V), model) {
+    run(20);
+    const SetpointId hip = catalog.setpoints.find("posture.hip.position_rad").value();
+    CommandSender& sender = behaviors.sender();
+    sender.begin(time_ns);
+    REQUIRE(sender.add({.kind = CommandKind::set_point, .index = hip, .value = 0.5, .duration_s = 1}));
+    REQUIRE(sender.commit());
+    run(200);
+    REQUIRE(status().level == SafetyLevel::normal);
+    REQUIRE(status().fault_count == 0);
+  }
+  static SafetySettings watched(DriveWords words, double lowest_V) {
+    SafetySettings is = bench::safety_settings();
+    is.drive_words = words;
+    is.silent_ticks_max = 60;  // here the drives shall be told of, not their sensors
+    is.supply.lowest_V = lowest_V;
+    is.supply.highest_V = lowest_V > 0 ? lowest_V + 20 : 0;
+    return is;
+  }
+  void run(int ticks, bool driven = true) {
+    for (int i = 0; i < ticks; ++i, time_ns += tick_ns) {
+      if (driven) control.tick(time_ns, 0.001, 0);
+      if (driven && time_ns % (10 * tick_ns) == 0) behaviors.tick(time_ns);
+      world.step(tick_ns);
+      for (std::size_t k = 0; k < 2; ++k)
+        effort_max_Nm = std::max(effort_max_Nm, std::abs(world.truth().motor_torque_Nm[k]));
+    }
+  }
+  const SafetyStatus& status() const { return control.state().status.safety; }
+  double hip_rad() const { return world.truth().position_rad[0]; }
+  // The hip alone is off for this reason; the knee goes on.
+  void check_hip_alone(FaultCode code) {
+    CHECK(safety.joint_level(0) == SafetyLevel::off);
+    CHECK(safety.joint_level(1) == SafetyLevel::normal);
+    CHECK(status().first_fault.code == code);
+    CHECK(status().first_fault.joint == 0);
+    const double at_rad = world.truth().position_rad[1];
+    run(300);
+    CHECK(safety.joint_level(0) == SafetyLevel::off);
+    CHECK(std::abs(world.truth().position_rad[1] - at_rad) < 0.02);
+    CHECK(world.truth().motor_torque_Nm[0] == 0);
+  }
+};
+
+dynamixel::DynamixelSettings servo_settings() {
+  dynamixel::DynamixelSettings settings;
+  settings.ports = {{.name = "bus", .device = "the bus", .baud = 3'000'000}};
+  settings.servos = {
+      {.drive = "hip", .port = "bus", .id = 1, .model = dynamixel::find_model("XM430-W210")},
+      {.drive = "knee", .port = "bus", .id = 2, .model = dynamixel::find_model("XM430-W210"), .reversed = true}};
+  return settings;
+}
+
+struct Servos : BusRobot<test::DynamixelWorld> {
+  explicit Servos(double lowest_V = 0) : BusRobot(dynamixel::drive_code_words, lowest_V, servo_settings(), site()) {}
+};
+
+// A board for each joint.
+hostmot2::HostMot2Settings board_settings() {
+  hostmot2::HostMot2Settings settings;
+  settings.boards = {{.name = "upper", .address = "192.168.1.121", .card = "7I96"},
+                     {.name = "lower", .address = "192.168.1.122", .card = "7I96"}};
+  hostmot2::DriveWiring hip{.drive = "hip", .board = "upper", .encoder = 0, .pwm = 0, .counts_per_rad = 10'000};
+  hip.amplifier = {.full = 10, .current_max_A = 5, .Nm_per_A = 0.05, .gear = 10, .efficiency = 0.8};
+  hip.enable = hostmot2::PinSettings{.number = 20};
+  hip.fault = hostmot2::PinSettings{.number = 21, .low = true};
+  hostmot2::DriveWiring knee = hip;
+  knee.drive = "knee";
+  knee.board = "lower";
+  settings.drives = {hip, knee};
+  settings.emergency_board = "upper";
+  settings.emergency = hostmot2::PinSettings{.number = 30, .low = true};
+  return settings;
+}
+
+struct Boards : BusRobot<test::HostMot2World> {
+  Boards() : BusRobot(hostmot2::drive_code_words, 0, board_settings(), board_settings(), site()) {}
+};
+
+}  // namespace
+
+TEST_SUITE_BEGIN("contract");
+
+TEST_CASE(
+    "that joint alone is off, latched, the fault has the maker's words" *
+    description("a drive on a bus says that something is wrong with it: a servo's overload, an amplifier's line")) {
+  SUBCASE("servos") {
+    Servos robot;
+    robot.world.servos().servo(0).break_down(0x20);
+    robot.run(10);
+    CHECK(fault_detail(told(robot.status().first_fault)).find("overload") != std::string::npos);
+    robot.check_hip_alone(FaultCode::drive_fault);
+  }
+  SUBCASE("boards") {
+    Boards robot;
+    robot.world.machine().fail_amplifier(0, true);
+    robot.run(5);
+    CHECK(fault_detail(told(robot.status().first_fault)).find("its amplifier reports a fault") != std::string::npos);
+    robot.check_hip_alone(FaultCode::drive_fault);
+  }
+}
+
+TEST_CASE("that board's joints alone are off, latched, the others are driven as before" *
+          description("one of several boards on a network is silent")) {
+  Boards robot;
+  robot.world.machine().wire(0).pulled = true;
+  robot.run(20);
+  robot.check_hip_alone(FaultCode::drive_fault);
+}
+
+TEST_CASE(
+    "its joint is off, latched, and those whose readings grow older than sample_age_max_s while it is looked for" *
+    description("a servo on a serial line is silent")) {
+  Servos robot;
+  robot.world.servos().servo(0).unplug(true);
+  robot.run(150);
+  CHECK(robot.safety.joint_level(0) == SafetyLevel::off);
+  CHECK(robot.world.truth().motor_torque_Nm[0] == 0);
+  CHECK(robot.effort_max_Nm < 4);
+}
+
+TEST_CASE("the joints are off, latched, and the drives have let go by themselves within watchdog_s" *
+          description("all drives on a bus are silent: the cable is pulled")) {
+  SUBCASE("servos") {
+    Servos robot;
+    for (const std::size_t joint : {0U, 1U}) robot.world.servos().servo(joint).unplug(true);
+    robot.run(150);
+    for (const std::size_t joint : {0U, 1U}) CHECK(robot.safety.joint_level(joint) == SafetyLevel::off);
+    CHECK(robot.world.truth().motor_torque_Nm[0] == 0);
+  }
+  SUBCASE("boards") {
+    Boards robot;
+    for (const std::size_t board : {0U, 1U}) robot.world.machine().wire(board).pulled = true;
+    robot.run(11);
+    for (const std::size_t joint : {0U, 1U}) CHECK_FALSE(robot.world.machine().enabled(joint));
+    robot.run(20);
+    for (const std::size_t joint : {0U, 1U}) CHECK(robot.safety.joint_level(joint) == SafetyLevel::off);
+    CHECK(robot.world.truth().motor_torque_Nm[0] == 0);
+  }
+}
+
+TEST_CASE(
+    "refused before anything moves: which drive, what it is, what was meant" *
+    description("another device is on the bus: a servo of another model, another board, firmware without a module")) {
+  const auto refused = [](OneRobotWorld& world, auto start) {
+    try {
+      start();
+    } catch (const InputError& error) {
+      CHECK(world.truth().motor_torque_Nm[0] == 0);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto model = [] { return std::make_unique<IdealWorld>(bench::robot(), bench::plant_settings()); };
+  SUBCASE("servos") {
+    test::DynamixelWorld world(model(), servo_settings(), site());
+    world.servos().servo(0) = dynamixel::EmulatedServo({.id = 1, .model = 1020, .baud_code = 5});
+    CHECK(refused(world, [&] { world.start(); }).find("is XM430-W350, the configuration says XM430-W210") !=
+          std::string::npos);
+  }
+  SUBCASE("boards") {
+    hostmot2::HostMot2Settings there = board_settings();
+    there.boards[1].card = "7I92";
+    test::HostMot2World world(model(), board_settings(), there, site());
+    CHECK(refused(world, [&] {
+            world.start();
+          }).find("board 'lower' at 192.168.1.122 is a 7I92, the configuration says 7I96") != std::string::npos);
+  }
+  SUBCASE("firmware") {
+    hostmot2::HostMot2Settings wanted = board_settings();
+    wanted.drives[1].encoder = 3;
+    test::HostMot2World world(model(), wanted, board_settings(), site());
+    CHECK(refused(world, [&] { world.start(); }).find("has no encoder 3: its firmware has") != std::string::npos);
+  }
+}
+
+TEST_CASE("that joint alone is off, latched: it let go by itself" * description("a servo overheats")) {
+  Servos robot;
+  robot.world.servos().servo(0).heat_to(82);
+  robot.run(10);
+  CHECK(fault_detail(told(robot.status().first_fault)).find("overheating") != std::string::npos);
+  robot.check_hip_alone(FaultCode::drive_fault);
+}
+
+TEST_CASE("after safety.supply.time_s it is the fault supply_low" *
+          description("servos measure a supply below safety.supply")) {
+  const SafetySettings watched = Servos::watched(nullptr, 13);
+  test::DynamixelWorld world(std::make_unique<IdealWorld>(bench::robot(), bench::plant_settings()), servo_settings(),
+                             site());
+  const RobotModel model = bench::robot();
+  EngineSettings settings;
+  Catalog catalog;
+  Estimator estimator(model, {}, 0.001);
+  Safety safety(watched, model);
+  ControlSets sets(catalog, bench::posture(catalog, model));
+  const auto exchange = std::make_unique<EngineExchange>();
+  ControlEngine control(settings, world, estimator, safety, sets, catalog, *exchange);
+  std::int64_t time_ns = 0;
+  for (; time_ns < 70 * tick_ns; time_ns += tick_ns) {
+    control.tick(time_ns, 0.001, 0);
+    world.step(tick_ns);
+  }
+  CHECK(control.state().status.safety.first_fault.code == FaultCode::supply_low);
+}
+
+TEST_CASE("in the tick that reads it the robot damps, whatever the configuration says" *
+          description("somebody presses the emergency stop's button, which is wired to a board")) {
+  Boards robot;
+  robot.world.machine().press_emergency(true);
+  robot.run(3);
+  CHECK(robot.status().first_fault.code == FaultCode::emergency_input);
+  CHECK(robot.status().level == SafetyLevel::damp);
+}
+
+TEST_CASE(
+    "within watchdog_s every drive is in its safe state by itself: a servo without torque, a board's pins inputs" *
+    description("the process that drives a bus is killed, or hangs")) {
+  SUBCASE("servos") {
+    Servos robot;
+    robot.world.silent = true;
+    robot.run(130, false);
+    CHECK(robot.world.servos().any_watchdog_tripped());
+    CHECK(robot.world.truth().motor_torque_Nm[0] == 0);
+    CHECK(robot.world.truth().motor_torque_Nm[1] == 0);
+  }
+  SUBCASE("boards") {
+    Boards robot;
+    robot.run(8, false);
+    CHECK(robot.world.machine().enabled(0));
+    robot.run(2, false);
+    for (const std::size_t joint : {0U, 1U}) {
+      CHECK_FALSE(robot.world.machine().enabled(joint));
+      CHECK(robot.world.truth().motor_torque_Nm[joint] == 0);
+    }
+    CHECK(robot.world.machine().any_watchdog_tripped());
+  }
+}
+
+TEST_CASE("readings keep their own times and are counted as late, no torque is beyond its limit" *
+          description("a bus takes longer than its period: a USB adapter keeps bytes back, a network is full")) {
+  SUBCASE("servos") {
+    Servos robot;
+    robot.world.servos().bus(0).set_usb_latency(9 * tick_ns / 5);
+    robot.run(2000);
+    const std::vector<PlantCount> counts = robot.world.driver().link_counts();
+    CHECK(std::string_view(counts[5].name) == "late");
+    CHECK(counts[5].value > 100);
+    CHECK(robot.effort_max_Nm < 20);
+  }
+  SUBCASE("boards") {
+    Boards robot;
+    for (const std::size_t board : {0U, 1U})
+      robot.world.machine().wire(board).faults = {.late = 1, .late_ns = 3 * tick_ns};
+    robot.run(2000);
+    CHECK(robot.status().level == SafetyLevel::normal);
+    CHECK(robot.hip_rad() == doctest::Approx(0.5).epsilon(0.05));
+    for (const PlantCount& one : robot.world.driver().link_counts()) {
+      if (std::string_view(one.name) == "late") CHECK(one.value > 3900);
+      if (std::string_view(one.name) == "bites") CHECK(one.value == 0);
+    }
+  }
+}
+
+TEST_SUITE_END();
+
+}  // namespace contract_bus_test
