@@ -113,7 +113,7 @@ void bench_bus(Report& report) {
   const int bare = connected_socket(echo_at);
   std::array<std::uint8_t, 2048> out{}, in{};
   std::vector<double> driver_ns, bare_ns;
-  const timespec pause{.tv_sec = 0, .tv_nsec = 60'000};
+  const timespec pause{.tv_sec = 0, .tv_nsec = 200'000};
   for (int round = 0; round < bus_rounds; ++round) {
     double driver = 0, plain = 0;
     for (int i = 0; i < bus_ticks; ++i) {
@@ -129,6 +129,7 @@ void bench_bus(Report& report) {
       (void)::sendto(bare, out.data(), board.asked, MSG_DONTWAIT, nullptr, 0);
       plain += cpu_ns() - began;
       nanosleep(&pause, nullptr);
+      wait_readable(bare);  // what it waits for is not counted
       began = cpu_ns();
       while (::recvfrom(bare, in.data(), in.size(), MSG_DONTWAIT, nullptr, nullptr) <= 0) {
       }

@@ -85,7 +85,8 @@ TEST_CASE("Types that others make come last") {
   const MakePlantType others[] = {[]() -> std::unique_ptr<PlantType> { return std::make_unique<OtherType>(); }};
   CHECK(plant_type_names(plant_types(others)) ==
         std::vector<std::string>{"bullet", "dynamixel", "hm2-eth", "ideal", "udp", "bench", "another"});
-  CHECK(plant_type_names(plant_types(others), &PlantType::is_protocol) == std::vector<std::string>{"dynamixel", "hm2-eth", "udp"});
+  CHECK(plant_type_names(plant_types(others), &PlantType::is_protocol) ==
+        std::vector<std::string>{"dynamixel", "hm2-eth", "udp"});
 }
 
 TEST_CASE("Two types of one name are refused") {
