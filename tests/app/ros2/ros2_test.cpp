@@ -212,8 +212,9 @@ TEST_CASE("each event that a behavior declares has a topic of a type that fits i
 k.events { whistle = {}, ["ball.near"] = { distance_m = { "m", min = 0, max = 5 } }, waves = { left = k.flag },
            word = { said = k.text }, seen = { x_m = "m", left = k.flag } }
 local function tell(_, s)
-  local d = s.event.data
-  print(s.event.name, d.distance_m, d.left, d.said, d.x_m)
+  local d = s.event.data or {}
+  print(string.format("%s: %s %s %s %s", s.event.name, tostring(d.distance_m), tostring(d.left), tostring(d.said),
+    tostring(d.x_m)))
 end
 return k.behavior "listen" { k.state "wait" { endless = true,
   { on = { "whistle", "ball.near", "waves", "word", "seen" }, action = tell } } })");
@@ -223,11 +224,11 @@ return k.behavior "listen" { k.state "wait" { endless = true,
                  "event 'seen={\"x_m\": 2, \"left\": false}' event ball/near=7\n") == 0);
   const std::string err = read(project / "err");
   CHECK_MESSAGE(read(project / "code") == "0\n", err);
-  CHECK(has(err, "whistle\tnil\tnil\tnil\tnil"));
-  CHECK(has(err, "ball.near\t1.25\t"));
-  CHECK(has(err, "waves\tnil\ttrue\t"));
-  CHECK(has(err, "word\tnil\tnil\thi \"you\"\t"));
-  CHECK(has(err, "seen\tnil\tfalse\tnil\t2"));
+  CHECK(has(err, "whistle: nil nil nil nil"));
+  CHECK(has(err, "ball.near: 1.25 nil nil nil"));
+  CHECK(has(err, "waves: nil true nil nil"));
+  CHECK(has(err, "word: nil nil hi \"you\" nil"));
+  CHECK(has(err, "seen: nil false nil 2"));
   CHECK(has(err, "event whistle from ROS 2 to listen"));
   const auto results = said_by_topic(project)["command_result"];
   REQUIRE(results.size() == 6);
