@@ -97,11 +97,12 @@ const Case wrong[] = {
      "{ on = 'seen', to = 'a', action = function(_, s) print(s.event.data.woh) end } } }",
      "t.lua:4: no event here has the field 'woh', did you mean 'who'?"},
     {"a transition that an earlier one hides, by the same event",
-     "k.events { go = { n = 'm' } }\nreturn k.behavior 't' { k.state 'a' { endless = true,\n{ on = 'go', to = 'b' },\n"
+     "k.events { go = { n = 'm' } }\nreturn k.behavior 't' { initial = 'a', k.state 'a' { endless = true,\n{ on = "
+     "'go', to = 'b' },\n"
      "{ on = 'go', when = function(s) return s.event.data.n > 1 end, to = 'a' } }, k.state 'b' { endless = true } }",
      "t.lua:5: this transition is never taken: the one in line 4, to 'b', takes all that it could, and comes no later"},
     {"a transition that an earlier one hides, by the same time",
-     "return k.behavior 't' { k.state 'a' { { after = 1, to = 'b' },\n{ after = 2, to = 'a' } },\n"
+     "return k.behavior 't' { initial = 'a', k.state 'a' { { after = 1, to = 'b' },\n{ after = 2, to = 'a' } },\n"
      "k.state 'b' { { after = 2, to = 'a' }, { after = 1, to = 'b' } } }",
      "t.lua:3: this transition is never taken: the one in line 2, to 'b'"},
     {"a result that waits",
