@@ -108,7 +108,7 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
   for (const ScenarioEvent& event : scenario.events) {
     settings.events.push_back({std::llround(event.at_s * 1e9), event.order});
   }
-  settings.inputs = robot.input_events;
+  settings.inputs = overridden(robot.input_events, scenario.joystick.buttons);
   settings.safe = safe_posture_of(robot.safe);
   if (scenario.on_wall_clock) settings.limits = limits_on_wall_clock(robot.engine);
   settings.kept = kept;

@@ -186,6 +186,18 @@ void JointBench::switch_to(std::string_view object) {
   sets_->switch_to(static_cast<std::uint32_t>(find_by_ending("object", object, names_of(catalog_.sets))));
 }
 
+JointBench::Led JointBench::led(std::string_view object) const {
+  const std::size_t owner = find_by_ending("object", object, names_of(catalog_.sets));
+  Led by = Led::nothing;
+  for (SetpointId id = 0; id < catalog_.setpoints.size(); ++id) {
+    const Setpoint& setpoint = catalog_.setpoints[id];
+    if (setpoint.owner != owner) continue;
+    if (setpoint.unit == "rad") return Led::position;
+    if (setpoint.unit == "rad/s") by = Led::velocity;
+  }
+  return by;
+}
+
 double JointBench::signal(std::string_view name) const {
   return row_[find_by_ending("signal", name, catalog_.signals.names())];
 }

@@ -116,6 +116,33 @@ TEST_CASE("a button of a joystick's recording and a sensor send the events that 
   CHECK(has(run("check config/jiwiy/robot.json", folder).err, "'pressed!' is no name of an event"));
 }
 
+TEST_CASE(
+    "a scenario says which events the buttons of its joystick send, in place of the robot's for the same buttons") {
+  const fs::path folder = listening_project("emit_scenario_buttons");
+  write(folder / "config/joystick/press.evemu",
+        "A: 00 0 1023 0 0 0\nA: 01 0 1023 0 0 0\nE: 0.0 1 120 1\nE: 0.0 0 0 0\nE: 0.2 1 121 1\nE: 0.2 0 0 0\n"
+        "E: 0.4 1 120 0\nE: 0.4 0 0 0\n");
+  REQUIRE(edit(folder / "config/jiwiy/robot.json", "\"button_1\": { \"press\"",
+               "\"button_2\": { \"press\": \"pressed\" }, \"button_1\": { \"press\""));
+  const fs::path scenario = folder / "config/scenarios/listen.json";
+  REQUIRE(edit(scenario, "\"checks\"", R"("joystick": {
+    "recording": "config/joystick/press.evemu", "at_s": 0.3, "buttons": { "button_1": { "press": "lid.opened" } } },
+  "checks")"));
+  const Outcome sim = run("sim config/scenarios/listen.json --record run.mcap --verbose", folder);
+  const std::string said = sim.out + sim.err;
+  CAPTURE(said);
+  CHECK(sim.exit_code == 0);
+  CHECK(has(said, "lid.opened at 0.3"));
+  CHECK(has(said, "event lid.opened from joystick.button_1 to listen"));
+  CHECK(has(said, "event pressed from joystick.button_2 to listen"));
+  CHECK_FALSE(has(said, "released at"));  // of the robot's button_1, which the scenario replaces
+  CHECK(has(run("replay run.mcap", folder).out, "the same"));
+  REQUIRE(edit(scenario, "\"button_1\"", "\"button_9\""));
+  const std::string wrong = run("check config/scenarios/listen.json", folder).err;
+  CHECK(has(wrong, "listen.json:8:"));
+  CHECK(has(wrong, "unknown button 'button_9'"));
+}
+
 TEST_CASE("the check finds declared events that nothing waits for, and knows declared ones as events that come") {
   const fs::path folder = listening_project("emit_check");
   CHECK(run("behavior check behaviors/jiwiy/listen.lua", folder).exit_code == 0);

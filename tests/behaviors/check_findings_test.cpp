@@ -92,6 +92,19 @@ const Case wrong[] = {
      "local A = k.args { side = { 'left' } }\nreturn k.behavior 't' { k.state 'a' { endless = true,\n"
      "enter = function() print(A.side, A.sied) end } }",
      "t.lua:4: k.args has no 'sied', did you mean 'side'?"},
+    {"a misspelt field of an event",
+     "k.events { seen = { who = k.text } }\nreturn k.behavior 't' { k.state 'a' { endless = true,\n"
+     "{ on = 'seen', to = 'a', action = function(_, s) print(s.event.data.woh) end } } }",
+     "t.lua:4: no event here has the field 'woh', did you mean 'who'?"},
+    {"a transition that an earlier one hides, by the same event",
+     "k.events { go = { n = 'm' } }\nreturn k.behavior 't' { initial = 'a', k.state 'a' { endless = true,\n{ on = "
+     "'go', to = 'b' },\n"
+     "{ on = 'go', when = function(s) return s.event.data.n > 1 end, to = 'a' } }, k.state 'b' { endless = true } }",
+     "t.lua:5: this transition is never taken: the one in line 4, to 'b', takes all that it could, and comes no later"},
+    {"a transition that an earlier one hides, by the same time",
+     "return k.behavior 't' { initial = 'a', k.state 'a' { { after = 1, to = 'b' },\n{ after = 2, to = 'a' } },\n"
+     "k.state 'b' { { after = 2, to = 'a' }, { after = 1, to = 'b' } } }",
+     "t.lua:3: this transition is never taken: the one in line 2, to 'b'"},
     {"a result that waits",
      "return k.behavior 't' { k.final 'a' { outcome = 'done', result = function(m)\nm:wait(1) return {} end } }",
      "t.lua:3: a wait where 'result' runs"},

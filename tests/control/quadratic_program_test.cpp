@@ -89,7 +89,7 @@ class Draw {
 };
 
 // By how much the point of the program misses the conditions of optimality, relative to the sizes of the numbers.
-double misses(const Problem& p, const QuadraticProgram& program) {
+double misses(const Problem& p, QuadraticProgram& program) {
   const Eigen::VectorXd x = program.solution(), y = program.multipliers();
   const double size = 1 + p.gradient.norm() + x.norm() + y.cwiseAbs().sum();
   double worst = (p.hessian * x + p.gradient - p.normals.transpose() * y).norm();

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -79,31 +80,87 @@ TEST_CASE("a biped moves its centre of mass, and its feet bear its weight and st
   CHECK(bench.most_Nm < 0.9 * 25 + 0.01);
 }
 
+namespace {
+
+// A biped that stands with bent knees, and the program of one tick.
+struct Standing {
+  Standing() {
+    for (std::size_t i = 0; i < 10; ++i) body.position_rad[i] = std::array{0.0, 0.0, -0.3, 0.6, -0.3}[i % 5];
+    aim.settings.sole_m = 0;
+    body.base = body_start(layout, aim.settings, kinematics, body.position_rad, {1, 0, 0, 0});
+    body.update();
+    present_setpoints(layout, aim.settings, kinematics, aim.setpoints);
+    for (std::size_t i = 0; i < 2; ++i) feet[i].pose = kinematics.link(layout.tasks[layout.feet[i]].link);
+    ranks[0].weight = ranks[3].weight = 1;
+  }
+  bool solve() {
+    body.update();
+    return problem.solve(body, aim, ranks, {1e-4, 2}, feet);
+  }
+  std::vector<std::byte> state() {
+    StateBytes measured;
+    problem.pass_state(measured);
+    std::vector<std::byte> bytes(measured.size());
+    StateBytes saving = StateBytes::saving(bytes);
+    problem.pass_state(saving);
+    return bytes;
+  }
+
+  const RobotModel model = leg_robot();
+  const BodyLayout layout{
+      {model, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}}}};
+  BodyModel body{model, Dynamics::Base::floating, layout.rotor_inertia_kg_m2};
+  Kinematics kinematics{model};
+  BodyAim aim;
+  std::array<BodyStand, body_feet_max> feet;
+  BodyRanks ranks;
+  BodyProblem problem{layout};
+};
+
+}  // namespace
+
+TEST_CASE(
+    "programs are solved and not solved: what the last solved one found stands, also in one that goes on from it") {
+  Standing standing;
+  int solved = 0, unsolved = 0;
+  std::vector<std::byte> stands;
+  // A knee that turns too fast for its limits, while its foot shall not move, can be neither braked nor let go.
+  for (const double knee_rad_s : {0.0, 60.0, 0.5, -60.0, 1.0}) {
+    standing.body.velocity[standing.body.base_size() + 3] = knee_rad_s;
+    const std::vector<std::byte> before = standing.state();
+    const bool found = standing.solve();
+    CAPTURE(knee_rad_s);
+    CHECK(found == (std::abs(knee_rad_s) < 10));
+    CHECK(found == (standing.problem.status() == QuadraticProgram::Status::solved));
+    CHECK((standing.state() == before) == !found);
+    (found ? solved : unsolved) += 1;
+    if (!found) stands = before;
+  }
+  CHECK(solved == 3);
+  CHECK(unsolved == 2);
+  Standing other;
+  StateBytes restoring = StateBytes::restoring(stands);
+  other.problem.pass_state(restoring);
+  CHECK(restoring.ok());
+  other.body.velocity[other.body.base_size() + 3] = 60;
+  CHECK_FALSE(other.solve());
+  CHECK(other.state() == stands);
+  CHECK(std::abs(other.problem.effort_Nm(3)) > 1);  // the knee still bears
+  CHECK(other.problem.wrench(0)[2] > 10);
+}
+
 TEST_CASE(
     "a wrench stays in its friction pyramid and over the sole, torques in their limits, whatever a task asks for") {
-  const RobotModel model = leg_robot();
-  const BodyLayout layout(
-      {model, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, {{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}}});
-  BodyModel body(model, Dynamics::Base::floating, layout.rotor_inertia_kg_m2);
-  for (std::size_t i = 0; i < 10; ++i) body.position_rad[i] = std::array{0.0, 0.0, -0.3, 0.6, -0.3}[i % 5];
-  BodyAim aim;
-  aim.settings.sole_m = 0;
-  Kinematics kinematics(model);
-  body.base = body_start(layout, aim.settings, kinematics, body.position_rad, {1, 0, 0, 0});
-  body.update();
-  present_setpoints(layout, aim.settings, kinematics, aim.setpoints);
-  std::array<BodyStand, body_feet_max> feet;
-  for (std::size_t i = 0; i < 2; ++i) feet[i].pose = kinematics.link(layout.tasks[layout.feet[i]].link);
-  BodyProblem problem(layout);
-  BodyRanks ranks;
-  ranks[0].weight = ranks[3].weight = 1;
+  Standing standing;
+  BodyAim& aim = standing.aim;
+  const BodyProblem& problem = standing.problem;
   const SetpointState com_x = aim.setpoints[0], com_z = aim.setpoints[2];
   int at_friction = 0, at_edge = 0, at_torque = 0;
   for (const double way_m : {-2.0, -0.3, -0.05, 0.0, 0.05, 0.3, 2.0}) {
     for (const double up_m : {0.0, 0.2, 3.0}) {
       aim.setpoints[0].value = com_x.value + way_m;
       aim.setpoints[2].value = com_z.value + up_m;
-      REQUIRE(problem.solve(body, aim, ranks, {1e-4, 2}, feet));
+      REQUIRE(standing.solve());
       for (std::size_t foot = 0; foot < 2; ++foot) {
         const Eigen::Vector<double, 6> w = problem.wrench(foot);
         const double grip_N = aim.settings.friction / std::sqrt(2.0) * w[2], slack = 1e-6 * (1 + w.norm());

@@ -44,7 +44,7 @@ TEST_CASE("A stiff law and one that lets go, each stable, run away together: the
   const SwitchingStability fast = switching_stability(bench, "pid", "free", quick);
   INFO(fast);
   CHECK(!(fast <= StabilityLimits{}));
-  CHECK(fast.energy_ratio > 10);
+  CHECK(fast.energy_ratio > 5);  // of that of rare switches
   SwitchingSearch slow = quick;
   slow.dwell_s = 1;
   const SwitchingStability calm = switching_stability(bench, "pid", "free", slow);

@@ -72,6 +72,9 @@ class JointBench {
   // set-points of position or velocity that it has.
   void lead(const SetpointState& position) noexcept;
   void switch_to(std::string_view object);
+  // By what lead() leads this object.
+  enum class Led : std::uint8_t { nothing, velocity, position };
+  Led led(std::string_view object) const;
   double signal(std::string_view name) const;  // as of the last tick
 
   void tick();

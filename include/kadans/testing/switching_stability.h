@@ -12,6 +12,11 @@
 // how far the energy swings in the second half of the time, as a multiple of the first half. Of a joint that runs away
 // it is far above 1.
 //
+// An object that is led by no position, but by a velocity or by nothing, lets the joint drift, and keeps the error that
+// it inherits. The other one has to bring the joint back, and that takes energy, however rare the switches are. So such
+// a pair is compared with switches twice as far apart as the rarest that are tried, too. An object that is led by
+// nothing follows no motion: no error is judged then.
+//
 // An object gets its set-points in the tick of its switch, as from one transaction, and is led along the motion from
 // then on. An object that begins its motion anew where the joint is, at each switch, holds the joint at many places in
 // turn; switched fast it is not stable, whatever the object.
@@ -56,15 +61,18 @@ struct SwitchedMotion {
 
 struct SwitchingStability {
   std::string first, second;
+  bool one_drifts = false, one_coasts = false;  // one of them is led by no position, by nothing at all
   SwitchedMotion first_alone, second_alone;
   SwitchedMotion most_energy, most_error, most_growth;  // of all that were tried
-  double energy_ratio = 0, error_ratio = 0;             // of these to the worse of the two alone
+  SwitchedMotion rarest;                                // when one drifts: the worst of the rarest switches
+  double energy_ratio = 0, error_ratio = 0;             // of the worst to the worse of the two alone, or to the rarest
   int motions = 0;                                      // that were tried
 };
 
 struct StabilityLimits {
   double energy_ratio = 1.2, error_ratio = 1.2;
   double error_resolution_rad = 1e-3;  // a smaller error is not judged
+  double energy_resolution_J = 1e-3;   // nor so small an energy, of a joint that rests
 };
 
 SwitchedMotion switched_motion(const MakeBench& make, std::string_view first, std::string_view second,

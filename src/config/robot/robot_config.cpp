@@ -209,28 +209,7 @@ void RobotReader::joystick(Fields& f) {
     axis_fields(entry, known ? settings.axes[static_cast<std::size_t>(axis - joystick_axis_names.begin())] : scratch,
                 problems_);
   });
-  f.map("buttons", "events that buttons send to behaviors: button_1 and so on", [&](Fields& e) { button(e); });
-}
-
-void RobotReader::button(Fields& entry) {
-  std::vector<std::string> names;
-  for (std::size_t i = 1; i <= joystick_buttons; ++i) names.push_back("button_" + std::to_string(i));
-  const auto found = std::ranges::find(names, entry.key());
-  if (entry.reading() && found == names.end()) problems_.add_unknown(entry.key_place(), "button", entry.key(), names);
-  input_event(entry,
-              {.of = InputEvent::Of::button,
-               .index = static_cast<std::uint32_t>(found - names.begin()),
-               .input = "joystick." + entry.key()},
-              "press", "release");
-}
-
-void RobotReader::input_event(Fields& f, InputEvent event, const char* rise, const char* fall) {
-  f.string(rise, event.rise, std::string("event sent at each ") + rise);
-  f.string(fall, event.fall, std::string("event sent at each ") + fall);
-  if (!f.reading()) return;
-  check_event_name({event.rise, f.place(rise)}, problems_);
-  check_event_name({event.fall, f.place(fall)}, problems_);
-  if (!event.rise.empty() || !event.fall.empty()) config_.input_events.push_back(std::move(event));
+  f.map("buttons", buttons_doc, [&](Fields& e) { button_fields(e, config_.input_events, problems_); });
 }
 
 }  // namespace kadans

@@ -350,11 +350,11 @@ void RobotReader::sensor(Fields& entry) {
                "reading in a model; scenarios change it as sensor.NAME.value");
   entry.number("noise", channel.noise, {0, most, ""}, "standard deviation of the noise in a model");
   entry.object("events", "events that it sends to behaviors when it passes 0.5, for a switch", [&](Fields& f) {
-    input_event(f,
-                {.of = InputEvent::Of::sensor,
-                 .index = static_cast<std::uint32_t>(config_.plant.channels.size()),
-                 .input = "sensors." + channel.name},
-                "rise", "fall");
+    input_event_fields(f,
+                       {.of = InputEvent::Of::sensor,
+                        .index = static_cast<std::uint32_t>(config_.plant.channels.size()),
+                        .input = "sensors." + channel.name},
+                       "rise", "fall", config_.input_events, problems_);
   });
   if (!entry.reading()) return;
   constexpr std::size_t longest = 32;

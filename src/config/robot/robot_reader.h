@@ -43,8 +43,6 @@ class RobotReader {
 
   // robot_config.cpp
   void joystick(Fields& f);
-  void button(Fields& entry);
-  void input_event(Fields& f, InputEvent event, const char* rise, const char* fall);
   void behavior(Fields& entry);
 
   // robot_control.cpp

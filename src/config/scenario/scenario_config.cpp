@@ -276,6 +276,8 @@ void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   f.number("at_s", joystick.at_s, {0, scenario_duration_max_s, "s"}, "time of its first event");
   f.number("lost_at_s", joystick.lost_at_s, {0, scenario_duration_max_s, "s"},
            "time at which it is unplugged (default: never)");
+  f.map("buttons", std::string(buttons_doc) + ", in place of those of the robot's configuration",
+        [&](Fields& e) { button_fields(e, joystick.buttons, problems); });
 }
 
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {

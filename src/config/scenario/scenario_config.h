@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/json/fields.h"
+#include "config/robot/input_event.h"
 #include "distribution.h"
 #include "kadans/signal/frames.h"
 #include "play_item.h"
@@ -98,6 +99,7 @@ struct ScenarioJoystick {
   TextPlace place;
   double at_s = 0;
   double lost_at_s = std::numeric_limits<double>::infinity();  // the joystick is unplugged from then on
+  std::vector<InputEvent> buttons{};                           // in place of the robot's for the same buttons
 };
 
 // Which plug-ins the robot may load. Plug-ins that a record from elsewhere names are not trusted.

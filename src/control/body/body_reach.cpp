@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr int settle_steps_max = 8, way_steps = 16, end_steps_max = 6, last_steps_max = 8, reach_iterations_max = 200;
+constexpr int settle_steps_max = 8, way_steps = 16, end_steps_max = 2, last_steps_max = 8, reach_iterations_max = 200;
 constexpr double asked_weight = 1, change_weight = 3e-4;
 constexpr double way_weight = 0.03, last_weight = 1e-4;  // of the other tasks: on the way, and to say how far it stays
 constexpr double step_max_rad = 0.4;                     // of a joint, in one step

@@ -5,17 +5,20 @@
 // A row with lower == upper is an equality; an infinite bound is none. H is symmetric and positive definite: whoever
 // states a problem regularises it, and says how.
 //
-// The method is the dual active-set method of Goldfarb and Idnani (1983, Mathematical Programming 27). It begins at the
-// minimum without constraints and takes in the constraint that is violated most, until none is. Each iteration keeps
-// the conditions of optimality, so that no feasible point is needed to begin with, and a problem without solution ends
-// with the constraint that contradicts the active ones. The active rows' normals N are kept as
+// The equalities go first, all at once: Householder reflections of their normals (with pivoting) give a point that
+// fulfils them and a basis Z of what they leave free (Nocedal and Wright 2006, Numerical Optimization, section 16.2).
+// One that depends on others is left out when it agrees with them.
 //
-//   J' N = (R; 0),   J = L^-T Q,   H = L L',
+// In what is left the method is the dual active-set method of Goldfarb and Idnani (1983, Mathematical Programming 27).
+// It begins at the minimum without inequalities and takes in the one that is violated most, until none is. Each
+// iteration keeps the conditions of optimality, so that no feasible point is needed to begin with, and a problem
+// without solution ends with the row that contradicts the active ones. The active rows' normals N are kept as
 //
-// with R upper triangular, updated by Givens rotations when a row comes or goes. An equality never goes; one that
-// depends on others is left out when it agrees with them.
+//   J' N = (R; 0),   J = Z L^-T Q,   Z' H Z = L L',
 //
-// At a solution (Nocedal and Wright 2006, Numerical Optimization, section 16.1)
+// with R upper triangular, updated by Givens rotations when a row comes or goes.
+//
+// At a solution (Nocedal and Wright 2006, section 16.1)
 //
 //   H x + g = sum y_i a_i,   y_i >= 0 at the lower bound, y_i <= 0 at the upper bound, else y_i = 0.
 //
@@ -38,7 +41,7 @@ class QuadraticProgram {
     infeasible,            // no point fulfils all constraints
     iterations_exhausted,  // x fulfils those that were taken in so far
     refused  // a number is not finite, of the problem or of x, a lower bound is above the upper one, or H is not
-             // positive definite
+             // positive definite in what the equalities leave free
   };
 
   static constexpr double unbounded = std::numeric_limits<double>::infinity();
@@ -56,11 +59,12 @@ class QuadraticProgram {
   // Adds `weight` (a' x - b)^2 / 2 to what is minimised; a(k) gives the first `size` components, the others are 0.
   template <typename Normal>
   void add_square(Eigen::Index size, const Normal& a, double b, double weight) noexcept {
+    for (Eigen::Index k = 0; k < size; ++k) normal_[k] = a(k);
     for (Eigen::Index k = 0; k < size; ++k) {
-      const double share = weight * a(k);
+      const double share = weight * normal_[k];
       if (share == 0) continue;
       gradient_[k] -= share * b;
-      for (Eigen::Index i = 0; i < size; ++i) hessian_(i, k) += share * a(i);
+      hessian_.col(k).head(size) += share * normal_.head(size);
     }
   }
   // Adds a row whose normal the caller fills. There must be room.
@@ -74,8 +78,12 @@ class QuadraticProgram {
   [[nodiscard]] Status solve(int iterations_max) noexcept;
 
   auto solution() const noexcept { return x_.head(n_); }
-  auto multipliers() const noexcept { return multiplier_.head(m_); }  // y, one a row
-  int iterations() const noexcept { return iterations_; }             // of the last solve()
+  // y, one a row; computed here.
+  auto multipliers() noexcept {
+    find_multipliers();
+    return multiplier_.head(m_);
+  }
+  int iterations() const noexcept { return iterations_; }  // of the last solve(), for inequalities
 
  private:
   enum class Side : std::int8_t { none = 0, lower = 1, upper = -1 };
@@ -84,27 +92,40 @@ class QuadraticProgram {
     double sign = 1;  // -1: at its upper bound
   };
   bool finite() const noexcept;
+  void reflect() noexcept;
+  template <typename Vector>
+  void turn_back(Vector&& v) const noexcept;  // Q v, with Q of the reflections
+  bool start() noexcept;
   bool factorise() noexcept;
   bool is_equality(Eigen::Index row) const noexcept { return lower_[row] == upper_[row]; }
   Candidate most_violated() const noexcept;
   void directions() noexcept;
+  bool agrees() const noexcept;
+  double slack(Eigen::Index row, double bound) const noexcept;
   double blocking(Eigen::Index& position) const noexcept;
   bool take_in(const Candidate& candidate, double multiplier) noexcept;
   void let_go(Eigen::Index position) noexcept;
   Status bring_in(Candidate candidate, int iterations_max) noexcept;
-  void store_multipliers() noexcept;
+  void find_multipliers() noexcept;
 
   Eigen::MatrixXd hessian_, normals_;  // the rows' normals are columns
   Eigen::VectorXd gradient_, lower_, upper_;
-  Eigen::MatrixXd factor_, j_, r_;
+  // Of the equalities: their normals, which become reflections below the diagonal and a triangle above it.
+  Eigen::MatrixXd equal_;
+  std::vector<Eigen::Index> equal_row_;
+  Eigen::VectorXd own_;               // of each normal: what no other one has, squared
+  Eigen::VectorXd diagonal_, share_;  // of the triangle; how much of a reflection's own vector it takes away
+  Eigen::Index equalities_ = 0, rank_ = 0;
+  Eigen::MatrixXd free_hessian_, factor_, j_, r_;
+  double steepest_ = 0;                     // the longest column of J, squared
   Eigen::VectorXd x_, multiplier_, scale_;  // scale: the length of a row's normal
   Eigen::VectorXd normal_, d_, z_, step_;   // of the row that comes in
   Eigen::VectorXd active_multiplier_;
   std::vector<Eigen::Index> active_;
   std::vector<double> active_sign_;
   std::vector<Side> side_;
-  std::vector<bool> skipped_;  // rows that hold because the active ones do
-  Eigen::Index n_ = 0, m_ = 0, count_ = 0;
+  std::vector<bool> skipped_;                          // rows that hold because the active ones do
+  Eigen::Index n_ = 0, m_ = 0, free_ = 0, count_ = 0;  // free_: variables that the equalities leave
   int iterations_ = 0;
 };
 

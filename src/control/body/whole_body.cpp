@@ -325,9 +325,9 @@ void WholeBody::step(const ControlInput& input, ActuationFrame& actuation) noexc
     State& s = part.state;
     const double law_Nm = s.effort_Nm + part.config.stiffness_Nm_per_rad * (s.reference_rad - joint.position_rad) +
                           part.config.damping_Nms_per_rad * (s.reference_velocity_rad_s - joint.velocity_rad_s);
-    double effort_Nm = std::numeric_limits<double>::quiet_NaN(), integral_Nm = 0;  // there is no integral
+    double effort_Nm = std::numeric_limits<double>::quiet_NaN();
     if (std::isfinite(law_Nm)) {
-      const double unlimited_Nm = law_Nm + part.takeover.step(law_Nm, known, input.dt_s, integral_Nm, 0);
+      const double unlimited_Nm = law_Nm + part.takeover.step(law_Nm, known, input.dt_s);
       effort_Nm = std::clamp(unlimited_Nm, -part.config.effort_max_Nm, part.config.effort_max_Nm);
       s.saturated = effort_Nm != unlimited_Nm;
       part.takeover.leave(effort_Nm);

@@ -18,8 +18,9 @@
 //             natural frequency w (rad/s) and the damping ratio d.
 // Signals     a State per joint, and model_age_s: the time since the measurement that M and h come from, or since the
 //             start while they are older than the start.
-// Start       the reference continues with the joint's motion and comes to rest. Torque that the law does not explain
-//             goes to the integral when ki > 0; else it fades within 0.2 s after the first M and h of this activation.
+// Start       the reference continues with the joint's motion and comes to rest. Torque that M, h and the reference do
+//             not explain goes to the integral when ki > 0; the rest of what the law's torque differs by, or all of it,
+//             fades within 0.2 s after the first M and h of this activation.
 // Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops; for the
 //             other joints it counts as not accelerating. Its reference starts anew when it is measured again. A
 //             snapshot that is not finite gives no M and h: the last ones stay, and model_age_s grows.
@@ -93,7 +94,7 @@ class ComputedTorque final : public ControlObject {
   static void declare(AxisTables& tables, Part& part);
   static void take_over(Part& part, const ControlInput& input) noexcept;
   static void aim(Part& part, const ControlInput& input) noexcept;
-  static double settle(Part& part, double law_Nm, bool known, double dt_s) noexcept;
+  static double settle(Part& part, double law_Nm, double model_Nm, bool known, double dt_s) noexcept;
 
   std::vector<Part> parts_;            // control thread
   std::int64_t started_ns_ = 0;        // control thread
@@ -204,11 +205,11 @@ void ComputedTorque::aim(Part& part, const ControlInput& input) noexcept {
       reference.acceleration + c.kp_per_s2 * s.error_rad + c.kd_per_s * (reference.velocity - joint.velocity_rad_s);
 }
 
-double ComputedTorque::settle(Part& part, double law_Nm, bool known, double dt_s) noexcept {
+double ComputedTorque::settle(Part& part, double law_Nm, double model_Nm, bool known, double dt_s) noexcept {
   const Config& c = part.config;
   State& s = part.state;
   const double integral_max_Nm = c.ki_Nm_per_rads > 0 ? c.integral_max_Nm : 0;  // what never moves should keep nothing
-  const double offset_Nm = part.takeover.step(law_Nm, known, dt_s, s.integral_Nm, integral_max_Nm);
+  const double offset_Nm = part.takeover.step(law_Nm, model_Nm, known, dt_s, s.integral_Nm, integral_max_Nm);
   const double unlimited_Nm = law_Nm + offset_Nm + s.integral_Nm;
   s.effort_Nm = std::clamp(unlimited_Nm, -c.effort_max_Nm, c.effort_max_Nm);
   s.saturated = s.effort_Nm != unlimited_Nm;
@@ -224,19 +225,27 @@ void ComputedTorque::step(const ControlInput& input, ActuationFrame& actuation) 
   const ModelData& model = *newest;
   const bool known = model.time_ns >= started_ns_;
   model_age_s_ = 1e-9 * static_cast<double>(input.time_ns - (known ? model.time_ns : started_ns_));
-  std::array<double, max_joints> acceleration_rad_s2{};
+  std::array<double, max_joints> acceleration_rad_s2{}, feedback_rad_s2{};
+  bool taken_over = false;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    aim(parts_[i], input);
-    acceleration_rad_s2[i] = parts_[i].running ? parts_[i].state.acceleration_rad_s2 : 0;
+    Part& part = parts_[i];
+    aim(part, input);
+    if (!part.running) continue;
+    acceleration_rad_s2[i] = part.state.acceleration_rad_s2;
+    feedback_rad_s2[i] = acceleration_rad_s2[i] - part.reference.state().acceleration;
+    taken_over = taken_over || part.takeover.due(known);
   }
   const std::array<double, max_joints> inertial_Nm = model.mass.times(acceleration_rad_s2, parts_.size());
+  std::array<double, max_joints> feedback_Nm{};  // needed at a takeover alone
+  if (taken_over) feedback_Nm = model.mass.times(feedback_rad_s2, parts_.size());
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
     double effort_Nm = std::numeric_limits<double>::quiet_NaN();
     if (part.running) {
       const double law_Nm = inertial_Nm[i] + part.config.rotor_inertia_kg_m2 * acceleration_rad_s2[i] +
                             model.bias_Nm[i] + part.config.viscous_Nms_per_rad * part.state.reference_velocity_rad_s;
-      effort_Nm = settle(part, law_Nm, known, part.fresh ? 0 : input.dt_s);
+      const double model_Nm = law_Nm - feedback_Nm[i] - part.config.rotor_inertia_kg_m2 * feedback_rad_s2[i];
+      effort_Nm = settle(part, law_Nm, model_Nm, known, part.fresh ? 0 : input.dt_s);
       part.fresh = false;
     }
     actuation.joints[part.axis.joint] = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};

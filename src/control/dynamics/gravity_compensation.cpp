@@ -153,8 +153,7 @@ void GravityCompensation::step(const ControlInput& input, ActuationFrame& actuat
     State& s = part.state;
     const bool measured = std::isfinite(input.joints.joints[part.axis.joint].position_rad);
     const double law_Nm = measured ? gain_ * (data.gravity_Nm[i] + change_Nm[i]) : not_measured;
-    double integral_Nm = 0;  // there is none
-    const double offset_Nm = part.takeover.step(law_Nm, known, input.dt_s, integral_Nm, 0);
+    const double offset_Nm = part.takeover.step(law_Nm, known, input.dt_s);
     s.effort_Nm = std::clamp(law_Nm + offset_Nm, -part.effort_max_Nm, part.effort_max_Nm);
     s.saturated = s.effort_Nm != law_Nm + offset_Nm;
     if (std::isfinite(s.effort_Nm)) part.takeover.leave(s.effort_Nm);

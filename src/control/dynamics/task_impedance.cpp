@@ -258,8 +258,7 @@ void TaskImpedance::step(const ControlInput& input, ActuationFrame& actuation) n
   for (Part& part : parts_) {
     const JointState& joint = joints.joints[part.axis.joint];
     const double law = law_Nm(part, joint);
-    double integral_Nm = 0;  // there is none
-    const double unlimited_Nm = law + part.takeover.step(law, true, input.dt_s, integral_Nm, 0);
+    const double unlimited_Nm = law + part.takeover.step(law, true, input.dt_s);
     part.output.effort_Nm = std::clamp(unlimited_Nm, -part.config.effort_max_Nm, part.config.effort_max_Nm);
     part.output.saturated = part.output.effort_Nm != unlimited_Nm;
     actuation.joints[part.axis.joint] = {.effort_Nm = part.output.effort_Nm, .mode = ActuationMode::effort};

@@ -18,6 +18,7 @@
 #include "dds_domain.h"
 #include "engine/behavior_log.h"
 #include "engine/clock.h"
+#include "event_topics.h"
 #include "kadans/control/catalog.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/model/urdf.h"
@@ -95,6 +96,9 @@ class Ros2Topics {
 
   // Takes the next text on /kadans/command; false: none is waiting.
   [[nodiscard]] bool take(std::string& command);
+  // Or the next event for the behaviors, as a command.
+  [[nodiscard]] bool take_event(std::string& command) { return events_.take(command); }
+  void listen(const std::vector<BehaviorReport>& behaviors) { events_.listen(behaviors); }
   void answer(const std::string& text) noexcept;
   void tell_active(const std::string& json) noexcept { publish_text(to_.active, json); }
 
@@ -114,6 +118,7 @@ class Ros2Topics {
   DdsDomain domain_;
   Writers to_;
   dds_entity_t commands_;
+  EventTopics events_{domain_};
   std::vector<char*> names_;      // of the joints
   std::vector<Stamped> stamped_;  // scratch: the frames of one message
 };
@@ -266,6 +271,7 @@ constexpr int niceness = 5;
 constexpr int commands_a_beat = 8;  // the others wait, or make way for newer ones
 constexpr int events_a_beat = 64;
 constexpr double beats_a_sample = 2;
+constexpr double behaviors_asked_s = 0.25;  // how often it is asked which events what plays takes
 
 }  // namespace
 
@@ -315,10 +321,15 @@ struct Ros2Bridge::Inside final : Task {
 
   void serve() {
     std::string text;
-    for (int i = 0; i < commands_a_beat && topics->take(text); ++i) {
+    if (settings.commands && ++beats >= std::lround(beats_a_sample * settings.rate_hz * behaviors_asked_s)) {
+      beats = 0;
+      commands.ask_behaviors();
+    }
+    for (int i = 0; i < commands_a_beat && (topics->take_event(text) || topics->take(text)); ++i) {
       if (const auto answer = commands.take(text)) topics->answer(*answer);
     }
     while (const auto answer = commands.next()) topics->answer(*answer);
+    if (const auto behaviors = commands.behaviors()) topics->listen(*behaviors);
     for (int i = 0; i < events_a_beat && port.next(event); ++i) {
       if (event.kind == Event::Kind::active) topics->tell_active(json_of(event));
     }
@@ -334,6 +345,7 @@ struct Ros2Bridge::Inside final : Task {
   std::promise<void> joined;
   std::atomic<bool> running{false};
   std::uint64_t last_tick = UINT64_MAX;
+  long beats = 0;  // since it was asked what plays
   Event event;
   PosixWait wait{0, WallClock().now_ns()};
   TaskThread thread;

@@ -69,6 +69,11 @@ std::optional<std::string> TextOrders::next() {
     if (now_ns > asked.asked_ns + patience_ns) p_.port.withdraw(number);
   }
   for (Answer answer; p_.port.next(answer); answer = {}) {
+    if (answer.number == report_) {
+      report_ = 0;
+      if (answer.done) behaviors_ = std::move(answer.behaviors);
+      continue;
+    }
     const auto found = waiting_.find(answer.number);
     if (found == waiting_.end()) continue;
     const Asked asked = std::move(found->second);
@@ -79,6 +84,10 @@ std::optional<std::string> TextOrders::next() {
     return answer_text(asked.id, asked.verb, done, text);
   }
   return std::nullopt;
+}
+
+void TextOrders::ask_behaviors() {
+  if (report_ == 0) report_ = p_.port.send({.kind = Order::Kind::report, .who = p_.who});
 }
 
 void TextOrders::save(const std::string& preset, const Answer& answer, bool& done, std::string& text) {

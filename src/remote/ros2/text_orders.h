@@ -15,10 +15,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "engine/clock.h"
 #include "remote/instance/instance.h"
 #include "remote/page/live_hub.h"
+#include "script/host/behavior_tables.h"
 
 namespace kadans {
 
@@ -43,6 +46,9 @@ class TextOrders {
   [[nodiscard]] std::optional<std::string> take(std::string_view json);
   // Returns the next answer to an order that was on its way.
   [[nodiscard]] std::optional<std::string> next();
+  // Asks what plays, unless that is asked already. behaviors() tells it once, after a next().
+  void ask_behaviors();
+  [[nodiscard]] std::optional<std::vector<BehaviorReport>> behaviors() { return std::exchange(behaviors_, {}); }
 
  private:
   struct Asked {
@@ -58,6 +64,8 @@ class TextOrders {
   Parts p_;
   WallClock clock_;
   std::map<std::uint64_t, Asked> waiting_;  // by the order's number
+  std::uint64_t report_ = 0;                // that is on its way
+  std::optional<std::vector<BehaviorReport>> behaviors_;
 };
 
 }  // namespace kadans

@@ -119,6 +119,25 @@ class ChartCheck {
                   "', is always taken");
       return;
     }
+    for (std::uint16_t i = 0; i + 1 < count; ++i) {
+      for (auto k = static_cast<std::uint16_t>(i + 1); k < count; ++k) {
+        const std::size_t one = static_cast<std::size_t>(first) + i, later = static_cast<std::size_t>(first) + k;
+        if (hides(chart_.transitions[one], chart_.transitions[later]))
+          problem(chart_.states[index], chart_.transitions[later].line,
+                  "this transition is never taken: the one in line " + std::to_string(chart_.transitions[one].line) +
+                      ", to '" + chart_.transitions[one].target_names.front() +
+                      "', takes all that it could, and comes no later");
+      }
+    }
+  }
+
+  // Whether whatever takes the later one of a state has been taken by the first: the same event, or none, and no later.
+  static bool hides(const Chart::Transition& first, const Chart::Transition& later) {
+    if (first.when != Chart::no_function || first.target == no_state || first.on != later.on) return false;
+    if (first.on == no_event && !first.timed) return false;  // told above
+    if (!first.timed) return true;
+    if (!later.timed || first.after_parameter != later.after_parameter) return false;
+    return first.after_parameter != Chart::no_parameter || first.after_s <= later.after_s;
   }
 
   void run_done_without_run(StateIndex index) {
@@ -351,10 +370,42 @@ int look(lua_State* state) {
 
 void check_chart(const Chart& chart, std::vector<InputProblem>& problems) { ChartCheck(chart, problems).run(); }
 
+namespace {
+
+// What comes with the events that the runner makes.
+constexpr const char* runner_fields[] = {"message", "file",  "line",  "cause", "state",  "reason",
+                                         "what",    "joint", "value", "limit", "result", "results"};
+
+// s.event.data.NAME, where no event that is declared has such a field, and one has nearly.
+void check_event_fields(const std::vector<ScriptEvent>& declared, const ReadSource& read,
+                        std::vector<InputProblem>& problems) {
+  std::vector<std::string> known;
+  for (const ScriptEvent& event : declared) {
+    for (const ScriptEvent::Field& field : event.fields) known.push_back(field.name);
+  }
+  if (known.empty()) return;
+  known.insert(known.end(), std::begin(runner_fields), std::end(runner_fields));
+  const Tokens& tokens = read.scopes.tokens();
+  for (std::size_t i = 4; i < tokens.size(); ++i) {
+    const bool path = tokens[i - 4].text == "event" && tokens[i - 3].is(".") && tokens[i - 2].text == "data" &&
+                      tokens[i - 1].is(".") && tokens[i].kind == Kind::name;
+    if (!path || std::ranges::find(known, tokens[i].text) != known.end()) continue;
+    const std::string hint = hint_text(tokens[i].text, known);
+    if (!hint.empty())
+      problems.push_back(
+          {read.source->chunk, tokens[i].line, 0, "no event here has the field '" + tokens[i].text + "'" + hint});
+  }
+}
+
+}  // namespace
+
 void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, const std::vector<ReadSource>& read,
                   std::vector<InputProblem>& problems) {
   Emitted emitted;
-  for (const ReadSource& one : read) add_emitted(one.scopes.tokens(), emitted);
+  for (const ReadSource& one : read) {
+    add_emitted(one.scopes.tokens(), emitted);
+    check_event_fields(declared, one, problems);
+  }
   for (const ScriptEvent& event : declared) {
     if (!waits_for(chart, event) && !emitted.may_be(event.name) && is_own(chart, event))
       problems.push_back({event.chunk, event.line, 0,

@@ -1,7 +1,7 @@
 // Another program in a DDS domain: takes what a run publishes, sends it orders, floods it with rubbish. Told by its
 // arguments what to do, in their order:
 //
-//   ros2_peer DOMAIN (send JSON | until SECONDS | flood COUNT | datagrams COUNT)...
+//   ros2_peer DOMAIN (send JSON | event NAME[=VALUE] | until SECONDS | flood COUNT | datagrams COUNT)...
 //
 // What it takes goes to stdout, a JSON object a line. Exit code 1 after a minute of waiting for something.
 #include <array>
@@ -120,6 +120,37 @@ class Peer {
     wait_until([&] { return answered_ == id; });
   }
 
+  // On the event's topic, with the type of the value; waits for the answer.
+  void event(const std::string& what) {
+    const std::string name = what.substr(0, what.find('=')),
+                      value = what.substr(std::min(name.size() + 1, what.size()));
+    const bool flag = value == "true" || value == "false",
+               number = !value.empty() && value.find_first_not_of("-.0123456789") == std::string::npos;
+    const dds_topic_descriptor_t& type = value.empty() ? std_msgs_msg_dds__Empty__desc
+                                         : flag        ? std_msgs_msg_dds__Bool__desc
+                                         : number      ? std_msgs_msg_dds__Float64__desc
+                                                       : std_msgs_msg_dds__String__desc;
+    const dds_entity_t to = writer(("rt/kadans/event/" + name).c_str(), type);
+    checked(dds_set_status_mask(to, DDS_PUBLICATION_MATCHED_STATUS), "no status");
+    checked(dds_waitset_attach(waitset_, to, 0), "not attached");
+    wait_until([to] {
+      dds_publication_matched_status_t status{};
+      (void)dds_get_publication_matched_status(to, &status);
+      return status.current_count > 0;
+    });
+    const std_msgs_msg_dds__Empty_ empty{};
+    const std_msgs_msg_dds__Bool_ truth{value == "true"};
+    const std_msgs_msg_dds__Float64_ real{number ? std::stod(value) : 0};
+    const std_msgs_msg_dds__String_ text{const_cast<char*>(value.c_str())};
+    const void* sample = &text;
+    if (value.empty()) sample = &empty;
+    if (flag) sample = &truth;
+    if (number) sample = &real;
+    const int before = emitted_;
+    (void)dds_write(to, sample);
+    wait_until([&] { return emitted_ > before; });
+  }
+
   void until(double seconds) {
     wait_until([&] { return static_cast<double>(newest_ns_) >= 1e9 * seconds && described_; });
   }
@@ -166,10 +197,8 @@ class Peer {
     checked(dds_waitset_attach(waitset_, checked(dds_create_readcondition(made, DDS_ANY_STATE), name), made), name);
     return made;
   }
-  dds_entity_t writer(const char* name) {
-    return checked(
-        dds_create_writer(participant_, topic(std_msgs_msg_dds__String__desc, name), quality(false).get(), nullptr),
-        name);
+  dds_entity_t writer(const char* name, const dds_topic_descriptor_t& type = std_msgs_msg_dds__String__desc) {
+    return checked(dds_create_writer(participant_, topic(type, name), quality(false).get(), nullptr), name);
   }
   dds_entity_t topic(const dds_topic_descriptor_t& type, const char* name) const {
     return checked(dds_create_topic(participant_, &type, name, nullptr, nullptr), name);
@@ -227,9 +256,11 @@ class Peer {
     });
     take<std_msgs_msg_dds__String_>(results_, [&](const auto& m) {
       const Json answer = Json::parse(m.data);
-      if (!answer.contains("id")) return;  // to rubbish
+      const bool emitted = answer.value("verb", "") == "emit";
+      emitted_ += emitted ? 1 : 0;
+      if (!answer.contains("id") && !emitted) return;  // to rubbish
       say({{"topic", "command_result"}, {"answer", answer}});
-      answered_ = answer.at("id");
+      answered_ = answer.value("id", Json());
     });
   }
 
@@ -238,6 +269,7 @@ class Peer {
                clock_ = 0, joint_states_ = 0, commands_ = 0;
   std::int64_t newest_ns_ = -1;
   bool described_ = false;
+  int emitted_ = 0;
   Json answered_;
 };
 
@@ -250,6 +282,7 @@ int main(int count, char** arguments) {
   for (int i = 2; i + 1 < count; i += 2) {
     const std::string what = arguments[i], with = arguments[i + 1];
     if (what == "send") peer.send(with);
+    if (what == "event") peer.event(with);
     if (what == "until") peer.until(std::stod(with));
     if (what == "flood") peer.flood(std::stoi(with));
     if (what == "datagrams") peer.datagrams(std::stoi(with));

@@ -206,6 +206,37 @@ TEST_CASE("orders over DDS change what runs, and a flood of rubbish changes noth
   CHECK(result["commands"]["refused"] == 0);
 }
 
+TEST_CASE("each event that a behavior declares has a topic of a type that fits its fields") {
+  const auto project = project_copy("ros2_events");
+  write(project / "behaviors/tulip/listen.lua", R"(local k = require "kadans"
+k.events { whistle = {}, ["ball.near"] = { distance_m = { "m", min = 0, max = 5 } }, waves = { left = k.flag },
+           word = { said = k.text }, seen = { x_m = "m", left = k.flag } }
+local function tell(_, s)
+  local d = s.event.data or {}
+  print(string.format("%s: %s %s %s %s", s.event.name, tostring(d.distance_m), tostring(d.left), tostring(d.said),
+    tostring(d.x_m)))
+end
+return k.behavior "listen" { k.state "wait" { endless = true,
+  { on = { "whistle", "ball.near", "waves", "word", "seen" }, action = tell } } })");
+  REQUIRE(beside(project,
+                 "run config/tulip/robot.json --plant ideal --play listen --threads-on-virtual-time --ros2-commands -v",
+                 "peer event whistle event ball/near=1.25 event waves=true event 'word=hi \"you\"' "
+                 "event 'seen={\"x_m\": 2, \"left\": false}' event ball/near=7\n") == 0);
+  const std::string err = read(project / "err");
+  CHECK_MESSAGE(read(project / "code") == "0\n", err);
+  CHECK(has(err, "whistle: nil nil nil nil"));
+  CHECK(has(err, "ball.near: 1.25 nil nil nil"));
+  CHECK(has(err, "waves: nil true nil nil"));
+  CHECK(has(err, "word: nil nil hi \"you\" nil"));
+  CHECK(has(err, "seen: nil false nil 2"));
+  CHECK(has(err, "event whistle from ROS 2 to listen"));
+  const auto results = said_by_topic(project)["command_result"];
+  REQUIRE(results.size() == 6);
+  CHECK(results[0]["answer"]["done"] == true);
+  CHECK(results[5]["answer"]["done"] == false);
+  CHECK(has(results[5]["answer"]["text"], "field 'distance_m' = 7 is outside its range 0..5 m"));
+}
+
 TEST_CASE("orders over DDS are refused unless the run was told to take them") {
   const auto project = project_copy("ros2_refused");
   REQUIRE(beside(project, live, "peer send '{\"id\": 1, \"verb\": \"estop\"}' && ctl status") == 0);

@@ -1,0 +1,42 @@
+#include "input_event.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "config/json/fields.h"
+#include "config/scenario/event_text.h"
+#include "kadans/signal/joystick.h"
+
+namespace kadans {
+
+void input_event_fields(Fields& f, InputEvent event, const char* rise, const char* fall, std::vector<InputEvent>& all,
+                        Problems& problems) {
+  f.string(rise, event.rise, std::string("event sent at each ") + rise);
+  f.string(fall, event.fall, std::string("event sent at each ") + fall);
+  if (!f.reading()) return;
+  check_event_name({event.rise, f.place(rise)}, problems);
+  check_event_name({event.fall, f.place(fall)}, problems);
+  if (!event.rise.empty() || !event.fall.empty()) all.push_back(std::move(event));
+}
+
+void button_fields(Fields& entry, std::vector<InputEvent>& all, Problems& problems) {
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i <= joystick_buttons; ++i) names.push_back("button_" + std::to_string(i));
+  const auto found = std::ranges::find(names, entry.key());
+  if (entry.reading() && found == names.end()) problems.add_unknown(entry.key_place(), "button", entry.key(), names);
+  input_event_fields(entry,
+                     {.of = InputEvent::Of::button,
+                      .index = static_cast<std::uint32_t>(found - names.begin()),
+                      .input = "joystick." + entry.key()},
+                     "press", "release", all, problems);
+}
+
+std::vector<InputEvent> overridden(std::vector<InputEvent> all, const std::vector<InputEvent>& own) {
+  for (const InputEvent& event : own) {
+    std::erase_if(all, [&](const InputEvent& other) { return other.input == event.input; });
+    all.push_back(event);
+  }
+  return all;
+}
+
+}  // namespace kadans

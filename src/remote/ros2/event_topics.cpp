@@ -1,0 +1,79 @@
+#include "event_topics.h"
+
+#include <algorithm>
+
+#include "config/json/foreign_json.h"
+#include "messages.h"  // made by idlc from messages.idl
+#include "remote/order/order_json.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::int32_t events_depth = 16;  // that may wait, of a topic
+
+template <typename Value>
+std::string data_of(const std::string& field, const Value& value) {
+  return json_text(Json{{field, value}});
+}
+
+}  // namespace
+
+void EventTopics::listen(const std::vector<BehaviorReport>& behaviors) {
+  for (const BehaviorReport& behavior : behaviors) {
+    for (const ScriptEvent& event : behavior.events) {
+      const bool there = std::ranges::find(topics_, event.name, &Topic::event) != topics_.end();
+      if (!there && topics_.size() < topics_max) add(event);
+    }
+  }
+}
+
+void EventTopics::add(const ScriptEvent& event) {
+  constexpr Type types[] = {Type::number, Type::flag, Type::text};
+  Topic topic{.event = event.name};
+  if (event.fields.size() == 1) {
+    topic.field = event.fields.front().name;
+    topic.type = types[static_cast<std::size_t>(event.fields.front().type)];
+  } else if (!event.fields.empty()) {
+    topic.type = Type::fields;
+  }
+  const dds_topic_descriptor_t* described = &std_msgs_msg_dds__String__desc;
+  if (topic.type == Type::empty) described = &std_msgs_msg_dds__Empty__desc;
+  if (topic.type == Type::number) described = &std_msgs_msg_dds__Float64__desc;
+  if (topic.type == Type::flag) described = &std_msgs_msg_dds__Bool__desc;
+  std::string name = "rt/kadans/event/" + event.name;
+  std::ranges::replace(name, '.', '/');
+  topic.reader = domain_.reader(*described, name, {.depth = events_depth});
+  topics_.push_back(std::move(topic));
+}
+
+bool EventTopics::take(std::string& order) {
+  for (const Topic& topic : topics_) {
+    std::string data;
+    if (!take(topic, data)) continue;
+    order = json_text({{"verb", "emit"}, {"text", topic.event + (data.empty() ? "" : " " + data)}});
+    return true;
+  }
+  return false;
+}
+
+bool EventTopics::take(const Topic& topic, std::string& data) {
+  switch (topic.type) {
+    case Type::empty:
+      return domain_.take<std_msgs_msg_dds__Empty_>(topic.reader, [](const auto&) {});
+    case Type::number:
+      return domain_.take<std_msgs_msg_dds__Float64_>(topic.reader,
+                                                      [&](const auto& m) { data = data_of(topic.field, m.data); });
+    case Type::flag:
+      return domain_.take<std_msgs_msg_dds__Bool_>(topic.reader,
+                                                   [&](const auto& m) { data = data_of(topic.field, m.data); });
+    case Type::text:
+    case Type::fields:
+      break;
+  }
+  return domain_.take<std_msgs_msg_dds__String_>(topic.reader, [&](const auto& m) {
+    const std::string text = m.data != nullptr ? m.data : "";
+    data = topic.type == Type::text ? data_of(topic.field, text) : text;
+  });
+}
+
+}  // namespace kadans
