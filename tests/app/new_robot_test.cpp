@@ -87,13 +87,13 @@ TEST_CASE("new robot writes robots that stand or are held, and play their behavi
     CAPTURE(name);
     write(folder / "from.urdf", text);
     const Outcome made = run("new robot from.urdf", folder);
-    CHECK_MESSAGE(made.exit_code == 0, made.out + made.err);
+    CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
     CHECK(has(made.err, says));
     CHECK(has(made.out, "PASSED"));
     CHECK(has(made.out, "behaviors/" + std::string(name) + "/sway.lua"));
     const std::string scenario = "config/scenarios/" + std::string(name) + "_hold.json";
     const Outcome sways = run("sim " + scenario + " --play sway --no-record --duration 14", folder);
-    CHECK_MESSAGE(sways.exit_code == 0, sways.out + sways.err);
+    CHECK_MESSAGE(sways.exit_code == 0, (sways.out + sways.err));
     CHECK(run("behavior test behaviors/" + std::string(name), folder).exit_code == 0);
     CHECK(run("check config behaviors", folder).exit_code == 0);
   }
@@ -110,7 +110,7 @@ TEST_CASE("new robot takes the meshes with it, each under a name of its own, and
   }
   write(folder / "arm.urdf", text);
   const Outcome made = run("new robot arm.urdf --in project --name mine", folder);
-  CHECK_MESSAGE(made.exit_code == 0, made.out + made.err);
+  CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
   const std::string urdf = read(folder / "project/models/mine/mine.urdf");
   CHECK(has(urdf, "<mesh filename='meshes/part.obj'/>"));
   CHECK(has(urdf, "<mesh filename='meshes/part_2.obj'/>"));

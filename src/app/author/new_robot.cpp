@@ -142,7 +142,7 @@ Json pose_json(const RobotModel& model, const std::vector<double>& position) {
   return pose;
 }
 
-Json robot_json(const RobotModel& model, const std::string& name, const Stance& stance,
+Json robot_json(const RobotModel& model, const std::string& name, const StandingPose& stance,
                 const std::vector<JointHold>& holds) {
   const bool bolted = stance.feet.empty();
   Json drives = {{"doc",
@@ -158,14 +158,13 @@ Json robot_json(const RobotModel& model, const std::string& name, const Stance& 
     parameters[joint + ".kd_Nms_per_rad"] = figures(holds[i].damping_Nms_per_rad);
   }
   Json objects = Json::array();
-  objects.push_back(
-      {{"name", "posture"},
-       {"doc",
-        "Each joint is stiffer than gravity pulls it away (three times where it can be), at most half of "
-        "what two ticks of delay allow, and damped at most half of that."},
-       {"type", "joint_pid"},
-       {"joints", motors},
-       {"parameters", parameters}});
+  objects.push_back({{"name", "posture"},
+                     {"doc",
+                      "Each joint is stiffer than gravity pulls it away (three times where it can be), at most half of "
+                      "what two ticks of delay allow, and damped at most half of that."},
+                     {"type", "joint_pid"},
+                     {"joints", motors},
+                     {"parameters", parameters}});
   Json hold = {{"doc", "Holds its joints."}, {"objects", {"posture"}}};
   if (bolted) {
     objects.push_back({{"name", "weight"}, {"type", "gravity_compensation"}, {"joints", motors}});
@@ -187,7 +186,7 @@ Json robot_json(const RobotModel& model, const std::string& name, const Stance& 
           {"control", {{"objects", objects}, {"sets", {{"hold", hold}}}}}};
 }
 
-Json scenario_json(const std::string& name, const Stance& stance) {
+Json scenario_json(const std::string& name, const StandingPose& stance) {
   Json checks = Json::array();
   if (!stance.feet.empty()) {
     checks.push_back({{"name", "stays up, lowest height in m"},
@@ -212,7 +211,7 @@ void make_folder(const fs::path& folder) {
   if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
 }
 
-void tell(const RobotModel& model, const Stance& stance, const std::vector<JointHold>& holds) {
+void tell(const RobotModel& model, const StandingPose& stance, const std::vector<JointHold>& holds) {
   std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
   if (stance.feet.empty()) {
     std::fprintf(stderr, "No two links at its ends are the lowest of all: it is bolted down (plant.fixed_base).\n");
@@ -223,7 +222,8 @@ void tell(const RobotModel& model, const Stance& stance, const std::vector<Joint
   }
   for (std::size_t i = 0; i < holds.size(); ++i) {
     if (holds[i].weak)
-      std::fprintf(stderr, "warning: %s can hardly be held: gravity takes %.3g Nm/rad, and the delay allows %.3g Nm/rad\n",
+      std::fprintf(stderr,
+                   "warning: %s can hardly be held: gravity takes %.3g Nm/rad, and the delay allows %.3g Nm/rad\n",
                    model.joints[i].name.c_str(), holds[i].load_Nm_per_rad, holds[i].stiffness_Nm_per_rad);
   }
 }
@@ -257,7 +257,7 @@ int run_new_robot(const NewRobotOptions& options) {
     if (fs::exists(path, error))
       throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
   }
-  const Stance stance = find_stance(model);
+  const StandingPose stance = find_stance(model);
   const std::vector<JointHold> holds = hold_joints(model, stance);
   if (std::ranges::none_of(holds, [](const JointHold& hold) { return hold.stiffness_Nm_per_rad > 0; }))
     throw InputError(

@@ -107,8 +107,8 @@ class StanceSearch {
     for (std::size_t i = 0; i < position_.size(); ++i) position_[i] = within(i, 0, 0);
   }
 
-  Stance run() {
-    Stance stance;
+  StandingPose run() {
+    StandingPose stance;
     find_legs();
     if (legs_.size() < 2) {
       stance.stand = stance.low = position_;
@@ -303,9 +303,9 @@ Carried carried_by(const RobotModel& model, const Body& body, std::size_t joint)
 
 }  // namespace
 
-Stance find_stance(const RobotModel& model) { return StanceSearch(model).run(); }
+StandingPose find_stance(const RobotModel& model) { return StanceSearch(model).run(); }
 
-std::vector<JointHold> hold_joints(const RobotModel& model, const Stance& stance) {
+std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance) {
   // A rotor that its motor's whole torque brings to 2500 rad/s2 is typical of drives of legs and arms; E.
   constexpr double rotor_per_Nm = 1.0 / 2500;
   // At 1 kHz with two ticks of delay and a velocity filtered at 100 Hz stiffness / inertia of 28000 is the edge of

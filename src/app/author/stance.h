@@ -9,7 +9,7 @@
 
 namespace kadans {
 
-struct Stance {
+struct StandingPose {
   std::vector<std::size_t> feet;  // links that carry it; none: it is bolted to the world
   std::vector<double> stand;      // positions of the joints, rad (m of a slider)
   std::vector<double> low;        // lower, or for a robot that is bolted down a little aside
@@ -19,7 +19,7 @@ struct Stance {
 // A robot with at least two links at its ends that are the lowest of all, and a base that is well above them, stands on
 // these: its feet under their legs, level where the legs have the joints for it, and its centre of mass over their
 // middle (damped least squares, Buss 2004). Any other is bolted down, and stands as near to zero as its limits allow.
-Stance find_stance(const RobotModel& model);
+StandingPose find_stance(const RobotModel& model);
 
 struct JointHold {
   double stiffness_Nm_per_rad = 0, damping_Nms_per_rad = 0;  // N/m and Ns/m of a slider
@@ -29,6 +29,6 @@ struct JointHold {
 };
 
 // One a joint; zeros where there is no motor.
-std::vector<JointHold> hold_joints(const RobotModel& model, const Stance& stance);
+std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance);
 
 }  // namespace kadans
