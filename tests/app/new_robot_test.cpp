@@ -101,6 +101,7 @@ TEST_CASE("new robot writes robots that stand or are held, and play their behavi
 
 TEST_CASE("new robot takes the meshes with it, each under a name of its own, and points the URDF to them") {
   const auto folder = fresh_folder("new_robot_meshes");
+  for (const char* part : {"a", "b"}) std::filesystem::create_directories(folder / part);
   write(folder / "a/part.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 2 3\nf 1 2 4\n");
   write(folder / "b/part.obj", "v 0 0 0\nv 0.2 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 2 3\nf 1 2 4\n");
   std::string text = arm();
@@ -120,7 +121,7 @@ TEST_CASE("new robot takes the meshes with it, each under a name of its own, and
 TEST_CASE("new robot overwrites nothing, and refuses what it can make no robot of") {
   const auto folder = fresh_folder("new_robot_refused");
   write(folder / "arm.urdf", arm());
-  write(folder / "behaviors/arm/mine.lua", "mine");
+  std::filesystem::create_directories(folder / "behaviors/arm");
   const Outcome taken = run("new robot arm.urdf", folder);
   CHECK(taken.exit_code == 2);
   CHECK(has(taken.err, "behaviors/arm: is there already; nothing is overwritten"));

@@ -124,7 +124,8 @@ TEST_CASE("A hull that swings in stops at the hull of another link") {
   }
 }
 
-TEST_CASE("A mesh that nobody has read is refused by the plant, with what is missing; so is one of too many corners") {
+TEST_CASE(
+    "A mesh that nobody has read is refused by the plant, with what is missing, and so is one of too many corners") {
   const auto refusal = [](const Mesh& mesh) -> std::string {
     const Robot robot = as_hull(box(2, {0.1, 0.1, 0.1}), mesh);
     try {

@@ -20,7 +20,7 @@ struct Fence {
 const std::vector<Fence>& fences() {
   static const std::vector<Fence> all{
       {"Lua", {"lua.h", "lauxlib.h", "lualib.h", "luajit.h", "lua.hpp", "luajit-2.1/"}, {"script/"}},
-      {"Bullet", {"bt", "Bullet", "LinearMath/", "bullet/"}, {"plant/bullet/", "model/"}},
+      {"Bullet", {"bt", "Bullet", "LinearMath/", "bullet/"}, {"plant/bullet/", "model/", "app/mesh/"}},
       {"KDL", {"kdl/"}, {"model/"}},
       {"spdlog", {"spdlog/"}, {"engine/behavior_log.cpp"}},
       {"JSON", {"nlohmann/"}, {"config/", "telemetry/", "scenario/", "campaign/", "remote/", "app/"}},

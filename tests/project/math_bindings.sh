@@ -53,6 +53,7 @@ looked_at=0
 for file in "$KADANS_BINARY_DIR"/kadans* "$KADANS_BINARY_DIR"/tests/* "$KADANS_BINARY_DIR"/tests/bench/*; do
   readelf -d "$file" 2>/dev/null | grep -q 'NEEDED.*\[lib\(Bullet\|LinearMath\|luajit\|orocos-kdl\)' || continue
   [[ $file == *.so ]] && continue
+  [[ $file == */kadans-hull ]] && continue  # it reads files, and computes nothing of a run
   shows "$file" "$@"
   # Two tests compare with formulas of complex numbers, within wide bounds.
   wrong=$(nm -D --undefined-only "$file" | awk '{sub("@.*", "", $2); print $2}' | sort | comm -12 - "$folder/c_functions" |

@@ -13,7 +13,6 @@
 #include "app/terminal.h"
 #include "behavior_stage.h"
 #include "campaign/suite/suite_report.h"
-#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
 #include "file_checks.h"
@@ -21,6 +20,7 @@
 #include "scenario/run.h"
 #include "script/behavior/behavior.h"
 #include "script/chart/chart_graph.h"
+#include "signal/durable_file.h"
 
 namespace kadans {
 

@@ -139,7 +139,12 @@ constexpr Examples all_examples[] = {
     {"doctor",
      "  kadans doctor\n"
      "  kadans doctor config/jiwiy/servos.json\n"},
-    {"new", "  kadans new control-object knee_damper\n"},
+    {"new",
+     "  kadans new robot models/jiwiy/jiwiy.urdf --name camera --in mine\n"
+     "  kadans new control-object knee_damper\n"},
+    {"new robot",
+     "  kadans new robot models/jiwiy/jiwiy.urdf --name camera --in mine\n"
+     "  kadans new robot arm.urdf --no-run\n"},
     {"new control-object",
      "  kadans new control-object knee_damper\n"
      "  kadans new control-object knee_damper --plugin --in plugins\n"},

@@ -13,8 +13,8 @@
 
 #include "app/commands.h"
 #include "app/terminal.h"
-#include "signal/durable_file.h"
 #include "kadans/signal/input_error.h"
+#include "signal/durable_file.h"
 #include "signal/shell_word.h"
 
 namespace kadans {

@@ -4,10 +4,10 @@
 
 #include "app/command_line.h"
 #include "app/terminal.h"
-#include "signal/durable_file.h"
 #include "config/robot/project_root.h"
 #include "field_reference.h"
 #include "man_page.h"
+#include "signal/durable_file.h"
 
 namespace kadans {
 

@@ -10,10 +10,10 @@
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "behavior_stage.h"
-#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
 #include "script/bindings/api.h"
+#include "signal/durable_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {

@@ -7,9 +7,9 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "signal/durable_file.h"
 #include "kadans/signal/input_error.h"
 #include "record_pictures.h"
+#include "signal/durable_file.h"
 #include "telemetry/plot/animated_png.h"
 
 namespace kadans {

@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include "app/terminal.h"
-#include "signal/durable_file.h"
 #include "log_verbs.h"
+#include "signal/durable_file.h"
 #include "signal/number_text.h"
 #include "signal/utf8.h"
 

@@ -12,7 +12,6 @@
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 #include "hull.h"
@@ -66,8 +65,10 @@ int run(int argc, char** argv) {
   bound(RLIMIT_CPU, cpu_max_s);
   bound(RLIMIT_CORE, 0);
   const Hull hull = convex_hull(read_points(argv[1]), static_cast<std::size_t>(corners));
-  const nlohmann::ordered_json json = {{"exact", hull.exact}, {"left_out", hull.left_out}, {"corners", hull.corners}};
-  std::printf("%s\n", json.dump().c_str());
+  std::printf("{\"exact\": %zu, \"left_out\": %.9g, \"corners\": [", hull.exact, hull.left_out);
+  for (const Point& corner : hull.corners)
+    std::printf("%s[%.17g, %.17g, %.17g]", &corner == hull.corners.data() ? "" : ", ", corner[0], corner[1], corner[2]);
+  std::printf("]}\n");
   return 0;
 }
 

@@ -13,12 +13,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include "signal/content_hash.h"
-#include "signal/durable_file.h"
 #include "config/robot/project_root.h"
 #include "config/robot/robot_config.h"
 #include "config/scenario/based_on.h"
 #include "kadans/signal/input_error.h"
+#include "signal/content_hash.h"
+#include "signal/durable_file.h"
 #include "signal/input_file.h"
 #include "signal/shell_word.h"
 #include "telemetry/mcap/mcap_reader.h"

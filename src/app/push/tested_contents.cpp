@@ -4,10 +4,10 @@
 #include <fstream>
 
 #include "app/line_editor.h"
-#include "signal/content_hash.h"
-#include "signal/durable_file.h"
 #include "delivery.h"
 #include "kadans/signal/input_error.h"
+#include "signal/content_hash.h"
+#include "signal/durable_file.h"
 
 namespace kadans {
 namespace {

@@ -4,10 +4,10 @@
 
 #include "app/assembly.h"
 #include "app/sim/played_behaviors.h"
-#include "signal/content_hash.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
 #include "scenario/judge/metrics.h"
+#include "signal/content_hash.h"
 #include "version.h"
 
 namespace kadans {

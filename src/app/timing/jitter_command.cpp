@@ -15,7 +15,6 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "realtime/machine/jitter.h"
 #include "realtime/machine/keep_awake.h"
@@ -24,6 +23,7 @@
 #include "realtime/machine/placement.h"
 #include "realtime/posix_wait.h"
 #include "run_report.h"
+#include "signal/durable_file.h"
 #include "signal/number_text.h"
 #include "telemetry/plot.h"
 

@@ -20,11 +20,11 @@
 #include "campaign/sweep/parameter_edit.h"
 #include "campaign/sweep/sweep_case.h"
 #include "campaign/tuning/cma_es.h"
-#include "signal/content_hash.h"
-#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
 #include "kadans/signal/random.h"
+#include "signal/content_hash.h"
+#include "signal/durable_file.h"
 
 namespace kadans {
 

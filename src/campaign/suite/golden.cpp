@@ -6,11 +6,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/machine_name.h"
+#include "signal/durable_file.h"
 
 namespace kadans {
 namespace {

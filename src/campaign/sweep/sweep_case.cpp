@@ -6,9 +6,9 @@
 #include <numeric>
 #include <string_view>
 
-#include "signal/content_hash.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
+#include "signal/content_hash.h"
 #include "signal/nearest_name.h"
 #include "signal/number_text.h"
 #include "signal/shell_word.h"

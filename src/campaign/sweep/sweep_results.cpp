@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "signal/content_hash.h"
-#include "signal/durable_file.h"
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
+#include "signal/content_hash.h"
+#include "signal/durable_file.h"
 
 namespace kadans {
 namespace {

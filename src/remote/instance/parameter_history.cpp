@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "campaign/sweep/parameter_edit.h"
-#include "signal/durable_file.h"
 #include "config/json/fields.h"
 #include "config/json/json_value.h"
+#include "signal/durable_file.h"
 
 namespace kadans {
 
