@@ -33,6 +33,7 @@ export async function render_record(session, wanted) {
     const times = times_of(session, wanted);
     session.seek(times[0]);
     show.take(session);
+    await Promise.all([show.model, ...show.others].map((model) => model.complete));
     for (const t of times) {
       show.draw(t, all_marks);
       const picture = await new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));

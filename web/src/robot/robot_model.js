@@ -32,18 +32,31 @@ export class RobotModel {
     this.prefix = prefix;
     const loader = new URDFLoader();
     loader.packages = (name) => `${mesh_base}${name}`;
+    loader.workingPath = mesh_base; // of names that are relative to the URDF
+    const meshes = [];
     loader.loadMeshCb = (path, manager, material, done) => {
-      if (!/\.(stl|dae)$/i.test(path)) return mark(material, done);
-      return loader.defaultMeshLoader(path, manager, material, (mesh) => (mesh ? done(mesh) : mark(material, done)));
+      const come = (resolve) => {
+        const take = (mesh) => resolve(mesh ? done(mesh) : mark(material, done));
+        if (/\.(stl|dae)$/i.test(path)) loader.defaultMeshLoader(path, manager, material, take);
+        else take(null);
+      };
+      meshes.push(new Promise(come));
     };
     this.robot = loader.parse(urdf);
     this.root = new Group();
     this.root.add(this.robot);
     this.joints = Object.values(this.robot.joints).filter((joint) => joint.jointType !== 'fixed');
     this.masses = masses_of(this.robot);
-    this.radius = this.bounds().radius; // with all joints at 0
     this.turn = new Quaternion();
     this.euler = new Euler();
+    this.finish(fine);
+    // When its meshes are there, too; undefined when it has none.
+    this.complete = meshes.length > 0 ? Promise.all(meshes).then(() => this.finish(fine)) : undefined;
+  }
+
+  finish(fine) {
+    for (const joint of this.joints) joint.setJointValue(0);
+    this.radius = this.bounds().radius; // with all joints at 0
     this.robot.traverse((part) => {
       if (!part.isMesh) return;
       part.castShadow = true;

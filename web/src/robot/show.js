@@ -24,6 +24,12 @@ export class Show {
     const mesh_base = session.mesh_base ?? './assets/';
     this.model = new RobotModel(session.urdf, mesh_base, this.stage.fine);
     this.others = [...session.others].map(([name, urdf]) => new RobotModel(urdf, mesh_base, this.stage.fine, `${name}.`));
+    const { model } = this;
+    model.complete?.then(() => {
+      if (this.model !== model) return;
+      this.framed = false;
+      this.stage.moved = true;
+    });
     this.marks = new BalanceMarks(session.description?.robot?.feet ?? []);
     this.gazes = (session.description?.objects ?? []).filter((object) => object.type === 'gaze').map((object) => new GazeMark(this.stage, object, this.model, () => this.sender()));
     this.marks.root.visible = this.stage.fine;
