@@ -18,7 +18,7 @@ namespace kadans {
 using UrdfPackages = std::map<std::string, std::string>;  // folders by the name of a package
 
 // The corners of the convex hull of a mesh, in the file's unit; none: it cannot be read here. Throws InputError on a
-// file that is no mesh.
+// file that is no mesh: that one is left out, with a warning.
 using MeshHull = std::function<std::vector<Vec3>(const std::string& file)>;
 
 struct UrdfOptions {

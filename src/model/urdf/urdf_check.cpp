@@ -223,21 +223,30 @@ class MeshFiles {
     });
   }
 
-  // What a robot of many equal meshes has is read once.
-  void read_hull(Mesh& mesh, std::size_t at) {
+  // Gives meshes the corners of their hulls. One that cannot be read is left out as one that is not there. What a robot
+  // of many equal meshes has is read once.
+  void read_hulls(std::vector<UrdfGeometry>& all, const std::string& link) {
     if (!options_.mesh_hull) return;
-    auto [hull, added] = hulls_.try_emplace(mesh.file);
-    if (added) {
+    std::erase_if(all, [&](UrdfGeometry& given) {
+      auto* const mesh = std::get_if<Mesh>(&given.geometry.shape);
+      if (mesh == nullptr) return false;
       try {
-        hull->second = options_.mesh_hull(mesh.file);
+        const auto [hull, added] = hulls_.try_emplace(mesh->file);
+        if (added) hull->second = options_.mesh_hull(mesh->file);
+        for (Vec3 corner : hull->second) {
+          for (std::size_t i = 0; i < 3; ++i) corner[i] *= mesh->scale[i];
+          mesh->corners_m.push_back(corner);
+        }
+        return false;
       } catch (const InputError& error) {
-        return document_.refuse(at, "mesh " + shown_quoted(mesh.file) + " " + error.problems().front().message, "mesh");
+        hulls_.erase(mesh->file);
+        document_.warn(given.file_at,
+                       "mesh file " + shown_quoted(mesh->file) + " " + error.problems().front().message + "; link " +
+                           shown_quoted(link) + " collides without it",
+                       "mesh that cannot be read");
+        return true;
       }
-    }
-    for (Vec3 corner : hull->second) {
-      for (std::size_t i = 0; i < 3; ++i) corner[i] *= mesh.scale[i];
-      mesh.corners_m.push_back(corner);
-    }
+    });
   }
 
  private:
@@ -277,9 +286,7 @@ void check_description(UrdfDocument& document, UrdfDescription& robot, const Urd
   MeshFiles files(document, options);
   for (UrdfLink& link : robot.links) {
     files.find(link.collisions, "collision ", link.name, "collides without it");
-    for (UrdfGeometry& given : link.collisions) {
-      if (auto* const mesh = std::get_if<Mesh>(&given.geometry.shape)) files.read_hull(*mesh, given.file_at);
-    }
+    files.read_hulls(link.collisions, link.name);
     files.find(link.visuals, "visual ", link.name, "is drawn with a marker in its place");
   }
   TreeCheck(document, robot).run();
