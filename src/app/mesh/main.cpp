@@ -19,7 +19,8 @@
 namespace kadans {
 namespace {
 
-constexpr rlim_t memory_max_bytes = rlim_t{1} << 31U, cpu_max_s = 60;
+[[maybe_unused]] constexpr rlim_t memory_max_bytes = rlim_t{1} << 31U;
+constexpr rlim_t cpu_max_s = 60;
 constexpr std::size_t corners_least = 4, corners_most = 256;
 constexpr unsigned depth_max = 100;  // of nodes in nodes
 
@@ -61,7 +62,9 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "usage: kadans-hull FILE CORNERS, %zu to %zu\n", corners_least, corners_most);
     return 2;
   }
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their shadow of the memory is larger
   bound(RLIMIT_AS, memory_max_bytes);
+#endif
   bound(RLIMIT_CPU, cpu_max_s);
   bound(RLIMIT_CORE, 0);
   const Hull hull = convex_hull(read_points(argv[1]), static_cast<std::size_t>(corners));
