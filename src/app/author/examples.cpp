@@ -144,7 +144,7 @@ constexpr Examples all_examples[] = {
      "  kadans new control-object knee_damper\n"},
     {"new robot",
      "  kadans new robot models/jiwiy/jiwiy.urdf --name camera --in mine\n"
-     "  kadans new robot arm.urdf --no-run\n"},
+     "  kadans new robot models/head/head.urdf --name eyes --no-run\n"},
     {"new control-object",
      "  kadans new control-object knee_damper\n"
      "  kadans new control-object knee_damper --plugin --in plugins\n"},
