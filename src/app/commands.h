@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -170,6 +171,13 @@ struct NewControlObjectOptions {
   std::string folder = ".";  // the object's folder is made in this folder
   bool plugin = false;
 };
+struct NewFile {
+  std::filesystem::path path;
+  std::string text;
+};
+// Writes the files, with their folders, and says which. Throws InputError, and writes nothing, when one of `fresh` is
+// there already.
+void write_new_files(const std::vector<std::filesystem::path>& fresh, const std::vector<NewFile>& files);
 struct NewRobotOptions {
   std::string urdf, name;
   std::string folder = ".";  // the project

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -20,7 +19,6 @@
 #include "kadans/model/urdf.h"
 #include "kadans/signal/input_error.h"
 #include "realtime/machine/child_process.h"
-#include "signal/durable_file.h"
 #include "signal/input_file.h"
 #include "signal/shell_word.h"
 #include "stance.h"
@@ -103,8 +101,8 @@ std::string name_from(const std::string& text) {
   return name;
 }
 
-// The URDF's text with its meshes as they lie in `folder` of the project, which get their files in `copies`.
-std::string with_own_meshes(const std::string& text, const std::string& file, const std::string& folder,
+// The URDF's text with its meshes in a folder beside it; `copies` gets the name there of each mesh's file.
+std::string with_own_meshes(const std::string& text, const std::string& file,
                             std::map<std::string, std::string>& copies) {
   std::string result;
   std::set<std::string> taken;
@@ -131,7 +129,7 @@ std::string with_own_meshes(const std::string& text, const std::string& file, co
         copy = path.stem().string() + "_" + std::to_string(i) + path.extension().string();
       taken.insert(copy);
     }
-    result += folder + "/" + copy;
+    result += "meshes/" + copy;
   }
   return result + text.substr(at);
 }
@@ -205,12 +203,6 @@ Json scenario_json(const std::string& name, const StandingPose& stance) {
           {"checks", checks}};
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
-}
-
 void tell(const RobotModel& model, const StandingPose& stance, const std::vector<JointHold>& holds) {
   std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
   if (stance.feet.empty()) {
@@ -252,11 +244,6 @@ int run_new_robot(const NewRobotOptions& options) {
   const fs::path models = project / "models" / name, config = project / "config" / name,
                  behaviors = project / "behaviors" / name,
                  scenario = project / "config" / "scenarios" / (name + "_hold.json");
-  for (const fs::path& path : {models, config, behaviors, scenario}) {
-    std::error_code error;
-    if (fs::exists(path, error))
-      throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
-  }
   const StandingPose stance = find_stance(model);
   const std::vector<JointHold> holds = hold_joints(model, stance);
   if (std::ranges::none_of(holds, [](const JointHold& hold) { return hold.stiffness_Nm_per_rad > 0; }))
@@ -264,25 +251,20 @@ int run_new_robot(const NewRobotOptions& options) {
         {.file = options.urdf, .message = "no joint of it has a motor: <limit effort=...> says which torque it has"});
 
   std::map<std::string, std::string> meshes;
-  const std::string own = with_own_meshes(text, options.urdf, "meshes", meshes);
-  make_folder(models / "meshes");
-  for (const auto& [from, to] : meshes) {
-    std::error_code error;
-    fs::copy_file(from, models / "meshes" / to, error);
-    if (error) throw InputError({.file = from, .message = "cannot be copied: " + error.message()});
-  }
-  for (const fs::path& folder : {config, behaviors, scenario.parent_path()}) make_folder(folder);
+  const std::string own = with_own_meshes(text, options.urdf, meshes);
   std::string test(sway_test_template);
   test.replace(test.find("@name@"), 6, name);
-  const std::vector<std::pair<fs::path, std::string>> files{
-      {models / (name + ".urdf"), own},
-      {config / "robot.json", json_text(robot_json(model, name, stance, holds), 2) + "\n"},
-      {scenario, json_text(scenario_json(name, stance), 2) + "\n"},
-      {behaviors / "sway.lua", std::string(sway_template)},
-      {behaviors / "sway_test.lua", test}};
-  for (const auto& [file, content] : files) {
-    write_durably(file, content);
-    std::printf("%s\n", file.c_str());
+  write_new_files({models, config, behaviors, scenario},
+                  {{models / (name + ".urdf"), own},
+                   {config / "robot.json", json_text(robot_json(model, name, stance, holds), 2) + "\n"},
+                   {scenario, json_text(scenario_json(name, stance), 2) + "\n"},
+                   {behaviors / "sway.lua", std::string(sway_template)},
+                   {behaviors / "sway_test.lua", test}});
+  for (const auto& [from, to] : meshes) {
+    std::error_code error;
+    fs::create_directories(models / "meshes", error);
+    fs::copy_file(from, models / "meshes" / to, error);
+    if (error) throw InputError({.file = from, .message = "cannot be copied: " + error.message()});
   }
   std::fflush(stdout);
   tell(model, stance, holds);
