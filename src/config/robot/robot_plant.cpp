@@ -10,8 +10,6 @@
 
 namespace kadans {
 
-// The parts of a robot's configuration that stand on plant, start and estimator.
-
 namespace {
 
 void drive_fields(Fields& f, DriveSettings& d) {
@@ -207,10 +205,8 @@ void RobotReader::surface(Fields& entry) {
   entry.number("friction", surface.friction, {0, 10}, "coefficient of friction", Need::required);
   if (!have_model_) return;
   const std::vector<std::string> links = config_.model.link_names();
-  const std::vector<std::size_t> chosen = matching(entry.key(), links);
-  if (chosen.empty()) problems_.add_unknown(entry.key_place(), "link", entry.key(), links);
   std::vector<SurfaceSettings>& all = config_.plant.surfaces;
-  for (const std::size_t i : chosen) {
+  for (const std::size_t i : chosen(entry.key(), entry.key_place(), "link", links)) {
     std::erase_if(all, [&](const SurfaceSettings& s) { return s.link == links[i]; });
     all.push_back({links[i], surface.friction});
   }
@@ -239,9 +235,7 @@ void RobotReader::collision(Fields& entry) {
     }
   }
   const std::vector<std::string> links = config_.model.link_names();
-  const std::vector<std::size_t> chosen = matching(entry.key(), links);
-  if (chosen.empty()) problems_.add_unknown(entry.key_place(), "link", entry.key(), links);
-  for (const std::size_t i : chosen) {
+  for (const std::size_t i : chosen(entry.key(), entry.key_place(), "link", links)) {
     std::vector<Geometry>& all = config_.model.links[*config_.model.find_link(links[i])].collisions;
     if (as == As::nothing || !given.empty()) std::erase_if(all, [&](const Geometry& g) { return g.link == links[i]; });
     for (Geometry geometry : given) {
