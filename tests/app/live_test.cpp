@@ -63,7 +63,7 @@ TEST_CASE("run binds all functions of its libraries before main(): no thread loo
   CHECK(processes == 2);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take memory of their own
+#ifndef KADANS_SANITIZED  // they take memory of their own
 TEST_CASE("run holds at most 40 MB with its flight recorder, and 64 MB with the page") {
   const auto project = project_copy("live_memory");
   write(project / "memory.sh",

@@ -62,7 +62,7 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "usage: kadans-hull FILE CORNERS, %zu to %zu\n", corners_least, corners_most);
     return 2;
   }
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their shadow of the memory is larger
+#ifndef KADANS_SANITIZED  // a sanitizer's shadow of the memory is larger
   bound(RLIMIT_AS, memory_max_bytes);
 #endif
   bound(RLIMIT_CPU, cpu_max_s);
