@@ -48,7 +48,7 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
   if (objects_.size() != catalog.objects.size()) throw std::invalid_argument("the catalog lists other control objects");
   for (const ControlSetInfo& set : catalog.sets) check_set(catalog, set);
   check_drives();
-  if (active_ == 0 || std::bit_width(active_) > catalog.sets.size()) {
+  if (active_ == 0 || static_cast<std::size_t>(std::bit_width(active_)) > catalog.sets.size()) {
     throw std::invalid_argument("there is no initial control set");
   }
   if (partition_.clash(active_, active_)) throw std::invalid_argument("the initial control sets share a joint");
