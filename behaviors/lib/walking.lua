@@ -31,6 +31,16 @@ function walk.go(m, way)
   return true
 end
 
+-- The same way, slowed as a whole to what walk.go takes: what a person's stick asks for, which says a direction.
+function walk.slowed(way)
+  local most, together = 0, 0
+  for _, share in pairs(shares(way)) do most, together = math.max(most, share), together + share end
+  local scale = math.min(1, (1 - 1e-9) / most, (1.5 - 1e-9) / together)
+  local slowed = {}
+  for name, value in pairs(way) do slowed[name] = scale * value end
+  return slowed
+end
+
 -- Comes to stand.
 function walk.stop(m) m.walk:set("go", 0) end
 

@@ -32,6 +32,22 @@ describe("walking", function()
     expect(points.go).to_equal(0)
   end)
 
+  it("slows what a stick asks for, in whichever corner, to a way that is never refused, of the same direction", function()
+    local m, points = robot()
+    for _, x in ipairs { -1, -0.3, 0, 1 } do
+      for _, y in ipairs { -1, -0.7, 0, 0.999, 1 } do
+        for _, twist in ipairs { -1, 0, 0.5, 1 } do
+          local way = { forward_m_s = y * (y < 0 and 0.2 or 0.6), left_m_s = -0.15 * x, turn_rad_s = -0.8 * twist }
+          expect(walk.go(m, walk.slowed(way))).to_equal(true)
+          expect(points.forward_m_s * way.turn_rad_s).to_be_near(points.turn_rad_s * way.forward_m_s, 1e-9)
+          expect(points.forward_m_s * way.left_m_s).to_be_near(points.left_m_s * way.forward_m_s, 1e-9)
+        end
+      end
+    end
+    expect(walk.slowed({ forward_m_s = 0.3 }).forward_m_s).to_equal(0.3)
+    expect(walk.slowed({ forward_m_s = -0.4 }).forward_m_s).to_be_near(-0.2, 1e-6)
+  end)
+
   it("walks to a place behind and to the left, and turns there as it shall", function()
     local m, points = robot()
     local dt_s, there = 0.01, false

@@ -1,5 +1,5 @@
 -- Walks as a joystick says: away from the hand is forward, right is to the right, twisted is turned. With the stick let
--- go, or unplugged, it comes to stand.
+-- go, or unplugged, it comes to stand. A stick in a corner asks for more than it walks at once: then it goes that way, slower.
 local k = require "kadans"
 local walk = require "walking"
 
@@ -25,11 +25,11 @@ return k.behavior "walk_stick" {
     during = function(m, s)
       local stick = s.joystick
       if math.max(math.abs(stick.x), math.abs(stick.y), math.abs(stick.twist)) < P.rest then return walk.stop(m) end
-      walk.go(m, {
+      assert(walk.go(m, walk.slowed {
         forward_m_s = stick.y * (stick.y < 0 and P.back_m_s or P.forward_m_s),
         left_m_s = -stick.x * P.side_m_s,
         turn_rad_s = -stick.twist * P.turn_rad_s,
-      })
+      }))
     end,
     exit = walk.stop,
   },

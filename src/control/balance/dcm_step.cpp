@@ -8,7 +8,6 @@
 namespace kadans {
 namespace {
 
-constexpr std::array<const char*, leg_joints> part_names{"hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch"};
 constexpr double straightest_knee_rad = 0.06, most_bent_knee_rad = 2.2;
 
 double distance_m(double thigh_m, double shank_m, double knee_rad) {
@@ -19,7 +18,7 @@ double distance_m(double thigh_m, double shank_m, double knee_rad) {
 
 LegInverse::LegInverse(const RobotModel& model, const std::vector<JointAxis>& axes, const std::string& side) {
   for (std::size_t i = 0; i < leg_joints; ++i) {
-    const std::string name = side + "_" + part_names[i];
+    const std::string name = side + "_" + leg_parts[i];
     const auto found = std::find_if(axes.begin(), axes.end(), [&](const JointAxis& a) { return a.name == name; });
     if (found == axes.end()) throw std::invalid_argument("a leg needs the joint " + name);
     axes_[i] = *found;
@@ -47,9 +46,6 @@ LegInverse::Angles LegInverse::angles(const Vec3& ankle_m, double yaw_rad) const
 
 namespace {
 
-constexpr std::array<const char*, leg_joints> parts{"hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch"};
-constexpr std::array<double, leg_joints> kp_first{150, 300, 300, 300, 180}, kd_first{2, 4, 4, 4, 3};
-
 constexpr double rate_time_s = 0.006;  // low pass of the targets' rates
 constexpr double alone_s = 0.03;       // in which a leg is taken to stand alone
 constexpr double rate_max_rad_s = 6;
@@ -57,6 +53,42 @@ constexpr double edge_front_m = 0.14, edge_back_m = 0.08;  // of the sole
 constexpr double torso_over_hips = 0.6;                    // share of the weight that stands on the hips
 
 }  // namespace
+
+void LegGains::declare(Declaration& d) {
+  for (std::size_t i = 0; i < leg_joints; ++i) {
+    const std::string name = leg_parts[i];
+    d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 2000, kp_Nm_per_rad[i], "Torque per position error."},
+                &kp_Nm_per_rad[i]);
+    d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 200, kd_Nms_per_rad[i], "Torque per velocity error."},
+                &kd_Nms_per_rad[i]);
+  }
+}
+
+void LedLeg::declare_signals(Declaration& d) {
+  for (std::size_t i = 0; i < leg_joints; ++i) {
+    d.signal({inverse.axis(i).name + ".target_rad", "rad", "Where it shall be."}, &target_rad[i]);
+    d.signal({inverse.axis(i).name + ".effort_Nm", "Nm", "Torque asked for."}, &effort_Nm[i]);
+  }
+}
+
+void LedLeg::aim(const LegInverse::Angles& new_target_rad, double rate_max_rad_s, double dt_s) noexcept {
+  for (std::size_t i = 0; i < leg_joints; ++i) {
+    const double step_rad_s = (new_target_rad[i] - target_rad[i]) / dt_s;
+    const double limited_rad_s = std::clamp(step_rad_s, -rate_max_rad_s, rate_max_rad_s);
+    rate_rad_s[i] += dt_s / rate_time_s * (limited_rad_s - rate_rad_s[i]);
+    target_rad[i] = new_target_rad[i];
+  }
+}
+
+LegInverse::Angles LedLeg::spring(const LegGains& gains, double share, const ControlInput& input) const noexcept {
+  LegInverse::Angles torque_Nm{};
+  for (std::size_t i = 0; i < leg_joints; ++i) {
+    const JointState& joint = input.joints.joints[inverse.axis(i).joint];
+    torque_Nm[i] = share * gains.kp_Nm_per_rad[i] * (target_rad[i] - joint.position_rad) +
+                   gains.kd_Nms_per_rad[i] * (rate_rad_s[i] - joint.velocity_rad_s);
+  }
+  return torque_Nm;
+}
 
 void DcmStep::declare(Declaration& d) {
   Config& c = config_;
@@ -82,20 +114,9 @@ void DcmStep::declare(Declaration& d) {
   d.parameter({"seek_m", "m", 0, 0.1, 0.01, "How deep a foot that lost the ground looks for it."}, &c.seek_m);
   d.parameter({"come_s", "s", 0.05, 5, 0.4, "From a landing to the stance."}, &c.come_s);
   d.parameter({"carry", "", 0, 1, 0.7, "Share of the speeds of the landing that its motion begins with."}, &c.carry);
-  declare_gains(d);
+  config_.gains.declare(d);
   declare_plan(d);
   declare_signals(d);
-}
-
-void DcmStep::declare_gains(Declaration& d) {
-  Config& c = config_;
-  for (std::size_t i = 0; i < leg_joints; ++i) {
-    const std::string name = parts[i];
-    d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 2000, kp_first[i], "Torque per position error."},
-                &c.kp_Nm_per_rad[i]);
-    d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 200, kd_first[i], "Torque per velocity error."},
-                &c.kd_Nms_per_rad[i]);
-  }
 }
 
 void DcmStep::declare_plan(Declaration& d) {
@@ -138,12 +159,7 @@ void DcmStep::declare_signals(Declaration& d) {
   d.signal({"pressure_x_m", "m", "Centre of pressure asked for, forward of a sole's frame."}, &s.in_sole.x_m);
   d.signal({"right_share", "", "Share of the load asked of the right foot."}, &s.right_share);
   d.signal({"lean_rad", "rad", "Lean of the torso asked for."}, &lean_rad_);
-  for (Leg& leg : legs_) {
-    for (std::size_t i = 0; i < leg_joints; ++i) {
-      d.signal({leg.inverse.axis(i).name + ".target_rad", "rad", "Where it shall be."}, &leg.target_rad[i]);
-      d.signal({leg.inverse.axis(i).name + ".effort_Nm", "Nm", "Torque asked for."}, &leg.effort_Nm[i]);
-    }
-  }
+  for (Leg& leg : legs_) leg.declare_signals(d);
 }
 
 void DcmStep::start(const ControlInput&) noexcept {
@@ -231,29 +247,11 @@ std::unique_ptr<ControlObject> make_dcm_step(const ObjectSetup& setup) { return 
 DcmStep::DcmStep(const ObjectSetup& setup)
     : axes_(joint_axes(setup)),
       over_feet_(setup),
-      legs_{Leg{.inverse = LegInverse(setup.model, axes_, "l")}, Leg{.inverse = LegInverse(setup.model, axes_, "r")}},
+      legs_{Leg{{.inverse = LegInverse(setup.model, axes_, "l")}},
+            Leg{{.inverse = LegInverse(setup.model, axes_, "r")}}},
       weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {}
 
 Vec3 DcmStep::hip(std::size_t leg) const noexcept { return rotate(over_feet_.upright(), legs_[leg].inverse.hip_m()); }
-
-void DcmStep::aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept {
-  for (std::size_t i = 0; i < leg_joints; ++i) {
-    const double rate_rad_s = (target_rad[i] - leg.target_rad[i]) / dt_s;
-    const double limited_rad_s = std::clamp(rate_rad_s, -rate_max_rad_s, rate_max_rad_s);
-    leg.rate_rad_s[i] += dt_s / rate_time_s * (limited_rad_s - leg.rate_rad_s[i]);
-    leg.target_rad[i] = target_rad[i];
-  }
-}
-
-DcmStep::Efforts DcmStep::spring(const Leg& leg, double share, const ControlInput& input) const noexcept {
-  Efforts effort_Nm{};
-  for (std::size_t i = 0; i < leg_joints; ++i) {
-    const JointState& joint = input.joints.joints[leg.inverse.axis(i).joint];
-    effort_Nm[i] = share * config_.kp_Nm_per_rad[i] * (leg.target_rad[i] - joint.position_rad) +
-                   config_.kd_Nms_per_rad[i] * (leg.rate_rad_s[i] - joint.velocity_rad_s);
-  }
-  return effort_Nm;
-}
 
 // What holds a leg whose foot bears force_N at the plan's centre of pressure: -(r x F) about each joint.
 DcmStep::Efforts DcmStep::bearing(std::size_t i, double force_N, const ControlInput& input) const noexcept {
@@ -306,15 +304,15 @@ void DcmStep::swing_torques(const ControlInput& input) noexcept {
   const std::size_t a = plan_.state().stance, b = 1 - a;
   Leg& stance = legs_[a];
   Leg& swing = legs_[b];
-  aim(swing, reach(b, plan_.other_foot(plan_config_), input), input.dt_s);
-  swing.effort_Nm = spring(swing, 1, input);
+  swing.aim(reach(b, plan_.other_foot(plan_config_), input), rate_max_rad_s, input.dt_s);
+  swing.effort_Nm = swing.spring(c.gains, 1, input);
 
   const double share = swing_way(plan_.state().time_s / plan_config_.swing_s);
   LegInverse::Angles held_rad = stance.landed_rad;
   held_rad[knee] += share * (c.stance_knee_rad - held_rad[knee]);
   held_rad[hip_yaw] *= 1 - share;
-  aim(stance, held_rad, input.dt_s);
-  const Efforts held_Nm = spring(stance, 1, input), borne_Nm = bearing(a, weight_N_, input);
+  stance.aim(held_rad, rate_max_rad_s, input.dt_s);
+  const Efforts held_Nm = stance.spring(c.gains, 1, input), borne_Nm = bearing(a, weight_N_, input);
   const auto [roll_Nm, pitch_Nm] = upright(a, input);
   stance.effort_Nm = {held_Nm[hip_yaw], roll_Nm, pitch_Nm, held_Nm[knee] + borne_Nm[knee], borne_Nm[ankle_pitch]};
 }
@@ -337,9 +335,9 @@ void DcmStep::bearing_torques(const ControlInput& input) noexcept {
       const LegInverse::Angles ground_rad = seek_ground(i, input);
       for (std::size_t j = 0; j < leg_joints; ++j) target_rad[j] += alone_ * (ground_rad[j] - target_rad[j]);
     }
-    aim(leg, target_rad, input.dt_s);
+    leg.aim(target_rad, rate_max_rad_s, input.dt_s);
     const double share = i == 1 ? s.right_share : 1 - s.right_share;
-    const Efforts held_Nm = spring(leg, c.soft_share, input), borne_Nm = bearing(i, share * weight_N_, input);
+    const Efforts held_Nm = leg.spring(c.gains, c.soft_share, input), borne_Nm = bearing(i, share * weight_N_, input);
     for (std::size_t j = 0; j < leg_joints; ++j) leg.effort_Nm[j] = held_Nm[j] + c.forward_share * borne_Nm[j];
     leg.effort_Nm[ankle_pitch] = held_Nm[ankle_pitch] + borne_Nm[ankle_pitch];
     leg.effort_Nm[hip_pitch] += c.bears_share * share * pitch_Nm;

@@ -42,6 +42,8 @@ namespace kadans {
 // The joints turn about z, x, y, y, y. So a bent knee is positive, and a hip pitch that lifts the thigh forward is
 // negative.
 enum LegJoint : std::size_t { hip_yaw, hip_roll, hip_pitch, knee, ankle_pitch, leg_joints };
+inline constexpr std::array<const char*, leg_joints> leg_parts{"hip_yaw", "hip_roll", "hip_pitch", "knee",
+                                                               "ankle_pitch"};
 
 class LegInverse {
  public:
@@ -66,6 +68,24 @@ class LegInverse {
   double thigh_m_ = 0, shank_m_ = 0, longest_m_ = 0, shortest_m_ = 0;
 };
 
+// Parameters <part>.kp_Nm_per_rad and <part>.kd_Nms_per_rad of both legs.
+struct LegGains {
+  std::array<double, leg_joints> kp_Nm_per_rad{}, kd_Nms_per_rad{};
+  void declare(Declaration& declaration);
+};
+
+// A leg whose joints are led: a spring and a damper to targets, whose rates are low-passed.
+struct LedLeg {
+  LegInverse inverse;
+  LegInverse::Angles target_rad{}, rate_rad_s{};
+  LegInverse::Angles effort_Nm{};
+
+  void declare_signals(Declaration& declaration);  // <joint>.target_rad, <joint>.effort_Nm
+  void aim(const LegInverse::Angles& target_rad, double rate_max_rad_s, double dt_s) noexcept;
+  // Torques to the targets, with this share of kp.
+  LegInverse::Angles spring(const LegGains& gains, double share, const ControlInput& input) const noexcept;
+};
+
 class DcmStep final : public ControlObject {
  public:
   struct Config {
@@ -86,7 +106,7 @@ class DcmStep final : public ControlObject {
     double seek_m = 0.01;        // how deep a foot that lost the ground searches for it
     double come_s = 0.4;         // time from a landing to the stance
     double carry = 0.7;          // share of the landing's joint speeds that is kept
-    std::array<double, leg_joints> kp_Nm_per_rad{}, kd_Nms_per_rad{};
+    LegGains gains{.kp_Nm_per_rad = {150, 300, 300, 300, 180}, .kd_Nms_per_rad = {2, 4, 4, 4, 3}};
   };
 
   // Throws std::invalid_argument for a joint that is missing, OptionError for a wrong foot.
@@ -101,21 +121,15 @@ class DcmStep final : public ControlObject {
 
  private:
   using Efforts = LegInverse::Angles;
-  struct Leg {
-    LegInverse inverse;
-    LegInverse::Angles target_rad{}, rate_rad_s{};
+  struct Leg : LedLeg {
     LegInverse::Angles landed_rad{}, landed_rad_s{};
-    Efforts effort_Nm{};
   };
 
-  void declare_gains(Declaration& declaration);
   void declare_plan(Declaration& declaration);
   void declare_signals(Declaration& declaration);
   void let_go(ActuationFrame& actuation) noexcept;
   void enter(StepPlan::Phase phase, const ControlInput& input) noexcept;
   Vec3 hip(std::size_t leg) const noexcept;  // in the heading frame
-  void aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept;
-  Efforts spring(const Leg& leg, double share, const ControlInput& input) const noexcept;
   Efforts bearing(std::size_t leg, double force_N, const ControlInput& input) const noexcept;
   std::array<double, 2> upright(std::size_t leg, const ControlInput& input) const noexcept;
   LegInverse::Angles reach(std::size_t leg, const Vec3& way_m, const ControlInput& input) const noexcept;

@@ -10,9 +10,6 @@
 namespace kadans {
 namespace {
 
-constexpr std::array<const char*, leg_joints> walk_parts{"hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch"};
-constexpr std::array<double, leg_joints> walk_kp{80, 250, 250, 250, 120}, walk_kd{4, 4, 4, 4, 2};
-constexpr double walk_rate_s = 0.006;  // low pass of the targets' rates
 constexpr double walk_rate_max_rad_s = 7;
 constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
 enum Channel : std::uint32_t {
@@ -29,7 +26,7 @@ enum Channel : std::uint32_t {
 }  // namespace
 
 DcmWalk::Leg DcmWalk::leg(const ObjectSetup& setup, const char* side, std::size_t foot) const {
-  Leg made{.inverse = LegInverse(setup.model, axes_, side), .load = LegLoad(setup.model, foot), .bearing = {}};
+  Leg made{{.inverse = LegInverse(setup.model, axes_, side)}, LegLoad(setup.model, foot), {}};
   for (std::size_t j = 0; j < leg_joints; ++j) {
     const auto bearings = made.load.bearings();
     const auto found = std::ranges::find(bearings, made.inverse.axis(j).joint, &LegLoad::Bearing::joint);
@@ -70,20 +67,9 @@ void DcmWalk::declare(Declaration& d) {
   d.parameter({"shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load."}, &c.shift_s);
   d.parameter({"ankle_smooth_s", "s", 0, 0.1, c.ankle_smooth_s, "Low pass of the ankles' torques."}, &c.ankle_smooth_s);
   d.parameter({"stand_s", "s", 0, 10, c.stand_s, "After the last step, before it counts as standing."}, &c.stand_s);
-  declare_gains(d);
+  config_.gains.declare(d);
   declare_plan(d);
   declare_signals(d);
-}
-
-void DcmWalk::declare_gains(Declaration& d) {
-  Config& c = config_;
-  for (std::size_t i = 0; i < leg_joints; ++i) {
-    const std::string name = walk_parts[i];
-    d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 2000, walk_kp[i], "Torque per position error."},
-                &c.kp_Nm_per_rad[i]);
-    d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 200, walk_kd[i], "Torque per velocity error."},
-                &c.kd_Nms_per_rad[i]);
-  }
 }
 
 void DcmWalk::declare_plan(Declaration& d) {
@@ -168,12 +154,7 @@ void DcmWalk::declare_signals(Declaration& d) {
   d.signal({"slope_x", "", "Slope of the ground as it is felt, forward."}, &slope_.x_m);
   d.signal({"slope_y", "", "To the left."}, &slope_.y_m);
   d.signal({"height_m", "m", "Of the centre of mass over the stance foot's frame."}, &com_height_m_);
-  for (Leg& leg : legs_) {
-    for (std::size_t i = 0; i < leg_joints; ++i) {
-      d.signal({leg.inverse.axis(i).name + ".target_rad", "rad", "Where it shall be."}, &leg.target_rad[i]);
-      d.signal({leg.inverse.axis(i).name + ".effort_Nm", "Nm", "Torque asked for."}, &leg.effort_Nm[i]);
-    }
-  }
+  for (Leg& leg : legs_) leg.declare_signals(d);
 }
 
 void DcmWalk::start(const ControlInput&) noexcept {
@@ -316,27 +297,6 @@ void DcmWalk::landed(const ControlInput& input) noexcept {
   }
 }
 
-Vec3 DcmWalk::hip(std::size_t leg) const noexcept { return rotate(over_feet_.upright(), legs_[leg].inverse.hip_m()); }
-
-void DcmWalk::aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept {
-  for (std::size_t i = 0; i < leg_joints; ++i) {
-    const double rate_rad_s = (target_rad[i] - leg.target_rad[i]) / dt_s;
-    const double limited_rad_s = std::clamp(rate_rad_s, -walk_rate_max_rad_s, walk_rate_max_rad_s);
-    leg.rate_rad_s[i] += dt_s / walk_rate_s * (limited_rad_s - leg.rate_rad_s[i]);
-    leg.target_rad[i] = target_rad[i];
-  }
-}
-
-DcmWalk::Efforts DcmWalk::spring(const Leg& leg, const ControlInput& input) const noexcept {
-  Efforts effort_Nm{};
-  for (std::size_t i = 0; i < leg_joints; ++i) {
-    const JointState& joint = input.joints.joints[leg.inverse.axis(i).joint];
-    effort_Nm[i] = config_.kp_Nm_per_rad[i] * (leg.target_rad[i] - joint.position_rad) +
-                   config_.kd_Nms_per_rad[i] * (leg.rate_rad_s[i] - joint.velocity_rad_s);
-  }
-  return effort_Nm;
-}
-
 // The torques of a leg that bears this share of the robot, by a force through the centre of mass. With no share, those
 // that bear the leg alone.
 DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_m, const ControlInput& input) noexcept {
@@ -379,7 +339,7 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   const double loaded = std::min(s.time_s / c.shift_s, 1.0);
   const DcmMeasure::OverFoot& over = over_feet_.over(a);
 
-  const Vec3 swing_hip_m = hip(b);
+  const Vec3 swing_hip_m = rotate(over_feet_.upright(), swing.inverse.hip_m());
   const double toe_up_m = over.toe_up_m - slope_.x_m;  // on its toes, or heel
   const double risen_m =
       std::max(-toe_up_m * sole_front_m, toe_up_m * sole_back_m) -
@@ -391,15 +351,15 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   LegInverse::Angles swing_rad =
       swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m), next_yaw_rad - over_feet_.yaw_rad());
   swing_rad[ankle_pitch] -= input.status.base.pitch_rad + slope_.x_m;
-  aim(swing, swing_rad, input.dt_s);
-  const Efforts swing_Nm = spring(swing, input);
+  swing.aim(swing_rad, walk_rate_max_rad_s, input.dt_s);
+  const Efforts swing_Nm = swing.spring(c.gains, 1, input);
   turn(swing_Nm, input);
   const Efforts left_Nm = bearing(b, 1 - loaded, 0, input);
 
   LegInverse::Angles stance_rad = stance.target_rad;
   stance_rad[hip_yaw] = over.yaw_rad;
-  aim(stance, stance_rad, input.dt_s);
-  const Efforts stance_Nm = spring(stance, input), borne_Nm = bearing(a, loaded, s.in_sole_x_m, input);
+  stance.aim(stance_rad, walk_rate_max_rad_s, input.dt_s);
+  const Efforts stance_Nm = stance.spring(c.gains, 1, input), borne_Nm = bearing(a, loaded, s.in_sole_x_m, input);
 
   for (std::size_t j = 0; j < leg_joints; ++j) {
     swing.effort_Nm[j] = loaded * swing_Nm[j] + left_Nm[j];
@@ -423,9 +383,9 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
     Leg& leg = legs_[i];
     LegInverse::Angles target_rad = leg.target_rad;
     target_rad[hip_yaw] = over_feet_.over(i).yaw_rad;
-    aim(leg, target_rad, input.dt_s);
+    leg.aim(target_rad, walk_rate_max_rad_s, input.dt_s);
     const double share = i == 1 ? split.right_share : 1 - split.right_share;
-    const Efforts held_Nm = spring(leg, input), borne_Nm = bearing(i, share, split.in_sole.x_m, input);
+    const Efforts held_Nm = leg.spring(config_.gains, 1, input), borne_Nm = bearing(i, share, split.in_sole.x_m, input);
     leg.effort_Nm = borne_Nm;
     leg.effort_Nm[hip_yaw] = held_Nm[hip_yaw];
   }

@@ -56,7 +56,7 @@ class DcmWalk final : public ControlObject {
     double shift_s = 0.05;  // in which a leg that landed takes the load
     double ankle_smooth_s = 0.003;
     double stand_s = 0.6;  // after the last step, before it lets go
-    std::array<double, leg_joints> kp_Nm_per_rad{}, kd_Nms_per_rad{};
+    LegGains gains{.kp_Nm_per_rad = {80, 250, 250, 250, 120}, .kd_Nms_per_rad = {4, 4, 4, 4, 2}};
   };
 
   // Throws std::invalid_argument for a joint that is missing, OptionError for a wrong foot.
@@ -73,16 +73,12 @@ class DcmWalk final : public ControlObject {
 
  private:
   using Efforts = LegInverse::Angles;
-  struct Leg {
-    LegInverse inverse;
+  struct Leg : LedLeg {
     LegLoad load;
     std::array<std::size_t, leg_joints> bearing;  // the joint's place in load.bearings()
-    LegInverse::Angles target_rad{}, rate_rad_s{};
-    Efforts effort_Nm{};
   };
 
   Leg leg(const ObjectSetup& setup, const char* side, std::size_t foot) const;
-  void declare_gains(Declaration& declaration);
   void declare_plan(Declaration& declaration);
   void declare_signals(Declaration& declaration);
   void let_go(ActuationFrame& actuation) noexcept;
@@ -92,9 +88,6 @@ class DcmWalk final : public ControlObject {
   bool stands() const noexcept;
   void feel_ground(double dt_s) noexcept;
   void landed(const ControlInput& input) noexcept;
-  Vec3 hip(std::size_t leg) const noexcept;  // in the heading frame
-  void aim(Leg& leg, const LegInverse::Angles& target_rad, double dt_s) noexcept;
-  Efforts spring(const Leg& leg, const ControlInput& input) const noexcept;
   Efforts bearing(std::size_t leg, double share, double in_sole_x_m, const ControlInput& input) noexcept;
   void turn(const Efforts& swing_Nm, const ControlInput& input) noexcept;
   void swing_torques(const ControlInput& input) noexcept;
