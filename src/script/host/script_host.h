@@ -95,7 +95,6 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   Behavior& behavior(std::size_t index) noexcept { return *list_.entries()[index].behavior; }
   const Behavior& behavior(std::size_t index) const noexcept { return *list_.entries()[index].behavior; }
   bool over(std::size_t index) const noexcept { return list_.entries()[index].over; }
-  std::uint32_t lane(std::size_t index) const noexcept { return list_.entries()[index].lane; }
 
  private:
   struct Due {  // an order with its loaded behaviors

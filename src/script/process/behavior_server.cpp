@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "behavior_link.h"
-#include "config/json/problems.h"
 #include "kadans/signal/input_error.h"
 #include "script/host/play_list.h"
 
