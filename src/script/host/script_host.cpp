@@ -314,18 +314,18 @@ void ScriptHost::watch_folders() {
   }
 }
 
-BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
+BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot, Describe describe) {
   switch (question.kind) {
     case BehaviorQuestion::Kind::report:
       return {.paused = paused(), .behaviors = reports()};
     case BehaviorQuestion::Kind::why:
       return {.reasons = why(question.text, snapshot)};
-    case BehaviorQuestion::Kind::set_parameter:
-      return set_parameter(question.text, question.value);
     case BehaviorQuestion::Kind::describe:
+      return {.text = describe(this)};
+    case BehaviorQuestion::Kind::set_parameter:
       break;
   }
-  return {};
+  return set_parameter(question.text, question.value);
 }
 
 std::vector<BehaviorReport> ScriptHost::reports() const {
