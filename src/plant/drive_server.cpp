@@ -1,10 +1,11 @@
 #include "drive_server.h"
 
 #include <algorithm>
-#include <ctime>
 
 #include <poll.h>
 #include <pthread.h>
+
+#include "signal/monotonic_clock.h"
 
 namespace kadans {
 namespace {
@@ -12,12 +13,6 @@ namespace {
 constexpr std::int64_t session_over_ns = 1'000'000'000;
 constexpr int bus_priority = 85;              // drives answer whatever else this machine does
 constexpr std::int64_t look_ns = 50'000'000;  // how soon the thread sees that it shall end
-
-std::int64_t clock_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * ns_per_s + now.tv_nsec;
-}
 
 std::vector<pollfd> polled(const std::vector<int>& descriptors) {
   std::vector<pollfd> wanted;
@@ -43,12 +38,12 @@ void DriveServer::serve() noexcept {
   (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);  // without the right it is a usual thread
   std::vector<pollfd> wanted = polled(descriptors());
   while (!stop_.load(std::memory_order_relaxed)) {
-    std::int64_t wake_ns = clock_ns() + look_ns;
+    std::int64_t wake_ns = monotonic_ns() + look_ns;
     {
       const std::lock_guard lock(mutex_);
-      wake_ns = std::min(wake_ns, serve_bus(clock_ns()));
+      wake_ns = std::min(wake_ns, serve_bus(monotonic_ns()));
     }
-    const std::int64_t left_ns = std::max<std::int64_t>(0, wake_ns - clock_ns());
+    const std::int64_t left_ns = std::max<std::int64_t>(0, wake_ns - monotonic_ns());
     const timespec wait{.tv_sec = 0, .tv_nsec = std::min(left_ns, look_ns)};
     (void)ppoll(wanted.data(), wanted.size(), &wait, nullptr);
   }

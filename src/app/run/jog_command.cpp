@@ -17,7 +17,7 @@
 #include "app/terminal.h"
 #include "jog.h"
 #include "kadans/plant/plant_type.h"
-#include "real_time_start.h"
+#include "signal/monotonic_clock.h"
 #include "signal/nearest_name.h"
 
 namespace kadans {
@@ -25,12 +25,6 @@ namespace {
 
 constexpr double stop_margin_rad = 0.05;
 constexpr std::int64_t told_every_ns = 100'000'000;
-
-std::int64_t jog_clock_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * ns_per_s + now.tv_nsec;
-}
 
 // Keys from the standard input, one by one and without waiting, while it lives.
 class Keys {
@@ -122,12 +116,12 @@ class JogRun {
     const std::int64_t period_ns = robot_.config.engine.control_period_ns();
     Keys keys;
     Jog jog(settings_);
-    std::int64_t due_ns = jog_clock_ns(), told_ns = due_ns;
+    std::int64_t due_ns = monotonic_ns(), told_ns = due_ns;
     for (bool first = true;; first = false) {
       plant.read(sensors_);
       last_rad_ = sensors_.joints[settings_.joint].position_rad;
       if (first) first_rad_ = last_rad_;
-      const std::int64_t now_ns = jog_clock_ns();
+      const std::int64_t now_ns = monotonic_ns();
       bool gone = false;
       const char key = keys.newest(gone);
       if (gone) return "the keys are gone";

@@ -9,7 +9,6 @@
 #include <pthread.h>
 
 #include "kadans/signal/input_error.h"
-#include "plant/drive_samples.h"
 
 namespace kadans::dynamixel {
 namespace {

@@ -9,10 +9,9 @@
 #include <string>
 
 #include "packet.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans::dynamixel {
-
-std::int64_t monotonic_ns() noexcept;  // of CLOCK_MONOTONIC
 
 class SerialPort {
  public:

@@ -104,12 +104,6 @@ std::size_t TerminalPort::receive(std::span<std::uint8_t> into, std::int64_t unt
 
 void TerminalPort::discard() noexcept { (void)ioctl(descriptor_, TCFLSH, TCIFLUSH); }
 
-std::int64_t monotonic_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
 int latency_timer_ms(const std::string& root, const std::string& device) {
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(device, error);

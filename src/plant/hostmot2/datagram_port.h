@@ -8,6 +8,7 @@
 #include <string>
 
 #include "board_link.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans::hostmot2 {
 
@@ -35,7 +36,7 @@ class UdpPort final : public DatagramPort {
   bool send(Octets datagram) noexcept override;
   std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
   void await(std::int64_t until_ns) noexcept override;
-  std::int64_t now_ns() const noexcept override;
+  std::int64_t now_ns() const noexcept override { return monotonic_ns(); }
 
  private:
   int descriptor_;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "kadans/signal/input_error.h"
-#include "plant/drive_samples.h"
 
 namespace kadans::hostmot2 {
 namespace {
