@@ -52,7 +52,7 @@ void DriveServer::serve() noexcept {
 bool DriveServer::end_session() noexcept {
   stop_.store(true, std::memory_order_relaxed);
   if (thread_.joinable()) thread_.join();
-  switch_power();
+  drives().switch_power();
   return false;
 }
 
@@ -60,15 +60,15 @@ bool DriveServer::beat(World& world, std::uint32_t periods) {
   std::uint64_t heard = 0;
   {
     const std::lock_guard lock(mutex_);
-    look(world.robot(0));
-    drive(world.robot(0));
-    pass(static_cast<std::int64_t>(periods) * period_ns_);
-    time_runs_ = time_runs_ || (thread_.joinable() && any_torque());
-    const bool tripped = any_watchdog_tripped();
+    drives().look(world.robot(0));
+    drives().drive(world.robot(0));
+    drives().pass(static_cast<std::int64_t>(periods) * period_ns_);
+    time_runs_ = time_runs_ || (thread_.joinable() && drives().any_torque());
+    const bool tripped = drives().any_watchdog_tripped();
     if (tripped && !tripped_) ++session_.releases;
     tripped_ = tripped;
     heard = this->heard();
-    session_.left = !any_torque();
+    session_.left = !drives().any_torque();
   }
   if (!thread_.joinable()) {  // from now on the drives know where they stand
     stop_.store(false, std::memory_order_relaxed);

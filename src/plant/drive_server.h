@@ -19,6 +19,24 @@
 
 namespace kadans {
 
+// What moves the robot on the other side of the bus. Called by one thread at a time.
+class EmulatedDrives {
+ public:
+  EmulatedDrives() = default;
+  EmulatedDrives(const EmulatedDrives&) = delete;
+  EmulatedDrives& operator=(const EmulatedDrives&) = delete;
+
+  virtual void look(WorldRobot& robot) = 0;   // the drives stand where the robot's joints are
+  virtual void drive(WorldRobot& robot) = 0;  // the robot's drives do what these do
+  virtual void pass(std::int64_t dt_ns) noexcept = 0;
+  virtual void switch_power() noexcept = 0;  // off and on again
+  virtual bool any_torque() const noexcept = 0;
+  virtual bool any_watchdog_tripped() const noexcept = 0;
+
+ protected:
+  ~EmulatedDrives() = default;
+};
+
 class DriveServer : public PlantEmulator {
  public:
   bool await(int milliseconds) noexcept final;
@@ -35,12 +53,7 @@ class DriveServer : public PlantEmulator {
   // Takes what came and answers it; returns when it is to be called again at the latest, on CLOCK_MONOTONIC.
   virtual std::int64_t serve_bus(std::int64_t now_ns) noexcept = 0;
   virtual std::uint64_t heard() const noexcept = 0;  // messages that were understood, ever
-  virtual void look(WorldRobot& robot) = 0;          // the drives stand where the robot's joints are
-  virtual void drive(WorldRobot& robot) = 0;         // the robot does what the drives do
-  virtual void pass(std::int64_t dt_ns) noexcept = 0;
-  virtual bool any_torque() const noexcept = 0;
-  virtual bool any_watchdog_tripped() const noexcept = 0;
-  virtual void switch_power() noexcept = 0;  // off and on again
+  virtual EmulatedDrives& drives() noexcept = 0;
 
  private:
   void serve() noexcept;

@@ -31,7 +31,6 @@ class Axis {
   bool plan(const JointActuation& asked, const DriveRequest& order, double period_s) noexcept;
   // As the frames have it, in the drive's coordinate.
   const JointSample& sample() const noexcept { return sample_; }
-  double velocity_rad_s() const noexcept { return velocity_rad_s_; }
   std::uint32_t limited() const noexcept { return limited_; }
   std::uint32_t strange() const noexcept { return strange_readings_; }
 

@@ -7,10 +7,11 @@
 #include <span>
 #include <string>
 
-#include "board_link.h"
 #include "signal/monotonic_clock.h"
 
 namespace kadans::hostmot2 {
+
+using Octets = std::span<const std::uint8_t>;
 
 class DatagramPort {
  public:

@@ -31,7 +31,7 @@ constexpr NamedLinkCount link_count_names[] = {
 HostMot2Plant::HostMot2Plant(HostMot2Settings settings, PlantSite site, std::vector<std::unique_ptr<BoardLink>> links)
     : settings_(std::move(settings)), site_(std::move(site)) {
   for (std::size_t i = 0; i < settings_.boards.size(); ++i)
-    boards_.emplace_back(settings_.boards[i], std::move(links.at(i)), settings_.watchdog_s);
+    boards_.emplace_back(settings_.boards[i], std::move(links.at(i)));
   fresh_.resize(boards_.size());
   repair_.resize(boards_.size());
   const double period_s = 1e-9 * static_cast<double>(site_.layout.period_ns);
@@ -43,11 +43,6 @@ HostMot2Plant::HostMot2Plant(HostMot2Settings settings, PlantSite site, std::vec
 }
 
 HostMot2Plant::~HostMot2Plant() { close(); }
-
-std::size_t HostMot2Plant::board_number(const std::string& name) const {
-  return static_cast<std::size_t>(std::ranges::find(settings_.boards, name, &BoardSettings::name) -
-                                  settings_.boards.begin());
-}
 
 std::size_t HostMot2Plant::place_in(const std::vector<std::string>& names, const std::string& name,
                                     const char* what) const {
@@ -63,20 +58,20 @@ std::size_t HostMot2Plant::place_in(const std::vector<std::string>& names, const
 void HostMot2Plant::wire() {
   const std::vector<std::string> drives = drive_names(site_.layout.joints, site_.transmissions);
   for (const DriveWiring& wiring : settings_.drives) {
-    const std::size_t board = board_number(wiring.board);
+    const std::size_t board = settings_.board_number(wiring.board);
     axes_.push_back({board, Axis(wiring, boards_[board], place_in(drives, wiring.drive, "drives"))});
   }
   for (const FootWiring& wiring : settings_.feet) {
     Foot foot{.number = place_in(site_.layout.feet, wiring.foot, "feet"),
-              .board = board_number(wiring.board),
+              .board = settings_.board_number(wiring.board),
               .closed_N = wiring.closed_N};
     for (std::size_t i = 0; i < foot.corners.size(); ++i) foot.corners[i] = {foot.board, wiring.corners[i]};
     feet_.push_back(foot);
   }
   for (const InputWiring& wiring : settings_.inputs)
     inputs_.push_back({.number = place_in(site_.layout.sensors, wiring.name, "inputs"),
-                       .pin = {board_number(wiring.board), wiring.pin}});
-  emergency_ = {settings_.emergency ? board_number(settings_.emergency_board) : 0, settings_.emergency};
+                       .pin = {settings_.board_number(wiring.board), wiring.pin}});
+  emergency_ = {settings_.emergency ? settings_.board_number(settings_.emergency_board) : 0, settings_.emergency};
 }
 
 bool HostMot2Plant::open(bool (*give_up)() noexcept) {

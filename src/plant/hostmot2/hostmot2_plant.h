@@ -31,8 +31,6 @@ class HostMot2Plant final : public Plant {
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
 
-  const Board& board(std::size_t number) const noexcept { return boards_[number]; }
-
  private:
   struct Pin {
     std::size_t board = 0;
@@ -53,7 +51,6 @@ class HostMot2Plant final : public Plant {
     Axis axis;
   };
 
-  std::size_t board_number(const std::string& name) const;
   std::size_t place_in(const std::vector<std::string>& names, const std::string& name, const char* what) const;
   void wire();
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 
-#include "lbp_link.h"
 #include "signal/nearest_name.h"
 
 namespace kadans::hostmot2 {
@@ -103,7 +102,7 @@ class Reader {
   }
 
   void drive(PlantFields& f, const std::string& key) {
-    DriveWiring is{.drive = key, .encoder = no_instance, .place = f.place("")};
+    DriveWiring is{.drive = key, .encoder = no_instance};
     std::uint32_t pwm = no_instance;
     its_board(f, is.board);
     f.integer("encoder", is.encoder, {0, instances_max, ""}, "number of its encoder");
@@ -167,8 +166,7 @@ class Reader {
   void its_board(PlantFields& f, std::string& name) {
     if (f.reading() && settings_.boards.size() == 1) name = settings_.boards[0].name;
     f.string("board", name, "its board (default: the only one)");
-    if (!f.reading() || std::ranges::find(settings_.boards, name, &BoardSettings::name) != settings_.boards.end())
-      return;
+    if (!f.reading() || settings_.board_number(name) < settings_.boards.size()) return;
     f.refuse("board", name.empty() ? "names no board, and there are several"
                                    : "no board '" + name + "' in plant.hm2-eth.boards");
   }
@@ -238,6 +236,10 @@ std::string board_place(const std::string& address) {
   const bool digits = !host.empty() && host.find_first_not_of("0123456789.") == std::string::npos;
   if (!digits) throw InputError({.message = "'" + address + "' must be an address such as 192.168.1.121"});
   return colon == std::string::npos ? host + ":" + std::to_string(lbp_udp_port) : address;
+}
+
+std::size_t HostMot2Settings::board_number(const std::string& name) const noexcept {
+  return static_cast<std::size_t>(std::ranges::find(boards, name, &BoardSettings::name) - boards.begin());
 }
 
 void HostMot2Settings::move_boards(const std::string& first_address) {

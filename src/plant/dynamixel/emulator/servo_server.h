@@ -23,12 +23,7 @@ class ServoServer final : public DriveServer {
   std::vector<int> descriptors() const override { return masters_; }
   std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
   std::uint64_t heard() const noexcept override;
-  void look(WorldRobot& robot) override { robot_.look(robot); }
-  void drive(WorldRobot& robot) override { robot_.drive(robot); }
-  void pass(std::int64_t dt_ns) noexcept override { robot_.pass(dt_ns); }
-  bool any_torque() const noexcept override { return robot_.any_torque(); }
-  bool any_watchdog_tripped() const noexcept override { return robot_.any_watchdog_tripped(); }
-  void switch_power() noexcept override { robot_.switch_power(); }
+  EmulatedDrives& drives() noexcept override { return robot_; }
   void open_terminal(const std::string& link);
 
   std::string listen_;
