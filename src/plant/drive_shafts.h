@@ -18,6 +18,7 @@ class DriveShafts {
  public:
   explicit DriveShafts(const PlantSite& site);
 
+  const std::vector<std::string>& drives() const noexcept { return names_; }
   std::size_t place(const std::string& drive) const noexcept;
 
   // What the model's sensors show now. Velocities are those since the last look.

@@ -92,7 +92,7 @@ class JogRun {
       if (type.is_model()) {
         world_ = type.make_world({model, robot_.config.plant, 1});
       } else {
-        plant_ = type.make_plant(plant_site(robot_.config, options.peer));
+        plant_ = make_bus(robot_.config, type, options.peer, options.imu);
       }
     } catch (const std::invalid_argument& error) {
       throw InputError({.file = options.robot, .message = error.what()});
@@ -175,6 +175,7 @@ void add_jog(CLI::App& app, JogOptions& options) {
   jog->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
   jog->add_option("joint", options.joint, "The joint")->required()->type_name("NAME");
   jog->add_option("--plant", options.plant, "Plant to drive (default: bullet, its model)")->type_name("TYPE");
+  jog->add_option("--imu", options.imu, "Serial port of the IMU (default: the configuration's)")->type_name("FILE");
   jog->add_option("--peer", options.peer, "Address of the drives (default: the configuration's)")
       ->type_name("HOST:PORT");
   jog->add_option("--share", options.share, "Torque, as a share of the joint's greatest (default: 0.1)")

@@ -78,6 +78,7 @@ struct HostMot2Settings {
   std::vector<InputWiring> inputs;
   std::string emergency_board;
   OptionalPin emergency{};
+  double period_s = 0;  // of the bus; 0: the control period
   double watchdog_s = 0.01;
   double reply_wait_s = 0.0002;
   double patience_s = 0.05;

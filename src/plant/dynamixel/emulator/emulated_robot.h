@@ -32,12 +32,18 @@ class EmulatedRobot final : public EmulatedDrives {
   void switch_power() noexcept override;
   bool any_torque() const noexcept override;
   bool any_watchdog_tripped() const noexcept override;
+  void check(const EmulatedFault& fault) const override;
+  void befall(const EmulatedFault& fault, bool begins) noexcept override;
 
  private:
+  bool hits(const EmulatedFault& fault, std::size_t bus) const noexcept {
+    return fault.of.empty() || fault.of == ports_[bus];
+  }
   struct Wired {
     std::size_t bus, servo, joint;
   };
   DriveShafts shafts_;
+  std::vector<std::string> ports_;  // names
   std::vector<std::unique_ptr<EmulatedBus>> buses_;
   std::vector<Wired> wired_;
 };

@@ -47,6 +47,7 @@ class EmulatedBoard {
   unsigned first_free_pin() const noexcept { return 3 * (settings_.pwms + settings_.encoders); }
   unsigned pins() const noexcept { return settings_.ports * settings_.width; }
 
+  void bite() noexcept;  // its watchdog does
   bool bitten() const noexcept { return bitten_; }
   bool watching() const noexcept { return (timeout_ & 0x80000000U) == 0 && !bitten_; }
   void switch_power() noexcept;  // off and on again: everything is as after its power came on
@@ -69,7 +70,6 @@ class EmulatedBoard {
     std::uint32_t data = 0, direction = 0, secondary = 0, drain = 0, inverted = 0;
   };
 
-  void bite() noexcept;
   void power_on() noexcept;
   void write_idrom();
   std::uint16_t stamp_clock() const noexcept;

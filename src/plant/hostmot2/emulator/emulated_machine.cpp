@@ -15,12 +15,25 @@ struct Kind {
 };
 constexpr Kind kinds[] = {{"7I96", 3, 17}, {"7I92", 2, 17}, {"7I76E-16", 3, 17}, {"5I20", 3, 24}, {"4I65", 3, 24}};
 
+constexpr EmulatedFaultKind board_faults[] = {
+    {"datagrams_lost", EmulatedFaultKind::Of::line, "share of the datagrams"},
+    {"datagrams_corrupt", EmulatedFaultKind::Of::line, "share of the datagrams"},
+    {"datagrams_twice", EmulatedFaultKind::Of::line, "share of the datagrams"},
+    {"datagrams_late", EmulatedFaultKind::Of::line, "share of the datagrams"},
+    {"cable_out", EmulatedFaultKind::Of::line, ""},
+    {"watchdog_bites", EmulatedFaultKind::Of::line, ""},
+    {"board_reboots", EmulatedFaultKind::Of::line, ""},
+    {"drive_tripped", EmulatedFaultKind::Of::drive, ""},
+    {"emergency_button", EmulatedFaultKind::Of::nothing, ""},
+};
+
 }  // namespace
 
 EmulatedMachine::EmulatedMachine(const HostMot2Settings& settings, const PlantSite& site, std::uint64_t seed)
     : shafts_(site),
       emergency_{.board = settings.board_number(settings.emergency_board), .is = {.pin = settings.emergency}} {
   for (const BoardSettings& board : settings.boards) {
+    names_.push_back(board.name);
     const auto refuse = [&](const std::string& why) {
       InputProblem problem = board.place;
       problem.message = why;
@@ -140,6 +153,10 @@ void EmulatedMachine::drive(WorldRobot& robot) {
       does = {.effort_Nm = duty(w) * a.full * turn_Nm_per_A, .mode = ActuationMode::effort};
     if (enabled(w.joint) && a.kind == AmplifierSettings::Kind::voltage)
       does = motor_at_voltage(duty(w), a.full / a.winding_Ohm * turn_Nm_per_A, a.full / (a.Nm_per_A * a.gear));
+    if (enabled(w.joint) && a.kind == AmplifierSettings::Kind::velocity)
+      does = {.velocity_rad_s = duty(w) * a.full / a.gear,
+              .damping_Nms_per_rad = a.gain_Nms_per_rad,
+              .mode = ActuationMode::impedance};
     shafts_.set(w.joint, does);
     if (w.is.brake) shafts_.set_brake(w.joint, output(w.board, w.is.brake));
   }
@@ -162,6 +179,27 @@ void EmulatedMachine::switch_power() noexcept {
   }
   shafts_.rest();
   looked_ = false;
+}
+
+void EmulatedMachine::check(const EmulatedFault& fault) const {
+  check_fault(fault, board_faults, shafts_.drives(), names_);
+}
+
+void EmulatedMachine::befall(const EmulatedFault& fault, bool begins) noexcept {
+  if (fault.kind == "emergency_button") return press_emergency(begins);
+  if (fault.kind == "drive_tripped") return fail_amplifier(shafts_.place(fault.of), begins);
+  const double share = begins ? fault.size : 0;
+  for (std::size_t i = 0; i < boards_.size(); ++i) {
+    if (!fault.of.empty() && fault.of != names_[i]) continue;
+    if (fault.kind == "datagrams_lost") wires_[i].faults.lost = share;
+    if (fault.kind == "datagrams_corrupt") wires_[i].faults.corrupt = share;
+    if (fault.kind == "datagrams_twice") wires_[i].faults.duplicated = share;
+    if (fault.kind == "datagrams_late") wires_[i].faults.late = share;
+    if (fault.kind == "cable_out") wires_[i].pulled = begins;
+    if (!begins) continue;
+    if (fault.kind == "watchdog_bites") boards_[i].bite();
+    if (fault.kind == "board_reboots") boards_[i].switch_power();
+  }
 }
 
 bool EmulatedMachine::any_torque() const noexcept {

@@ -34,6 +34,8 @@ class EmulatedMachine final : public EmulatedDrives {
   void switch_power() noexcept override;
   bool any_torque() const noexcept override;
   bool any_watchdog_tripped() const noexcept override;
+  void check(const EmulatedFault& fault) const override;
+  void befall(const EmulatedFault& fault, bool begins) noexcept override;
   bool enabled(std::size_t joint) const noexcept;  // its amplifier is
 
   // What may happen.
@@ -64,6 +66,7 @@ class EmulatedMachine final : public EmulatedDrives {
   Wired& at(std::size_t joint) noexcept;
 
   DriveShafts shafts_;
+  std::vector<std::string> names_;  // of the boards
   std::deque<EmulatedBoard> boards_;
   std::deque<EmulatedWire> wires_;
   std::vector<Wired> wired_;
