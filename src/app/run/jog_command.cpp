@@ -17,7 +17,7 @@
 #include "app/terminal.h"
 #include "jog.h"
 #include "kadans/plant/plant_type.h"
-#include "real_time_start.h"
+#include "signal/monotonic_clock.h"
 #include "signal/nearest_name.h"
 
 namespace kadans {
@@ -25,12 +25,6 @@ namespace {
 
 constexpr double stop_margin_rad = 0.05;
 constexpr std::int64_t told_every_ns = 100'000'000;
-
-std::int64_t jog_clock_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * ns_per_s + now.tv_nsec;
-}
 
 // Keys from the standard input, one by one and without waiting, while it lives.
 class Keys {
@@ -98,7 +92,7 @@ class JogRun {
       if (type.is_model()) {
         world_ = type.make_world({model, robot_.config.plant, 1});
       } else {
-        plant_ = type.make_plant(plant_site(robot_.config, options.peer));
+        plant_ = make_bus(robot_.config, type, options.peer, options.imu);
       }
     } catch (const std::invalid_argument& error) {
       throw InputError({.file = options.robot, .message = error.what()});
@@ -122,12 +116,12 @@ class JogRun {
     const std::int64_t period_ns = robot_.config.engine.control_period_ns();
     Keys keys;
     Jog jog(settings_);
-    std::int64_t due_ns = jog_clock_ns(), told_ns = due_ns;
+    std::int64_t due_ns = monotonic_ns(), told_ns = due_ns;
     for (bool first = true;; first = false) {
       plant.read(sensors_);
       last_rad_ = sensors_.joints[settings_.joint].position_rad;
       if (first) first_rad_ = last_rad_;
-      const std::int64_t now_ns = jog_clock_ns();
+      const std::int64_t now_ns = monotonic_ns();
       bool gone = false;
       const char key = keys.newest(gone);
       if (gone) return "the keys are gone";
@@ -181,6 +175,7 @@ void add_jog(CLI::App& app, JogOptions& options) {
   jog->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
   jog->add_option("joint", options.joint, "The joint")->required()->type_name("NAME");
   jog->add_option("--plant", options.plant, "Plant to drive (default: bullet, its model)")->type_name("TYPE");
+  jog->add_option("--imu", options.imu, "Serial port of the IMU (default: the configuration's)")->type_name("FILE");
   jog->add_option("--peer", options.peer, "Address of the drives (default: the configuration's)")
       ->type_name("HOST:PORT");
   jog->add_option("--share", options.share, "Torque, as a share of the joint's greatest (default: 0.1)")

@@ -1,5 +1,6 @@
 // The parts of a robot's configuration that stand on plant, start, estimator and safety.
 #include <algorithm>
+#include <cmath>
 
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/input_error.h"
@@ -298,6 +299,14 @@ void RobotReader::plant(Fields& f) {
     });
   });
   f.object("imu", "inertial measurement unit on the base link", [&](Fields& e) { imu(e); });
+  f.object("serial_imu", "an IMU on a serial line of its own, beside a bus with drives", [&](Fields& e) {
+    TypeFields fields(e, problems_, drive_names_);
+    config_.serial_imu.fields(fields);
+  });
+  if (config_.serial_imu.given()) {
+    const double readings = 1e-9 * static_cast<double>(config_.engine.control_period_ns()) * config_.serial_imu.rate_Hz;
+    config_.estimate.imu_divisor = static_cast<std::uint32_t>(std::max(1.0, std::ceil(1 / readings - 1e-9)));
+  }
   f.list("feet", {0, max_feet}, "soles with four pressure sensors", [&](Fields& e) { foot(e); });
   f.map("surfaces", "friction of the links' surfaces by link pattern", [&](Fields& entry) { surface(entry); });
   f.map("collisions", "how links collide, by link pattern", [&](Fields& entry) { collision(entry); });
