@@ -271,6 +271,25 @@ TEST_CASE("mesaflash reads the emulated board as it reads a real one") {
   CHECK(plant.end(SIGTERM) == 0);
 }
 
+TEST_CASE("TULip is driven over the wire: two boards on the network and an IMU on a serial port, in two processes") {
+  const auto folder = fresh_folder("tulip_wire");
+  const std::string robot = source + "config/tulip/anything_io.json", line = (folder / "imu").string();
+  Running plant(folder, "plant " + robot + " --as hm2-eth --listen 127.0.7.110 --imu " + line + " --soft --once");
+  REQUIRE(plant.says("serves 'tulip'"));
+  const std::string command = "run " + robot + " --plant hm2-eth --peer 127.0.7.110 --soft --no-ctl --duration 2 ";
+  const Outcome there = run(command + "--play squat --imu " + line, folder);
+  CHECK_MESSAGE(has(there.out, " imu_readings"), there.out, there.err);
+  CHECK_FALSE(has(there.out, " 0 imu_readings"));
+  CHECK(plant.end() == 0);
+  const Outcome nowhere = run(command + "--imu /dev/null", folder);
+  CHECK(nowhere.exit_code == 2);
+  CHECK(has(nowhere.err, "--imu: the serial port /dev/null: is no serial port"));
+  const Outcome none =
+      run("run " + source + "config/jiwiy/anything_io.json --plant hm2-eth --soft --no-ctl --imu " + line, folder);
+  CHECK(none.exit_code == 2);
+  CHECK(has(none.err, "says no plant.serial_imu (docs/imu.md)"));
+}
+
 TEST_CASE("After kill -9 of a run its boards have released their outputs by themselves, and its servos have stopped") {
   const auto folder = fresh_folder("killed_bus");
   const auto killed = [&](const std::string& robot, const std::string& as, const std::string& where) {
