@@ -21,10 +21,11 @@ static_assert(crosses<SensorFrame> && crosses<JointStates> && crosses<ActuationF
 static_assert(crosses<Snapshot> && crosses<Command> && crosses<Fault>);
 
 TEST_CASE("the frames have the same layout on every machine") {
-  CHECK(sizeof(SensorFrame) == 3832);
+  CHECK(sizeof(SensorFrame) == 3840);
   CHECK(offsetof(SensorFrame, joints) == 16);
   CHECK(offsetof(SensorFrame, imu) == 3088);
-  CHECK(offsetof(SensorFrame, feet) == 3144);
+  CHECK(offsetof(SensorFrame, feet) == 3152);
+  CHECK(offsetof(ImuSample, time_ns) == 56);
   CHECK(sizeof(JointStates) == 1544);
   CHECK(sizeof(ActuationFrame) == 3208);
   CHECK(offsetof(JointActuation, mode) == 40);

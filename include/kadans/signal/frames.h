@@ -56,7 +56,7 @@ struct alignas(8) ImuSample {
   Vec3 angular_velocity_rad_s{};  // in the base frame
   Vec3 acceleration_m_s2{};       // specific force in the base frame: +9.81 up when at rest
   std::uint32_t sequence = 0;
-  std::int64_t time_ns = 0;  // of the reading, on the frame's clock; 0: the frame's time
+  alignas(8) std::int64_t time_ns = 0;  // of the reading, on the frame's clock; 0: the frame's time
 };
 
 struct alignas(8) FootSample {

@@ -82,10 +82,10 @@ class PlantService {
 
   int run() {
     lock_program(true);
-    print_line("serves '" + robot_.config.name + "' on " + options_.listen);
-    bool failed = false;
+    bool failed = false, told = false;
     while (!interrupted()) {
       const std::unique_ptr<World> world = make();
+      if (!std::exchange(told, true)) print_line("serves '" + robot_.config.name + "' on " + options_.listen);
       while (!interrupted() && !emulator_->await(look_every_ms)) {
       }
       if (interrupted()) break;
