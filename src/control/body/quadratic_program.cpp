@@ -17,33 +17,16 @@ constexpr double dependent = 1e-16;  // squared share of a normal that is left b
 
 }  // namespace
 
-QuadraticProgram::QuadraticProgram(Index variables_max, Index rows_max)
-    : hessian_(variables_max, variables_max),
-      normals_(variables_max, rows_max),
-      gradient_(variables_max),
-      lower_(rows_max),
-      upper_(rows_max),
-      equal_(variables_max, rows_max),
-      equal_row_(static_cast<std::size_t>(rows_max)),
-      own_(rows_max),
-      diagonal_(variables_max),
-      share_(variables_max),
-      free_hessian_(variables_max, variables_max),
-      factor_(variables_max, variables_max),
-      j_(variables_max, variables_max),
-      r_(variables_max, variables_max),
-      x_(variables_max),
-      multiplier_(rows_max),
-      scale_(rows_max),
-      normal_(variables_max),
-      d_(variables_max),
-      z_(variables_max),
-      step_(variables_max),
-      active_multiplier_(variables_max + 1),
-      active_(static_cast<std::size_t>(variables_max) + 1),
-      active_sign_(static_cast<std::size_t>(variables_max) + 1),
-      side_(static_cast<std::size_t>(rows_max)),
-      skipped_(static_cast<std::size_t>(rows_max)) {}
+QuadraticProgram::QuadraticProgram(Index variables_max, Index rows_max) {
+  const Index n = variables_max, m = rows_max;
+  for (Eigen::MatrixXd* square : {&hessian_, &free_hessian_, &factor_, &j_, &r_}) square->resize(n, n);
+  for (Eigen::MatrixXd* columns : {&normals_, &equal_}) columns->resize(n, m);
+  for (Eigen::VectorXd* each : {&gradient_, &diagonal_, &share_, &x_, &normal_, &d_, &z_, &step_}) each->resize(n);
+  for (Eigen::VectorXd* each : {&lower_, &upper_, &own_, &multiplier_, &scale_}) each->resize(m);
+  for (Eigen::VectorXd* each : {&active_multiplier_, &active_sign_}) each->resize(n + 1);
+  active_.resize(n + 1), equal_row_.resize(m);
+  side_.resize(m), skipped_.resize(m);
+}
 
 void QuadraticProgram::begin(Index variables) noexcept {
   n_ = variables;
@@ -56,10 +39,9 @@ void QuadraticProgram::begin(Index variables) noexcept {
 bool QuadraticProgram::finite() const noexcept {
   const double sum = 0 * hessian_.topLeftCorner(n_, n_).sum() + 0 * gradient_.head(n_).sum() +
                      0 * normals_.topLeftCorner(n_, m_).sum();
-  bool fine = sum == 0;
   for (Index i = 0; i < m_; ++i)
-    fine = fine && lower_[i] <= upper_[i] && lower_[i] < unbounded && upper_[i] > -unbounded;
-  return fine;
+    if (!(lower_[i] <= upper_[i] && lower_[i] < unbounded && upper_[i] > -unbounded)) return false;
+  return sum == 0;
 }
 
 // Of the normals that are left, the one that is most its own comes next. What each has of its own goes down with each
@@ -70,14 +52,14 @@ void QuadraticProgram::reflect() noexcept {
     if (!is_equality(row)) continue;
     equal_.col(equalities_).head(n_) = normals_.col(row).head(n_);
     own_[equalities_] = scale_[row] * scale_[row];
-    equal_row_[static_cast<std::size_t>(equalities_++)] = row;
+    equal_row_[equalities_++] = row;
   }
   for (; rank_ < std::min(equalities_, n_); ++rank_) {
     const Index k = rank_, left = n_ - k;
     Index best = -1;
     double most = dependent;
     for (Index c = k; c < equalities_; ++c) {
-      const double length = scale_[equal_row_[static_cast<std::size_t>(c)]], length2 = length * length;
+      const double length = scale_[equal_row_[c]], length2 = length * length;
       if (!(own_[c] > 1e-3 * length2)) own_[c] = equal_.col(c).segment(k, left).squaredNorm();
       if (!(own_[c] > most * length2)) continue;
       most = own_[c] / length2;
@@ -85,7 +67,7 @@ void QuadraticProgram::reflect() noexcept {
     }
     if (best < 0) return;
     equal_.col(k).head(n_).swap(equal_.col(best).head(n_));
-    std::swap(equal_row_[static_cast<std::size_t>(k)], equal_row_[static_cast<std::size_t>(best)]);
+    std::swap(equal_row_[k], equal_row_[best]);
     std::swap(own_[k], own_[best]);
     auto v = equal_.col(k).segment(k, left);
     const double length = v.norm();
@@ -112,7 +94,7 @@ void QuadraticProgram::turn_back(Vector&& v) const noexcept {
 bool QuadraticProgram::start() noexcept {
   free_ = n_ - rank_;
   for (Index k = 0; k < rank_; ++k) {  // R' y = b
-    double sum = lower_[equal_row_[static_cast<std::size_t>(k)]];
+    double sum = lower_[equal_row_[k]];
     for (Index i = 0; i < k; ++i) sum -= equal_(i, k) * x_[i];
     x_[k] = sum / diagonal_[k];
   }
@@ -162,8 +144,7 @@ QuadraticProgram::Candidate QuadraticProgram::most_violated() const noexcept {
   Candidate worst;
   double most = 1;
   for (Index row = 0; row < m_; ++row) {
-    const auto at = static_cast<std::size_t>(row);
-    if (side_[at] != Side::none || skipped_[at]) continue;
+    if (side_[row] != Side::none || skipped_[row]) continue;
     const double value = normals_.col(row).head(n_).dot(x_.head(n_));
     const double below = lower_[row] - value, above = value - upper_[row];
     const bool low = below > above;
@@ -214,23 +195,22 @@ bool QuadraticProgram::take_in(const Candidate& candidate, double multiplier) no
     j_.topLeftCorner(n_, free_).applyOnTheRight(i - 1, i, turn);
   }
   r_.col(count_).head(count_ + 1) = d_.head(count_ + 1);
-  const auto at = static_cast<std::size_t>(count_);
-  active_[at] = candidate.row;
-  active_sign_[at] = candidate.sign;
+  active_[count_] = candidate.row;
+  active_sign_[count_] = candidate.sign;
   active_multiplier_[count_++] = multiplier;
-  side_[static_cast<std::size_t>(candidate.row)] = candidate.sign > 0 ? Side::lower : Side::upper;
+  side_[candidate.row] = candidate.sign > 0 ? Side::lower : Side::upper;
   return true;
 }
 
 void QuadraticProgram::let_go(Index position) noexcept {
-  side_[static_cast<std::size_t>(active_[static_cast<std::size_t>(position)])] = Side::none;
+  side_[active_[position]] = Side::none;
   // What follows from the others may not follow from the rest.
-  for (Index row = 0; row < m_; ++row) skipped_[static_cast<std::size_t>(row)] = is_equality(row);
+  for (Index row = 0; row < m_; ++row) skipped_[row] = is_equality(row);
   --count_;
   for (Index k = position; k < count_; ++k) {
     r_.col(k).head(k + 2) = r_.col(k + 1).head(k + 2);
-    active_[static_cast<std::size_t>(k)] = active_[static_cast<std::size_t>(k + 1)];
-    active_sign_[static_cast<std::size_t>(k)] = active_sign_[static_cast<std::size_t>(k + 1)];
+    active_[k] = active_[k + 1];
+    active_sign_[k] = active_sign_[k + 1];
     active_multiplier_[k] = active_multiplier_[k + 1];
   }
   Eigen::JacobiRotation<double> turn;
@@ -258,7 +238,7 @@ QuadraticProgram::Status QuadraticProgram::bring_in(Candidate candidate, int ite
     const double in_dual = blocking(position), full = moves ? std::max(0.0, missing / free2) : unbounded;
     const double length = std::min(in_dual, full);
     if (!moves && missing <= slack(candidate.row, bound)) {
-      skipped_[static_cast<std::size_t>(candidate.row)] = true;
+      skipped_[candidate.row] = true;
       return Status::solved;
     }
     if (length == unbounded) return Status::infeasible;
@@ -276,9 +256,8 @@ void QuadraticProgram::find_multipliers() noexcept {
   normal_.head(n_).noalias() = hessian_.topLeftCorner(n_, n_) * x_.head(n_);
   normal_.head(n_) += gradient_.head(n_);
   for (Index i = 0; i < count_; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    multiplier_[active_[at]] = active_sign_[at] * active_multiplier_[i];
-    normal_.head(n_) -= multiplier_[active_[at]] * normals_.col(active_[at]).head(n_);
+    multiplier_[active_[i]] = active_sign_[i] * active_multiplier_[i];
+    normal_.head(n_) -= multiplier_[active_[i]] * normals_.col(active_[i]).head(n_);
   }
   for (Index k = 0; k < rank_; ++k) {
     const auto reflection = equal_.col(k).segment(k, n_ - k);
@@ -286,33 +265,30 @@ void QuadraticProgram::find_multipliers() noexcept {
   }
   for (Index k = rank_; k-- > 0;) {
     double sum = normal_[k];
-    for (Index i = k + 1; i < rank_; ++i) sum -= equal_(k, i) * multiplier_[equal_row_[static_cast<std::size_t>(i)]];
-    multiplier_[equal_row_[static_cast<std::size_t>(k)]] = sum / diagonal_[k];
+    for (Index i = k + 1; i < rank_; ++i) sum -= equal_(k, i) * multiplier_[equal_row_[i]];
+    multiplier_[equal_row_[k]] = sum / diagonal_[k];
   }
 }
 
 // Whether the equalities that depend on others agree with them.
 bool QuadraticProgram::agrees() const noexcept {
-  bool fine = true;
   for (Index k = rank_; k < equalities_; ++k) {
-    const Index row = equal_row_[static_cast<std::size_t>(k)];
+    const Index row = equal_row_[k];
     const double missing = std::abs(normals_.col(row).head(n_).dot(x_.head(n_)) - lower_[row]);
-    fine = fine && missing <= slack(row, lower_[row]);
+    if (!(missing <= slack(row, lower_[row]))) return false;
   }
-  return fine;
+  return true;
 }
 
 QuadraticProgram::Status QuadraticProgram::solve(int iterations_max) noexcept {
-  count_ = 0;
+  count_ = rank_ = 0;
   iterations_ = 0;
   x_.head(n_).setZero();
-  rank_ = 0;
   if (!finite()) return Status::refused;
   for (Index row = 0; row < m_; ++row) scale_[row] = normals_.col(row).head(n_).norm();
   reflect();
   if (!start()) return x_.head(n_).setZero(), Status::refused;
-  for (Index row = 0; row < m_; ++row) side_[static_cast<std::size_t>(row)] = Side::none;
-  for (Index row = 0; row < m_; ++row) skipped_[static_cast<std::size_t>(row)] = is_equality(row);
+  for (Index row = 0; row < m_; ++row) side_[row] = Side::none, skipped_[row] = is_equality(row);
   Status status = agrees() ? Status::solved : Status::infeasible;
   for (Candidate worst = most_violated(); worst.row >= 0 && status == Status::solved; worst = most_violated())
     status = bring_in(worst, iterations_max);

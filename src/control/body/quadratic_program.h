@@ -28,7 +28,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include <Eigen/Core>
 
@@ -86,6 +85,7 @@ class QuadraticProgram {
   int iterations() const noexcept { return iterations_; }  // of the last solve(), for inequalities
 
  private:
+  using IndexVector = Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1>;
   enum class Side : std::int8_t { none = 0, lower = 1, upper = -1 };
   struct Candidate {
     Eigen::Index row = -1;
@@ -112,7 +112,7 @@ class QuadraticProgram {
   Eigen::VectorXd gradient_, lower_, upper_;
   // Of the equalities: their normals, which become reflections below the diagonal and a triangle above it.
   Eigen::MatrixXd equal_;
-  std::vector<Eigen::Index> equal_row_;
+  IndexVector equal_row_;
   Eigen::VectorXd own_;               // of each normal: what no other one has, squared
   Eigen::VectorXd diagonal_, share_;  // of the triangle; how much of a reflection's own vector it takes away
   Eigen::Index equalities_ = 0, rank_ = 0;
@@ -120,11 +120,10 @@ class QuadraticProgram {
   double steepest_ = 0;                     // the longest column of J, squared
   Eigen::VectorXd x_, multiplier_, scale_;  // scale: the length of a row's normal
   Eigen::VectorXd normal_, d_, z_, step_;   // of the row that comes in
-  Eigen::VectorXd active_multiplier_;
-  std::vector<Eigen::Index> active_;
-  std::vector<double> active_sign_;
-  std::vector<Side> side_;
-  std::vector<bool> skipped_;                          // rows that hold because the active ones do
+  Eigen::VectorXd active_multiplier_, active_sign_;
+  IndexVector active_;
+  Eigen::Matrix<Side, Eigen::Dynamic, 1> side_;
+  Eigen::Matrix<bool, Eigen::Dynamic, 1> skipped_;     // rows that hold because the active ones do
   Eigen::Index n_ = 0, m_ = 0, free_ = 0, count_ = 0;  // free_: variables that the equalities leave
   int iterations_ = 0;
 };
