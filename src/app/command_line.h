@@ -32,6 +32,7 @@ struct CommandLine {
   RunOptions behavior_process;
   PlantOptions plant;
   JogOptions jog;
+  CommissionOptions commission;
   DynamixelOptions dynamixel;
   JitterOptions jitter;
   CtlOptions ctl;
