@@ -47,7 +47,7 @@ if(KADANS_I386)
 endif()
 
 # With a sanitizer's calls in the code, gcc gives false warnings; so there a warning is no error.
-if(KADANS_WERROR AND NOT KADANS_SANITIZE)
+if(KADANS_WERROR AND NOT (KADANS_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"))
   set(warnings_are_errors -Werror)
 endif()
 
@@ -68,4 +68,5 @@ if(KADANS_SANITIZE)
   add_compile_options(-fsanitize=${KADANS_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${KADANS_SANITIZE})
   add_compile_options(-fno-sanitize-recover=all)
+  add_compile_definitions(KADANS_SANITIZED)
 endif()

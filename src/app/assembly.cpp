@@ -7,6 +7,7 @@
 #include "app/run/read_only_plant.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
+#include "plant/imu/imu_plant.h"
 #include "scenario/disturb/planned_faults.h"
 #include "signal/nearest_name.h"
 
@@ -280,10 +281,30 @@ PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
   return site;
 }
 
+std::unique_ptr<Plant> make_bus(const RobotConfig& robot, const PlantType& type, const std::string& peer,
+                                const std::string& imu) {
+  std::unique_ptr<Plant> plant = type.make_plant(plant_site(robot, peer));
+  imu::SerialImuSettings beside = serial_imu_at(robot, type, "--imu", imu);
+  if (!beside.given()) return plant;
+  return std::make_unique<imu::ImuPlant>(std::move(plant), std::move(beside), robot.plant.imu.pose.orientation);
+}
+
+imu::SerialImuSettings serial_imu_at(const RobotConfig& robot, const PlantType& type, const char* option,
+                                     const std::string& device) {
+  imu::SerialImuSettings settings = robot.serial_imu;
+  if (!settings.given() && !device.empty())
+    throw InputError({.file = option, .message = robot.file + " says no plant.serial_imu (docs/imu.md)"});
+  if (!device.empty()) {
+    settings.device = device;
+    settings.place = {.file = option};
+  }
+  return type.has_imu() ? imu::SerialImuSettings() : settings;
+}
+
 void Assembly::make_plant() {
   const PlantType& type = plant_type();
   if (!type.is_model()) {
-    elsewhere_ = type.make_plant(plant_site(robot_.config, scenario_.peer));
+    elsewhere_ = make_bus(robot_.config, type, scenario_.peer, scenario_.imu);
     return;
   }
   if (number_ == 0) make_world(type);

@@ -54,6 +54,13 @@ const PlantType& plant_type_named(const RobotConfig& robot, const std::string& f
                                   bool (PlantType::*is)() const noexcept = nullptr);
 // The data from which a plant that is no model is made. `peer` is its address; "": the one in the configuration.
 PlantSite plant_site(const RobotConfig& robot, const std::string& peer);
+// The robot's IMU beside a bus of this type, at the device that the command line names, else at the configuration's;
+// not given() where it has none. Throws InputError.
+imu::SerialImuSettings serial_imu_at(const RobotConfig& robot, const PlantType& type, const char* option,
+                                     const std::string& device);
+// What reaches the drives of this type, and the IMU beside them. It is not open yet. Throws InputError.
+std::unique_ptr<Plant> make_bus(const RobotConfig& robot, const PlantType& type, const std::string& peer,
+                                const std::string& imu);
 
 class Assembly {
  public:

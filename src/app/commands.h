@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -79,6 +80,7 @@ struct RunOptions {
   std::string robot;
   std::string plant = "bullet";
   std::string peer;        // address of the drives; "": the robot's own
+  std::string imu;         // serial port of the IMU beside them; "": the robot's own
   bool read_only = false;  // nothing is asked of the drives
   std::string play;        // a list; "": nothing plays, the robot holds
   std::string joystick;    // a device or a recording; "": the robot's own
@@ -112,12 +114,14 @@ int run_behavior_process(const RunOptions& options);
 struct PlantOptions {
   std::string robot;
   std::string listen;
+  std::string imu;                           // link to the IMU's terminal; "": none is served
   std::string plant = "bullet", as = "udp";  // plant types: of the served model, of the protocol
   std::uint64_t seed = 1;
-  bool soft = false;     // also without the rights for real time
-  bool once = false;     // ends with the first session
-  bool in_step = false;  // time passes with the peer's ticks
-  int cpu = -1;          // -1: the CPU that `kadans run` takes
+  bool soft = false;                // also without the rights for real time
+  bool once = false;                // ends with the first session
+  std::vector<std::string> faults;  // "KIND:OF@FROM+FOR=SIZE"
+  bool in_step = false;             // time passes with the peer's ticks
+  int cpu = -1;                     // -1: the CPU that `kadans run` takes
   bool json = false;
 };
 void add_plant(CLI::App& app, PlantOptions& options);
@@ -141,6 +145,7 @@ struct JogOptions {
   std::string robot, joint;
   std::string plant = "bullet";
   std::string peer;          // address of the drives; "": the robot's own
+  std::string imu;           // serial port of the IMU beside them; "": the robot's own
   double share = 0.1;        // of the joint's greatest torque
   double speed_rad_s = 0.5;  // at which none is left
 };
@@ -184,6 +189,13 @@ struct NewControlObjectOptions {
   std::string folder = ".";  // the object's folder is made in this folder
   bool plugin = false;
 };
+struct NewFile {
+  std::filesystem::path path;
+  std::string text;
+};
+// Writes the files, with their folders, and says which. Throws InputError, and writes nothing, when one of `fresh` is
+// there already.
+void write_new_files(const std::vector<std::filesystem::path>& fresh, const std::vector<NewFile>& files);
 struct NewRobotOptions {
   std::string urdf, name;
   std::string folder = ".";  // the project

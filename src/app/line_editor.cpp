@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "config/robot/project_root.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -91,19 +92,10 @@ char* LineEditor::next_match(const char* /*word*/, int state) {
 }
 
 std::filesystem::path state_file(const std::string& name) {
-  namespace fs = std::filesystem;
-  const char* state = std::getenv("XDG_STATE_HOME");  // NOLINT(concurrency-mt-unsafe): no thread changes it
-  const char* home = std::getenv("HOME");             // NOLINT(concurrency-mt-unsafe)
-  fs::path folder;
-  if (state != nullptr && *state == '/') {
-    folder = state;
-  } else if (home != nullptr && *home == '/') {
-    folder = fs::path(home) / ".local/state";
-  }
+  const std::filesystem::path folder = user_folder("XDG_STATE_HOME", ".local/state");
   if (folder.empty()) return {};
-  folder /= "kadans";
   std::error_code ignored;
-  fs::create_directories(folder, ignored);
+  std::filesystem::create_directories(folder, ignored);
   return folder / name;
 }
 

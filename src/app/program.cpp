@@ -38,6 +38,8 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("TYPE");
   run->add_option("--peer", options.peer, "Address of the drives, or of `kadans plant` (default: the configuration's)")
       ->type_name("HOST:PORT");
+  run->add_option("--imu", options.imu, "Serial port of the IMU beside the drives (default: the configuration's)")
+      ->type_name("FILE");
   run->add_flag("--read-only", options.read_only, "Read every sensor, and ask nothing of the drives: none is enabled");
   run->add_option("--play", options.play,
                   "Behaviors to play: \"squat, wave\" (default: none, the robot holds its position)")

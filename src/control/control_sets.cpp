@@ -1,6 +1,7 @@
 #include "kadans/control/control_sets.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -48,7 +49,7 @@ ControlSets::ControlSets(Catalog& catalog, std::vector<std::unique_ptr<ControlOb
   if (objects_.size() != catalog.objects.size()) throw std::invalid_argument("the catalog lists other control objects");
   for (const ControlSetInfo& set : catalog.sets) check_set(catalog, set);
   check_drives();
-  if (active_ == 0 || std::bit_width(active_) > catalog.sets.size()) {
+  if (active_ == 0 || static_cast<std::size_t>(std::bit_width(active_)) > catalog.sets.size()) {
     throw std::invalid_argument("there is no initial control set");
   }
   if (partition_.clash(active_, active_)) throw std::invalid_argument("the initial control sets share a joint");
@@ -109,12 +110,38 @@ void ControlSets::declare(Catalog& catalog) {
   dwell_.declare(catalog.signals);
 }
 
+// What objects that go on add to a joint stays. An object that took over the torque with it would give it a second
+// time.
+bool ControlSets::take_off_sums(const Member& member, ActuationFrame& last, JointStates& joints) const noexcept {
+  bool any = false;
+  if (member.composition != Composition::set) return any;
+  each_bit(active_, [&](std::uint32_t set) {
+    for (const Member& other : plans_[set]) {
+      if (other.composition != Composition::sum || (running_ >> other.object & 1U) == 0) continue;
+      const auto& theirs = catalog_.objects[other.object].joints;
+      for (const std::size_t joint : catalog_.objects[member.object].joints) {
+        const double effort_Nm = proposals_[other.object]->joints[joint].effort_Nm;
+        if (std::ranges::find(theirs, joint) == theirs.end() || !std::isfinite(effort_Nm)) continue;
+        last.joints[joint].effort_Nm -= effort_Nm;
+        joints.joints[joint].effort_Nm -= effort_Nm;
+        any = true;
+      }
+    }
+  });
+  return any;
+}
+
 void ControlSets::start_newcomers(const ControlInput& input) noexcept {
   each_bit(active_, [&](std::uint32_t set) {
     for (const Member& member : plans_[set]) {
       const ObjectMask bit = ObjectMask{1} << member.object;
       if ((running_ & bit) != 0) continue;
-      objects_[member.object]->start(input);
+      ActuationFrame last = input.last;
+      JointStates joints = input.joints;
+      if (take_off_sums(member, last, joints))
+        objects_[member.object]->start({joints, input.status, last, input.time_ns, input.dt_s});
+      else
+        objects_[member.object]->start(input);
       fresh_ |= bit;
     }
   });

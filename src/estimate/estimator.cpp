@@ -12,6 +12,8 @@
 namespace kadans {
 namespace {
 
+constexpr double imu_foresight_s = 0.05;  // at most so long the base is thought to turn on as the gyro last said
+
 // Whether the sensor has a new reading, counting the ticks without.
 bool is_new(std::uint32_t sequence, std::uint32_t& last_sequence, bool look, SensorState& health) noexcept {
   if (look && sequence != last_sequence) {
@@ -68,7 +70,7 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
     const JointState& state = joints_[i].state;
     joints.joints[i] = {state.position_rad, state.velocity_rad_s, state.effort_Nm};
   }
-  const Axes base = update_base(sensors.imu, dt_s, status.base);
+  const Axes base = update_base(sensors.imu, sensors.time_ns, dt_s, status.base);
   status.foot_count = health_.foot_count;
   for (std::size_t i = 0; i < feet_.size(); ++i) update_foot(i, sensors.feet[i], status.feet[i]);
   update_support(joints, base, status);
@@ -102,18 +104,24 @@ void Estimator::update_joint(std::size_t joint, const JointSample& sample, bool 
   }
 }
 
-Axes Estimator::update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept {
+Axes Estimator::update_base(const ImuSample& sample, std::int64_t now_ns, double dt_s, BaseStatus& base) noexcept {
   imu_elapsed_s_ += dt_s;
   if (is_new(sample.sequence, last_imu_sequence_, true, health_.imu)) {
     const bool gyro_ok = is_finite(sample.angular_velocity_rad_s);
     health_.imu.finite = gyro_ok && is_finite(sample.acceleration_m_s2);
-    orientation_.update(sample.angular_velocity_rad_s, sample.acceleration_m_s2, imu_elapsed_s_);
-    if (gyro_ok) imu_elapsed_s_ = 0;
+    const bool timed = sample.time_ns > last_imu_time_ns_ && last_imu_time_ns_ != 0;
+    orientation_.update(sample.angular_velocity_rad_s, sample.acceleration_m_s2,
+                        timed ? seconds_between(last_imu_time_ns_, sample.time_ns) : imu_elapsed_s_);
+    if (gyro_ok) {
+      imu_elapsed_s_ = 0;
+      last_imu_time_ns_ = sample.time_ns;
+    }
   }
   const OrientationFilter::State& state = orientation_.state();
-  base.orientation = state.orientation;
+  const double age_s = last_imu_time_ns_ != 0 ? seconds_between(last_imu_time_ns_, now_ns) : 0;
+  base.orientation = age_s > 0 ? orientation_.orientation_after(std::min(age_s, imu_foresight_s)) : state.orientation;
   base.angular_velocity_rad_s = state.angular_velocity_rad_s;
-  const Axes axes = axes_of(state.orientation);
+  const Axes axes = axes_of(base.orientation);
   const Attitude angles = attitude(axes);
   base.roll_rad = angles.roll_rad;
   base.pitch_rad = angles.pitch_rad;
@@ -194,6 +202,7 @@ Estimator::Estimator(const RobotModel& model, const EstimateSettings& settings, 
   if (settings.channels.size() > max_channels)
     refuse(std::to_string(settings.channels.size()) + " sensors, at most " + std::to_string(max_channels));
   health_.channel_count = static_cast<std::uint32_t>(settings.channels.size());
+  health_.imu.period_ticks = std::max(1U, settings.imu_divisor);
   channels_.fill(std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < settings.channels.size(); ++i)
     health_.channels[i].period_ticks =

@@ -66,7 +66,7 @@ class Estimator {
   void add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s);
   void add_feet(const RobotModel& model, const EstimateSettings& settings);
   void update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept;
-  Axes update_base(const ImuSample& sample, double dt_s, BaseStatus& base) noexcept;
+  Axes update_base(const ImuSample& sample, std::int64_t now_ns, double dt_s, BaseStatus& base) noexcept;
   void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
   void update_channels(const SensorFrame& sensors, RobotStatus& status) noexcept;
   void update_support(const JointStates& joints, const Axes& base, RobotStatus& status) noexcept;
@@ -82,6 +82,7 @@ class Estimator {
   bool started_ = false;
   std::uint32_t last_imu_sequence_ = 0;
   double imu_elapsed_s_ = 0;
+  std::int64_t last_imu_time_ns_ = 0;  // of the last reading, where the bus tells it
   double height_m_ = 0;
   double heading_x_ = 1, heading_y_ = 0;  // the base's x axis on the ground, a unit vector; holds while x is upright
   SupportStatus support_;

@@ -62,6 +62,10 @@ void OrientationFilter::update(const Vec3& gyro_rad_s, const Vec3& specific_forc
   for (std::size_t i = 0; i < 3; ++i) state_.angular_velocity_rad_s[i] = gyro_rad_s[i] - state_.gyro_bias_rad_s[i];
 }
 
+Quat OrientationFilter::orientation_after(double time_s) const noexcept {
+  return normalized(multiply(state_.orientation, turn(state_.angular_velocity_rad_s, time_s)));
+}
+
 // The shortest rotation that brings the measured up onto the world's z, without yaw.
 void OrientationFilter::initialise(const Vec3& specific_force_m_s2) noexcept {
   const Vec3& f = specific_force_m_s2;

@@ -39,6 +39,8 @@ class OrientationFilter {
   void update(const Vec3& gyro_rad_s, const Vec3& specific_force_m_s2, double elapsed_s) noexcept;
 
   const State& state() const noexcept { return state_; }
+  // Where the base will be so long after the last reading if it goes on turning as it does.
+  Quat orientation_after(double time_s) const noexcept;
 
  private:
   void initialise(const Vec3& specific_force_m_s2) noexcept;

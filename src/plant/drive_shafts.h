@@ -18,7 +18,6 @@ class DriveShafts {
  public:
   explicit DriveShafts(const PlantSite& site);
 
-  // The drives' names, in their joints' places.
   const std::vector<std::string>& drives() const noexcept { return names_; }
   std::size_t place(const std::string& drive) const noexcept;
 
@@ -37,7 +36,7 @@ class DriveShafts {
 
  private:
   std::vector<Transmission> transmissions_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_;  // of the drives, in their joints' places
   SensorFrame sensors_;
   ActuationFrame actuation_;
   std::vector<double> last_rad_, velocity_rad_s_;

@@ -24,6 +24,10 @@ std::unique_ptr<PlantEmulator> PlantType::make_emulator(const PlantSite&, const 
   fail(*this, " speaks no protocol");
 }
 
+void PlantEmulator::plan_faults(const std::vector<EmulatedFault>& faults) {
+  if (!faults.empty()) throw std::invalid_argument("this protocol has no faults: let scenarios have them");
+}
+
 RegisteredPlantType::RegisteredPlantType(MakePlantType make) noexcept
     : make_(make), next_(std::exchange(newest_registered, this)) {}
 

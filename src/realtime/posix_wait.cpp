@@ -1,10 +1,8 @@
-
 #include "posix_wait.h"
 
 #include <cerrno>
 #include <ctime>
 
-#include "engine/clock.h"
 #include "wait.h"
 
 namespace kadans {
@@ -21,7 +19,7 @@ std::int64_t StartLine::origin_ns() const noexcept {
 
 void StartLine::open() noexcept {
   std::int64_t unknown = 0;
-  origin_ns_.compare_exchange_strong(unknown, WallClock().now_ns() + lead_ns_, std::memory_order_acq_rel);
+  origin_ns_.compare_exchange_strong(unknown, monotonic_ns() + lead_ns_, std::memory_order_acq_rel);
   origin_ns_.notify_all();
 }
 
@@ -32,12 +30,6 @@ constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr int looks_max = 10'000'000;
 
 }  // namespace
-
-std::int64_t PosixWait::now_ns() const noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * second_ns + now.tv_nsec - origin_ns_;
-}
 
 void PosixWait::until(std::int64_t time_ns) noexcept {
   const std::int64_t wake_ns = time_ns + origin_ns_ - spin_ns_;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "signal/monotonic_clock.h"
 #include "wait.h"
 
 namespace kadans {
@@ -58,7 +59,7 @@ class PosixWait final : public Wait {
   void begin() noexcept override {
     if (line_ != nullptr) origin_ns_ = line_->wait();
   }
-  std::int64_t now_ns() const noexcept override;
+  std::int64_t now_ns() const noexcept override { return monotonic_ns() - origin_ns_; }
   void until(std::int64_t time_ns) noexcept override;  // signals do not shorten it
 
  private:

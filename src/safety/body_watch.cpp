@@ -18,8 +18,8 @@ constexpr double negative_share = 0.01;  // of the range: a pressure sensor's ze
 FaultMask ImuWatch::look(const ImuSample& sample, const SensorState& health) noexcept {
   using enum FaultCode;
   if (!settings_.imu) return 0;
-  FaultMask found =
-      bit_if(!health.finite, imu_not_finite) | bit_if(health.silent_ticks > silent_ticks_max_, imu_silent);
+  FaultMask found = bit_if(!health.finite, imu_not_finite) |
+                    bit_if(health.silent_ticks > silent_ticks_max_ * health.period_ticks, imu_silent);
   if (health.silent_ticks > 0 || !health.finite) return found;
   const Vec3& gyro = sample.angular_velocity_rad_s;
   const Vec3& acceleration = sample.acceleration_m_s2;
@@ -45,7 +45,7 @@ void ImuWatch::describe(const SensorState& health, Fault& fault) const noexcept 
   switch (fault.code) {
     case FaultCode::imu_silent:
       fault.value = health.silent_ticks;
-      fault.limit = silent_ticks_max_;
+      fault.limit = silent_ticks_max_ * health.period_ticks;
       break;
     case FaultCode::imu_stuck:
       fault.value = repeats_.count();

@@ -12,7 +12,8 @@
 //   sensor_not_finite, imu_not_finite, foot_not_finite 1
 //   sensor_jump, imu_jump, foot_jump                   1, of the reading
 //   sensor_silent                                      silent_ticks_max + 1, + period of a slow joint - 1
-//   imu_silent, foot_silent                            silent_ticks_max + 1
+//   imu_silent                                         silent_ticks_max periods of its own + 1
+//   foot_silent                                        silent_ticks_max + 1
 //   channel_silent                                     silent_ticks_max + 1, + ticks of its period - 1
 //   channel_range, channel_not_finite                  1, of the reading
 //   sensor_stuck                                       stuck_ticks + 1, once the motor has moved or pulled

@@ -6,17 +6,6 @@
 
 #include <dlfcn.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define KADANS_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define KADANS_SANITIZER 1
-#endif
-#endif
-#ifndef KADANS_SANITIZER
-#define KADANS_SANITIZER 0
-#endif
-
 namespace kadans::testing {
 
 struct ThreadMarks {

@@ -24,7 +24,7 @@ void count_free(const char* call) noexcept {
 
 }  // namespace
 
-#if KADANS_SANITIZER
+#ifdef KADANS_SANITIZED
 
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*)(const volatile void*, std::size_t),
                                                          void (*)(const volatile void*));

@@ -26,7 +26,7 @@ void link_library_calls() noexcept {}
 
 }  // namespace kadans::testing
 
-#if !KADANS_SANITIZER
+#ifndef KADANS_SANITIZED
 // Exceptions: forbidden to marked threads from the moment memory is asked for one, so that the report says throw.
 
 using Destructor = void (*)(void*);

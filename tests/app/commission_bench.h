@@ -13,7 +13,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/bench/commission.h"
+#include "app/commission/commission.h"
 #include "plant/dynamixel_world.h"
 #include "plant/hostmot2_world.h"
 #include "plant/json_plant_fields.h"

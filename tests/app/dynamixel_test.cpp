@@ -84,10 +84,14 @@ TEST_CASE("A device that is no port of servos is refused, with what to do") {
   const std::string command = "run config/jiwiy/servos.json --plant dynamixel --soft --no-ctl --peer ";
   Outcome outcome = run(command + "/dev/null", folder);
   CHECK(outcome.exit_code == 2);
-  CHECK(has(outcome.err, "the serial port /dev/null: is no serial port"));
+  CHECK(has(outcome.err, "--peer: the serial port /dev/null: is no serial port"));
   outcome = run(command + "/dev/ttyNONE", folder);
   CHECK(outcome.exit_code == 2);
   CHECK(has(outcome.err, "is not there: is the adapter plugged in?"));
+  outcome = run("run config/jiwiy/servos.json --plant dynamixel --soft --no-ctl", folder);
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "config/jiwiy/servos.json:"));  // where its device stands
+  CHECK(has(outcome.err, "the serial port /dev/ttyUSB0: is not there"));
   outcome = run("run config/tulip/robot.json --plant dynamixel --soft --no-ctl", folder);
   CHECK(outcome.exit_code == 2);
   CHECK(has(outcome.err, "says no plant.dynamixel.servos"));

@@ -25,6 +25,16 @@ test::HostMot2World* newest_machine = nullptr;
 test::DynamixelWorld* newest_servos = nullptr;
 test::UdpWorld* newest_udp = nullptr;
 
+// With what the files say on which it is based.
+nlohmann::ordered_json read_whole(const std::string& file) {
+  std::ifstream in(file);
+  const nlohmann::ordered_json own = nlohmann::ordered_json::parse(in);
+  if (!own.contains("based_on")) return own;
+  nlohmann::ordered_json all = read_whole(source + own.at("based_on").get<std::string>());
+  all.merge_patch(own);
+  return all;
+}
+
 // A model for scenarios: Bullet's, driven through the boards that the robot's configuration names.
 class BoardsType final : public PlantType {
  public:
@@ -32,8 +42,7 @@ class BoardsType final : public PlantType {
   std::string_view doc() const noexcept override { return "of the test"; }
   bool is_model() const noexcept override { return true; }
   std::unique_ptr<World> make_world(const WorldSite& world) const override {
-    std::ifstream in(robot_on_boards);
-    const nlohmann::ordered_json robot = nlohmann::ordered_json::parse(in);
+    const nlohmann::ordered_json robot = read_whole(robot_on_boards);
     hostmot2::HostMot2Settings settings;
     test::JsonPlantFields fields(robot.at("plant").at("hm2-eth"));
     settings.fields(fields);
@@ -43,6 +52,12 @@ class BoardsType final : public PlantType {
     const PlantTypes types = plant_types();
     auto made =
         std::make_unique<test::HostMot2World>(plant_type(types, "bullet").make_world(world), settings, settings, site);
+    if (robot.at("plant").contains("serial_imu")) {
+      imu::SerialImuSettings beside;
+      test::JsonPlantFields its(robot.at("plant").at("serial_imu"));
+      beside.fields(its);
+      made->stand_beside(beside, world.settings.imu.pose.orientation);
+    }
     newest_machine = made.get();
     return made;
   }
@@ -121,18 +136,21 @@ double delay_ticks_of(OneRobotWorld& world) {
   return sum / 20;
 }
 
-Through run_through(const char* plant, const std::string& file, const char* scenario_name, std::uint64_t seed) {
+// `stick`: a recording in the place of the scenario's.
+Through run_through(const char* plant, const std::string& file, const char* scenario_name, std::uint64_t seed,
+                    const std::string& stick = "") {
   robot_on_boards = source + file;
   ScenarioConfig scenario = read_scenario_config(source + "config/scenarios/" + scenario_name + ".json");
   scenario.robot = robot_on_boards;
   scenario.plant = plant;
+  if (!stick.empty()) scenario.joystick.recording = stick;
   RunLog log;
   Assembly robot(scenario, seed, log);
   Checks checks(robot.catalog().signals, scenario.checks);
   const RunResult result = run_scenario(robot.parts(), scenario.duration_s, checks, {});
   Through is{.passed = result.passed};
   for (const CheckResult& check : result.checks) {
-    if (!check.passed) is.why += check.name + "; ";
+    if (!check.passed) is.why += check.name + " (" + std::to_string(check.value) + "); ";
   }
   for (const RunFault& one : result.faults) is.why += std::string(name(one.code)) + "; ";
   is.hash = result.state_hash;
@@ -174,7 +192,25 @@ TEST_CASE("JIWIY follows its sine through a HostMot2 board, with the behavior th
   CHECK(run_through("boards", file, "jiwiy_sine", 1).hash == run_through("boards", file, "jiwiy_sine", 1).hash);
 }
 
-TEST_CASE("TULip squats, gets up and catches pushes through two HostMot2 boards, with the same behaviors") {
+TEST_CASE("JIWIY as in 2008: its joystick at 10 Hz turns it through a board that is asked at 100 Hz") {
+  // The shipped recording tells of the stick every 100 ms. In 2008 there was one control, and no button that switched.
+  const std::string stick = (fresh_folder("stick_2008") / "stick.evemu").string();
+  std::ifstream in(source + "config/joystick/jiwiy_round.evemu");
+  std::ofstream out(stick);
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("E:") || line.find(" 0001 ") == std::string::npos) out << line << '\n';
+  }
+  out.close();
+  const Through board = run_through("boards", "config/jiwiy/anything_io_2008.json", "jiwiy_unplugged", 1, stick);
+  CAPTURE(board.why);
+  CHECK(board.passed);
+  CHECK(count_of(board, "sent") == 351);  // in 3.5 s
+  CHECK(count_of(board, "lost") == 0);
+  CHECK(count_of(board, "bites") == 0);
+}
+
+TEST_CASE(
+    "TULip squats, gets up and catches pushes through two HostMot2 boards and a serial IMU, with the same behaviors") {
   constexpr const char* file = "config/tulip/anything_io.json";
   for (const std::string scenario : {"squat", "get_up_prone", "get_up_supine", "push_forward", "push_left"}) {
     CAPTURE(scenario);
@@ -183,6 +219,8 @@ TEST_CASE("TULip squats, gets up and catches pushes through two HostMot2 boards,
     CHECK(boards.passed);
     CHECK(count_of(boards, "lost") == 0);
     CHECK(count_of(boards, "strange") == 0);
+    CHECK(count_of(boards, "imu_readings") > 200);
+    CHECK(count_of(boards, "imu_lost") == 0);
   }
   CHECK(run_through("boards", file, "squat", 1).hash == run_through("boards", file, "squat", 1).hash);
 }
@@ -233,6 +271,25 @@ TEST_CASE("mesaflash reads the emulated board as it reads a real one") {
   CHECK(plant.end(SIGTERM) == 0);
 }
 
+TEST_CASE("TULip is driven over the wire: two boards on the network and an IMU on a serial port, in two processes") {
+  const auto folder = fresh_folder("tulip_wire");
+  const std::string robot = source + "config/tulip/anything_io.json", line = (folder / "imu").string();
+  Running plant(folder, "plant " + robot + " --as hm2-eth --listen 127.0.7.110 --imu " + line + " --soft --once");
+  REQUIRE(plant.says("serves 'tulip'"));
+  const std::string command = "run " + robot + " --plant hm2-eth --peer 127.0.7.110 --soft --no-ctl --duration 2 ";
+  const Outcome there = run(command + "--play squat --imu " + line, folder);
+  CHECK_MESSAGE(has(there.out, " imu_readings"), there.out, there.err);
+  CHECK_FALSE(has(there.out, " 0 imu_readings"));
+  CHECK(plant.end() == 0);
+  const Outcome nowhere = run(command + "--imu /dev/null", folder);
+  CHECK(nowhere.exit_code == 2);
+  CHECK(has(nowhere.err, "--imu: the serial port /dev/null: is no serial port"));
+  const Outcome none =
+      run("run " + source + "config/jiwiy/anything_io.json --plant hm2-eth --soft --no-ctl --imu " + line, folder);
+  CHECK(none.exit_code == 2);
+  CHECK(has(none.err, "says no plant.serial_imu (docs/imu.md)"));
+}
+
 TEST_CASE("After kill -9 of a run its boards have released their outputs by themselves, and its servos have stopped") {
   const auto folder = fresh_folder("killed_bus");
   const auto killed = [&](const std::string& robot, const std::string& as, const std::string& where) {
@@ -247,6 +304,37 @@ TEST_CASE("After kill -9 of a run its boards have released their outputs by them
   };
   killed("config/jiwiy/anything_io.json", "hm2-eth", "127.0.7.98");
   killed("config/jiwiy/servos.json", "dynamixel", (folder / "bus").string());
+}
+
+TEST_CASE(
+    "Faults of a bus and its drives that kadans plant is asked for befall a run, and others are refused with those "
+    "there are") {
+  const auto folder = fresh_folder("bus_faults");
+  const auto befallen = [&](const std::string& robot, const std::string& as, const std::string& where,
+                            const std::string& fault) {
+    Running plant(folder, "plant " + source + robot + " --as " + as + " --listen " + where + " --soft --once " + fault);
+    REQUIRE(plant.says("serves 'jiwiy'"));
+    Running driver(folder,
+                   "run " + source + robot + " --plant " + as + " --peer " + where + " --soft --no-ctl --play sine -v");
+    return driver.says("drive_fault");
+  };
+  CHECK(befallen("config/jiwiy/anything_io.json", "hm2-eth", "127.0.7.99", "--fault watchdog_bites@0.5"));
+  CHECK(befallen("config/jiwiy/anything_io.json", "hm2-eth", "127.0.7.100", "--fault cable_out:io@0.5+0.2"));
+  CHECK(befallen("config/jiwiy/servos.json", "dynamixel", (folder / "a").string(), "--fault drive_hot:tilt@0.5=99"));
+  CHECK(befallen("config/jiwiy/servos.json", "dynamixel", (folder / "b").string(), "--fault drive_reboots:pan@0.5"));
+
+  const auto refused = [&](const std::string& fault) {
+    const Outcome outcome = run("plant " + source + "config/jiwiy/servos.json --as dynamixel --soft --listen " +
+                                    (folder / "c").string() + " --fault " + fault,
+                                folder);
+    CHECK(outcome.exit_code == 2);
+    return outcome.err;
+  };
+  CHECK(has(refused("watchdog_bites@1"), "no fault 'watchdog_bites' of this bus; there are bytes_lost, bytes_corrupt"));
+  CHECK(has(refused("drive_hot:tlt@1=90"), "no drive 'tlt', did you mean 'tilt'?"));
+  CHECK(has(refused("drive_hot:tilt@1"), "drive_hot needs a size: its temperature, C"));
+  CHECK(has(refused("bytes_lost@1+2=7"), "a share is 0..1"));
+  CHECK(has(refused("cable_out@soon"), "'soon' is no number"));
 }
 
 TEST_CASE("A robot on boards that are not there is refused, with what to do") {

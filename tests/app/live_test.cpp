@@ -63,12 +63,13 @@ TEST_CASE("run binds all functions of its libraries before main(): no thread loo
   CHECK(processes == 2);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they take memory of their own
+#ifndef KADANS_SANITIZED  // they take memory of their own
 TEST_CASE("run holds at most 40 MB with its flight recorder, and 64 MB with the page") {
   const auto project = project_copy("live_memory");
   write(project / "memory.sh",
         "\"$@\" >out 2>err & sleep 3; awk '/^VmRSS/ {print $2}' /proc/$!/status >kB; wait $!; true\n");
   const std::string program = (std::filesystem::path(KADANS_BINARY_DIR) / "kadans").string();
+  const int bare_MB = __GLIBC_MINOR__ < 41 ? 40 : 42;  // Debian 13's libraries are larger
   for (const bool page : {false, true}) {
     CAPTURE(page);
     const std::string command =
@@ -77,7 +78,7 @@ TEST_CASE("run holds at most 40 MB with its flight recorder, and 64 MB with the 
     const std::string kB = read(project / "kB");
     REQUIRE(!kB.empty());
     CHECK(std::stoi(kB) > 0);
-    CHECK(std::stoi(kB) <= 1024 * (page ? 64 : 40));
+    CHECK(std::stoi(kB) <= 1024 * (page ? 64 : bare_MB));
   }
 }
 #endif

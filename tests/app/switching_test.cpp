@@ -2,13 +2,17 @@
 // second.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "program.h"
+
+namespace switching_test {
 
 using namespace kadans::program;
 
@@ -40,7 +44,7 @@ return k.behavior "switched" {
     end,
     k.state "choose" {
       { when = function() return P.balanced > 0.5 end, to = "with" },
-      { when = function() return true end, to = "without" },
+      { to = "without" },
     },
     k.state "without" { controls = "posture", { when = over, to = "with" } },
     k.state "with" { controls = "balanced", { when = over, to = "without" } },
@@ -107,6 +111,93 @@ Squat squat(const std::filesystem::path& project, double period_s, int balanced)
   return found;
 }
 
+// Two sets that take turns in states of a behavior; each sends its object where it shall be in the transaction of the
+// switch and in each tick.
+constexpr const char* turns = R"(local k = require "kadans"
+local P = k.params {
+  period_s = { 0.04, min = 0, max = 100, unit = "s", doc = "of two switches" },
+  second   = { 0, min = 0, max = 1, doc = "whether the other set is there first" },
+}
+local brisk = { velocity_max_rad_s = 1.5, acceleration_max_rad_s2 = 8 }
+local function over(_, m) return m.time_s >= P.period_s / 2 - 0.001 end
+local function lead(object, s)
+  local soft = math.min(1, 2 * s.time_s)
+  local at_rad = 0.3 * soft * soft * math.sin(1.4 * math.pi * s.time_s)
+  object:follow({ pan = at_rad, tilt = at_rad }, brisk)
+end
+return k.behavior "turns" {
+  initial = "choose",
+  k.state "choose" {
+    { when = function() return P.second > 0.5 end, to = "effort" },
+    { to = "position" },
+  },
+  k.state "position" {
+    controls = "position",
+    enter    = function(m, s) lead(m.profile, s) end,
+    during   = function(m, s) lead(m.profile, s) end,
+    { when = over, to = "effort" },
+  },
+  k.state "effort" {
+    controls = "effort",
+    enter    = function(m, s) lead(m.torque, s) end,
+    during   = function(m, s) lead(m.torque, s) end,
+    { when = over, to = "position" },
+  },
+}
+)";
+
+constexpr const char* hanging = R"(local k = require "kadans"
+local function over(_, m) return m.time_s > 0.019 end
+local function go(object) object:move("stand", { time_s = 0.5 }) end
+return k.behavior "turns" {
+  initial = "held",
+  k.state "held" { controls = "held", enter = function(m) go(m.legs) end, { when = over, to = "loose" } },
+  k.state "loose" { controls = "loose", enter = function(m) go(m.springs) end, { when = over, to = "held" } },
+}
+)";
+
+std::string scenario_of(const std::string& robot, int duration_s) {
+  return R"({ "name": "turns", "doc": "Control sets take turns.", "robot": "config/)" + robot +
+         R"(/robot.json", "duration_s": )" + std::to_string(duration_s) + R"(, "behaviors": ["turns"],
+  "checks": [ { "name": "no faults", "kind": "always", "that": "safety.faults == 0" } ] })";
+}
+
+struct Turns {
+  int switches = 0;
+  double error_rad = 0;       // RMS of the worse joint
+  double energy_rad2_s2 = 0;  // the largest sum of squared joint velocities
+};
+
+// The 0.7 Hz of `turns`, from 1.5 s on.
+Turns turn(const std::filesystem::path& project, double period_s, int second) {
+  const Outcome sim = run("sim config/scenarios/turns.json --seed 1 --record turns.mcap --play 'turns { period_s = " +
+                              std::to_string(period_s) + ", second = " + std::to_string(second) + " }'",
+                          project);
+  REQUIRE_MESSAGE(sim.exit_code == 0, sim.out);
+  const Outcome csv =
+      run("log csv turns.mcap engine.control_sets 'joint.*.position_rad' 'joint.*.velocity_rad_s'", project);
+  std::istringstream lines(csv.out);
+  std::string line;
+  std::getline(lines, line);
+  Turns found;
+  double squares[2]{}, rows = 0, sets = 0;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::vector<double> row;
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    REQUIRE(row.size() == 6);
+    found.switches += row[1] != std::exchange(sets, row[1]) ? 1 : 0;
+    if (row[0] < 1.5) continue;
+    for (const std::size_t joint : {0, 1}) {
+      squares[joint] += std::pow(0.3 * std::sin(1.4 * std::numbers::pi * row[0]) - row[2 + joint], 2);
+    }
+    found.energy_rad2_s2 = std::max(found.energy_rad2_s2, row[4] * row[4] + row[5] * row[5]);
+    ++rows;
+  }
+  found.error_rad = std::sqrt(std::max(squares[0], squares[1]) / rows);
+  return found;
+}
+
 }  // namespace
 
 TEST_CASE("TULip squats as well while its control sets take turns, at whatever period, up to 50 switches a second") {
@@ -123,3 +214,43 @@ TEST_CASE("TULip squats as well while its control sets take turns, at whatever p
     CHECK(switched.tilt_rad <= 1.2 * std::max(without.tilt_rad, with.tilt_rad));
   }
 }
+
+TEST_CASE("JIWIY follows as well while its control sets take turns, at whatever period, up to 50 switches a second") {
+  const auto project = project_copy("jiwiy_switching");
+  write(project / "behaviors/jiwiy/turns.lua", turns);
+  write(project / "config/scenarios/turns.json", scenario_of("jiwiy", 8));
+  const Turns first = turn(project, 100, 0), second = turn(project, 100, 1);
+  for (const double period_s : {0.04, 0.06, 0.1, 0.2, 0.42, 0.6, 1.0}) {
+    CAPTURE(period_s);
+    const Turns switched = turn(project, period_s, 0);
+    CHECK(switched.switches >= static_cast<int>(1.9 * 8 / period_s) - 1);
+    CHECK(switched.error_rad <= 1.2 * std::max(first.error_rad, second.error_rad));
+    CHECK(switched.energy_rad2_s2 <= 1.2 * std::max(first.energy_rad2_s2, second.energy_rad2_s2));
+  }
+}
+
+TEST_CASE("TULip hangs as calmly while its control sets take turns fifty times a second for a minute") {
+  const auto project = project_copy("hanging_switching");
+  write(project / "behaviors/hanging/turns.lua", hanging);
+  write(project / "config/scenarios/turns.json", scenario_of("hanging", 60));
+  const Outcome sim = run("sim config/scenarios/turns.json --seed 1 --record turns.mcap", project);
+  CHECK_MESSAGE(sim.exit_code == 0, sim.out);
+  const Outcome csv = run("log csv turns.mcap engine.control_sets 'joint.*.velocity_rad_s'", project);
+  std::istringstream lines(csv.out);
+  std::string line;
+  std::getline(lines, line);
+  int switches = 0;
+  double sets = 0, fastest_rad_s = 0;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::vector<double> row;
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    switches += row[1] != std::exchange(sets, row[1]) ? 1 : 0;
+    for (std::size_t i = 2; row[0] > 1 && i < row.size(); ++i)
+      fastest_rad_s = std::max(fastest_rad_s, std::abs(row[i]));
+  }
+  CHECK(switches >= 2900);
+  CHECK(fastest_rad_s < 0.5);
+}
+
+}  // namespace switching_test

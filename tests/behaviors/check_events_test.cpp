@@ -52,6 +52,43 @@ const EventMistake events_and_calls[] = {
     {"return k.behavior 't' { args = k.args {\nside = { 'l', values = { 'l', 'r' } } }, k.state 'a' { endless = true } "
      "}",
      "3: an argument has no key 'values', did you mean 'one_of'?"},
+    {"k.events { seen = { far_m = 'm' } }\nreturn k.behavior 't' { k.state 'a' {\n{ when = function(s) return "
+     "s.event.data.far_m > 1 end, to = 'a' },\n{ on = 'seen', to = 'a' } } }",
+     "4: s.event.data is nil here: only a transition with `on` sees an event"},
+    {"k.events { seen = { far_m = 'm' } }\nreturn k.behavior 't' { vars = { far_m = 0 }, k.state 'a' {\n{ after = 1, "
+     "action = function(m, s)\nm.vars.far_m = s.event.data.far_m end },\n{ on = 'seen', to = 'a' } } }",
+     "5: s.event.data is nil here: only a transition with `on` sees an event"},
+    {"return k.behavior 't' { k.state 'a' { run = function() end,\n{ on = 'run.done', when = function(s) return "
+     "s.event.data.result > 1 end, to = 'a' } } }",
+     "3: s.event.data is nil here: the end of a run brings no data"},
+    {"k.events { seen = { far_m = { 'm', optional = true } } }\nreturn k.behavior 't' { k.state 'a' {\n"
+     "{ on = 'seen', when = function(s) return s.event.data.far_m > 1 end, to = 'a' } } }",
+     "4: s.event.data.far_m may be nil, k.events says optional: test it, or write (s.event.data.far_m or 0)"},
+    {"local P = k.params { rest_ms = { 500, min = 0, max = 1000, unit = 'ms' } }\n"
+     "return k.behavior 't' { k.state 'a' {\n{ after = P.rest_ms, to = 'a' } } }",
+     "4: after takes seconds, and rest_ms is in ms"},
+    {"local P = k.params { rest_ms = { 500, min = 0, max = 1000, unit = 'ms' } }\n"
+     "return k.behavior 't' { k.state 'a' { endless = true, run = function(m)\nm:wait(P.rest_ms) end } }",
+     "4: wait takes seconds, and rest_ms is in ms"},
+    {"return k.behavior 't' { k.state 'a' {\n"
+     "{ when = function(s) return s.joints.l_knee.position_rad == 0.5 end, to = 'a' } } }",
+     "3: s.joints.l_knee.position_rad is measured, it is hardly ever exactly 0.5: compare with < or >"},
+    {"return k.behavior 't' { k.state 'a' {\n{ when = function(s) return 0 ~= s.base.pitch_rad end, to = 'a' } } }",
+     "3: s.base.pitch_rad is measured, it is hardly ever exactly 0: compare with < or >"},
+};
+
+const char* const right_reads[] = {
+    "k.events { seen = { far_m = { 'm', optional = true } }, heard = {} }\nreturn k.behavior 't' { k.state 'a' {\n"
+    "{ on = 'seen', when = function(s) return (s.event.data.far_m or 0) > 1 end, to = 'a' },\n"
+    "{ on = 'seen', when = function(s) return s.event.data.far_m and s.event.data.far_m > 1 end, to = 'a' },\n"
+    "{ on = 'heard', when = function(s) return s.event.data and s.event.data.far_m > 1 end, to = 'a' } } }",
+    "k.events { seen = { far_m = 'm' } }\nlocal function far(s) return s.event.data.far_m > 1 end\n"
+    "local function named(s) return s.event.name == 'seen' and s.event.data.far_m > 1 end\n"
+    "return k.behavior 't' { k.state 'a' { { on = 'seen', when = far, to = 'a' }, { when = named, to = 'a' } } }",
+    "local P = k.params { rest_ms = { 500, min = 0, max = 1000, unit = 'ms' } }\n"
+    "return k.behavior 't' { k.state 'a' { endless = true, run = function(m) m:wait(P.rest_ms / 1000) end } }",
+    "return k.behavior 't' { k.state 'a' { { when = function(s)\n"
+    "return s.feet.left.force_N == 0 and s.tick ~= 5 and s.joystick.x == 0 end, to = 'a' } } }",
 };
 
 }  // namespace
@@ -64,5 +101,13 @@ TEST_CASE("events, arguments and calls of other frameworks are told with how the
     CAPTURE(found);
     CHECK(found.starts_with("behaviors/t.lua:" + one.message));
     CHECK(std::count(found.begin(), found.end(), '\n') == 1);
+  }
+}
+
+TEST_CASE("what is tested first, belongs to an event or is in another unit by intent is no mistake") {
+  const Project project;
+  for (const char* text : right_reads) {
+    CAPTURE(text);
+    CHECK(project.problems(text) == "");
   }
 }

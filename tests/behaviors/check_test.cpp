@@ -70,6 +70,9 @@ const Mistake in_the_chart[] = {
      "near, "
      "to = 'b' } },\nk.state 'b' { { when = near, to = 'a' } } }",
      "4: states 'b' and 'a' lead to each other and take no time while their condition holds"},
+    {"local function over(_, m) return m.time_s > 1 end\nreturn k.behavior 't' { initial = 'a',\n"
+     "k.state 'a' { { when = over, to = 'b' } },\nk.state 'b' { { when = over, to = 'a' } } }",
+     ""},
     {"return k.behavior 't' { initial = 'a',\nk.state 'a' { enter = function(m) m:emit 'go' end,\n{ on = 'go', to = "
      "'b' } },"
      "\nk.state 'b' { enter = function(m)\nm:emit('back')\nend, { on = 'back', to = 'a' } } }",

@@ -1,13 +1,20 @@
 // What a tick of the HostMot2 driver costs, in CPU time of its thread, against a bare sendto and recvfrom of the same
-// bytes, in turns. The board answers from another thread, over the loopback; each answer is here before it is asked
-// for.
+// bytes, in turns. The board answers from another thread, over the loopback, or from the network namespace
+// KADANS_BENCH_NETNS at the address KADANS_BENCH_BOARD (tests/project/board_network.sh); each answer is here before it
+// is asked for.
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
+#include <future>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
+#include <fcntl.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -21,8 +28,21 @@ namespace kadans::bench {
 namespace {
 
 constexpr int bus_rounds = 15, bus_ticks = 400;
-constexpr const char* board_at = "127.0.0.1:27481";
-constexpr const char* echo_at = "127.0.0.1:27482";
+std::string of_environment(const char* name, const char* otherwise) {
+  const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  return value != nullptr ? value : otherwise;
+}
+const std::string board_host = of_environment("KADANS_BENCH_BOARD", "127.0.0.1");
+const std::string board_at = board_host + ":27481", echo_at = board_host + ":27482";
+
+// Of this thread alone, from now on.
+void enter_namespace() {
+  const std::string name = of_environment("KADANS_BENCH_NETNS", "");
+  if (name.empty()) return;
+  const int space = open(("/run/netns/" + name).c_str(), O_RDONLY | O_CLOEXEC);
+  if (space < 0 || setns(space, CLONE_NEWNET) != 0) throw std::runtime_error("no network namespace " + name);
+  close(space);
+}
 
 double cpu_ns() {
   timespec now{};
@@ -55,8 +75,24 @@ hostmot2::HostMot2Settings leg_settings() {
 // Answers on a socket until it is told to stop: as the board does, or with `bytes` bytes.
 class Answerer {
  public:
-  Answerer(const char* place, hostmot2::EmulatedWire* wire) : socket_(listening_socket(place)), wire_(wire) {
-    thread_ = std::thread([this] { answer(); });
+  Answerer(const std::string& place, hostmot2::EmulatedWire* wire) : wire_(wire) {
+    std::promise<int> listens;
+    thread_ = std::thread([this, place, &listens] {
+      try {
+        enter_namespace();
+        listens.set_value(socket_ = listening_socket(place));
+      } catch (...) {
+        listens.set_exception(std::current_exception());
+        return;
+      }
+      answer();
+    });
+    try {
+      (void)listens.get_future().get();
+    } catch (...) {
+      thread_.join();
+      throw;
+    }
   }
   ~Answerer() {
     stop_ = true;
@@ -65,6 +101,12 @@ class Answerer {
   }
   std::atomic<std::size_t> bytes{0};
   std::atomic<std::size_t> asked{0};  // bytes of the newest request
+  std::atomic<unsigned> replies{0};
+  // Until it has answered once more than `before`: on a busy machine its thread waits for its turn.
+  void await_reply(unsigned before) const {
+    const timespec pause{.tv_sec = 0, .tv_nsec = 200'000};
+    for (int i = 0; i < 5000 && replies == before; ++i) nanosleep(&pause, nullptr);
+  }
 
  private:
   void answer() {
@@ -84,9 +126,10 @@ class Answerer {
         bytes = reply.empty() ? bytes.load() : reply.size();
       }
       if (!reply.empty()) (void)sendto(socket_, reply.data(), reply.size(), 0, address, from.size);
+      ++replies;
     }
   }
-  int socket_;
+  int socket_ = -1;
   hostmot2::EmulatedWire* wire_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
@@ -113,14 +156,14 @@ void bench_bus(Report& report) {
   const int bare = connected_socket(echo_at);
   std::array<std::uint8_t, 2048> out{}, in{};
   std::vector<double> driver_ns, bare_ns;
-  const timespec pause{.tv_sec = 0, .tv_nsec = 200'000};
   for (int round = 0; round < bus_rounds; ++round) {
     double driver = 0, plain = 0;
     for (int i = 0; i < bus_ticks; ++i) {
+      const unsigned board_before = board.replies, echo_before = echo.replies;
       double began = cpu_ns();
       plant.write(actuation);
       driver += cpu_ns() - began;
-      nanosleep(&pause, nullptr);
+      board.await_reply(board_before);
       began = cpu_ns();
       plant.read(sensors);
       driver += cpu_ns() - began;
@@ -128,7 +171,7 @@ void bench_bus(Report& report) {
       began = cpu_ns();
       (void)::sendto(bare, out.data(), board.asked, MSG_DONTWAIT, nullptr, 0);
       plain += cpu_ns() - began;
-      nanosleep(&pause, nullptr);
+      echo.await_reply(echo_before);
       wait_readable(bare);  // what it waits for is not counted
       began = cpu_ns();
       while (::recvfrom(bare, in.data(), in.size(), MSG_DONTWAIT, nullptr, nullptr) <= 0) {

@@ -12,7 +12,10 @@
 #include <doctest/doctest.h>
 #include <stdlib.h>
 
+#include "broken.h"
+#include "config/robot/robot_config.h"
 #include "kadans/signal/input_error.h"
+#include "right_texts.h"
 
 namespace kadans {
 namespace {
@@ -166,6 +169,58 @@ TEST_CASE("A hull is kept by the content of its file, and one that was damaged i
     CAPTURE(damaged);
     std::ofstream(kept) << damaged;
     CHECK(mesh_hull(file) == corners);
+  }
+}
+
+// TULip's torso is a box, a waist and a head; here the chest is the mesh of a box from 0 to (1, 2, 3).
+TEST_CASE("A robot's configuration says how its links collide: as a box, as other meshes, or not at all") {
+  const Meshes meshes;
+  std::ifstream in(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf", std::ios::binary);
+  const std::string tulip{std::istreambuf_iterator<char>(in), {}};
+  const std::string file = meshes.write("box.obj", box_obj());
+  const std::string urdf = meshes.write("t.urdf", replaced(tulip, "<box size=\"0.16 0.24 0.23\"/>",
+                                                           "<mesh filename=\"box.obj\" scale=\"0.1 0.1 0.1\"/>"));
+  const auto read = [&](const std::string& collisions) {
+    std::string text = replaced(right_robot, "models/tulip/tulip.urdf", urdf);
+    text = replaced(text, "\"plant\": {", "\"plant\": { \"collisions\": {" + collisions + "},");
+    return read_robot_config_text(text, KADANS_SOURCE_DIR "/config/t.json", std::vector<std::string>{"joint_pid"});
+  };
+  const auto torso = [&](const std::string& collisions) { return read(collisions).model.links[0].collisions; };
+  const auto described = torso("");
+  CHECK(std::get<Mesh>(described.at(0).shape).corners_m.size() == 8);
+  const std::string link = described.at(0).link;
+
+  const auto boxed = torso("\"" + link + "\": {\"as\": \"box\"}");
+  REQUIRE(boxed.size() == described.size());
+  const Vec3 size_m = std::get<Box>(boxed[0].shape).size_m;
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(size_m[i] == doctest::Approx(0.1 * static_cast<double>(i + 1)));
+    CHECK(boxed[0].pose.position_m[i] - described[0].pose.position_m[i] == doctest::Approx(size_m[i] / 2));
+  }
+  CHECK(std::holds_alternative<Box>(boxed[1].shape));  // the waist stays
+
+  CHECK(torso("\"" + link + "\": {\"as\": \"nothing\"}").size() < described.size());
+  const auto given = torso("\"" + link + "\": {\"meshes\": [\"" + file + "\", \"" + file + "\"]}");
+  const auto of_link = std::ranges::count(described, link, &Geometry::link);
+  REQUIRE(static_cast<std::ptrdiff_t>(given.size()) == static_cast<std::ptrdiff_t>(described.size()) - of_link + 2);
+  CHECK(std::get<Mesh>(given.back().shape).file == file);
+  CHECK(std::get<Mesh>(given.back().shape).corners_m.size() == 8);
+
+  const std::string wrong = meshes.write("text.stl", "a letter");
+  for (const auto& [collisions, message] :
+       {std::pair{std::string(R"("chest": {})"), std::string("'chest'")},
+        {"\"" + link + "\": {\"meshes\": [\"" + wrong + "\"]}", "cannot be read as a mesh"},
+        {"\"" + link + "\": {\"meshes\": [\"/none.stl\"]}", "/none.stl"},
+        {"\"" + link + "\": {\"as\": \"ball\"}", "ball"}}) {
+    const std::string& text = collisions;  // clang 14 hands on no names of a structured binding
+    CAPTURE(text);
+    try {
+      (void)read(text);
+      FAIL_CHECK("it is taken");
+    } catch (const InputError& error) {
+      CHECK(std::string(error.what()).find(message) != std::string::npos);
+      CHECK(error.problems().front().line > 0);
+    }
   }
 }
 

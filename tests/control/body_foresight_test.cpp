@@ -57,6 +57,16 @@ TEST_CASE("a joint that would have to be faster than it can is named with the ti
   CHECK(bench.model.joints[fast.joint].name.ends_with("_knee"));
 }
 
+TEST_CASE("a motion on whose way the trunk leans more than it may is refused with how far") {
+  StandBench bench;
+  bench.run(300);
+  CHECK(bench.foresee("trunk.pitch_rad", 0.2, 3).why == Why::none);
+  bench.set("tilt_max_rad", 0.1);
+  const Foresight::Miss leans = bench.foresee("trunk.pitch_rad", 0.2, 3);
+  CHECK(leans.why == Why::tilt);
+  CHECK(leans.by == doctest::Approx(0.2).epsilon(0.05));
+}
+
 TEST_CASE("what acts at once is judged by how quick the task's gain makes it") {
   StandBench bench;
   bench.run(300);

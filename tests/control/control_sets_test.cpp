@@ -16,7 +16,11 @@ class Constant final : public ControlObject {
  public:
   Constant(std::size_t joint, double effort_Nm) : joint_(joint), effort_Nm_(effort_Nm) {}
   void declare(Declaration&) override {}
-  void start(const ControlInput&) noexcept override { ++starts; }
+  void start(const ControlInput& input) noexcept override {
+    ++starts;
+    taken_over_Nm = input.last.joints[joint_].effort_Nm;
+    measured_Nm = input.joints.joints[joint_].effort_Nm;
+  }
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override {
     ++steps;
     dt_s = input.dt_s;
@@ -28,7 +32,7 @@ class Constant final : public ControlObject {
   void update(const Snapshot&) override { ++updates; }
 
   int starts = 0, steps = 0, updates = 0;
-  double dt_s = 0;
+  double dt_s = 0, taken_over_Nm = 0, measured_Nm = 0;
 
  private:
   std::size_t joint_;
@@ -175,6 +179,39 @@ TEST_CASE("Objects compose in the order of the set, and who has a share in a joi
   CHECK(torque_and_writers({0, 2, 1}, {set, blend, sum}) == std::pair{0.75 * 4 + 0.25 * 10 + 1, 7.0});
   CHECK(torque_and_writers({0, 1, 2}, {set, sum, priority}) == std::pair{10.0, 4.0});
   CHECK(torque_and_writers({1, 0}, {set, sum}) == std::pair{5.0, 3.0});
+}
+
+TEST_CASE("An object that takes a joint over below a sum that goes on gets the torque without what is added to it") {
+  RobotModel model = two_joint_robot();
+  Catalog catalog;
+  catalog.model = &model;
+  catalog.objects = {
+      {.name = "first", .joints = {0, 1}}, {.name = "second", .joints = {0, 1}}, {.name = "weight", .joints = {1}}};
+  using enum Composition;
+  catalog.sets = {{"one", {0, 2}, {set, sum}}, {"other", {1, 2}, {set, sum}}, {"alone", {0}, {set}}};
+  std::vector<std::unique_ptr<ControlObject>> objects;
+  std::vector<Constant*> made;
+  for (const double effort_Nm : {4.0, 7.0, 3.0}) {
+    made.push_back(new Constant(1, effort_Nm));
+    objects.emplace_back(made.back());
+  }
+  ControlSets sets(catalog, std::move(objects));
+  JointStates joints;
+  joints.joints[1].effort_Nm = 6.5;
+  ActuationFrame written, computed;
+  written.joint_count = computed.joint_count = 3;
+  written.joints[1] = {.effort_Nm = 7, .mode = ActuationMode::effort};
+  const auto step = [&](std::uint64_t tick) { sets.step(tick, {joints, {}, written, 0, 0.001}, computed); };
+  step(0);
+  CHECK(made[0]->taken_over_Nm == 7);  // the weight begins, too: nothing of it was there before
+  sets.switch_to(1);
+  step(1);
+  CHECK(made[2]->starts == 1);
+  CHECK(made[1]->taken_over_Nm == 4);
+  CHECK(made[1]->measured_Nm == 3.5);
+  sets.switch_to(2);
+  step(2);
+  CHECK(made[0]->taken_over_Nm == 7);  // what was added ends
 }
 
 TEST_CASE("A slower object computes every n-th tick with its own dt, and its actuation stands meanwhile") {

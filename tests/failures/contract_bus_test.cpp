@@ -114,7 +114,8 @@ hostmot2::HostMot2Settings board_settings() {
 }
 
 struct Boards : BusRobot<test::HostMot2World> {
-  Boards() : BusRobot(hostmot2::drive_code_words, 0, board_settings(), board_settings(), site()) {}
+  explicit Boards(const imu::SerialImuSettings& beside = {})
+      : BusRobot(hostmot2::drive_code_words, 0, board_settings(), board_settings(), site(), beside) {}
 };
 
 }  // namespace
@@ -146,6 +147,21 @@ TEST_CASE("that board's joints alone are off, latched, the others are driven as 
   robot.world.machine().wire(0).pulled = true;
   robot.run(20);
   robot.check_hip_alone(FaultCode::drive_fault);
+}
+
+TEST_CASE("after silent_ticks_max readings the robot holds until it is back, and the drives go on" *
+          description("an IMU on a serial line is silent: its cable is out")) {
+  Boards robot({.device = "the line"});
+  robot.world.imu_device().silent = true;
+  robot.run(50);
+  CHECK(robot.status().level == SafetyLevel::normal);
+  robot.run(30);
+  CHECK(robot.status().level == SafetyLevel::hold);
+  CHECK(robot.status().first_fault.code == FaultCode::imu_silent);
+  for (const std::size_t joint : {0U, 1U}) CHECK(robot.world.machine().enabled(joint));
+  robot.world.imu_device().silent = false;
+  robot.run(600);  // the fault must be over for a while
+  CHECK(robot.status().level == SafetyLevel::normal);
 }
 
 TEST_CASE(

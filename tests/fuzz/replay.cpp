@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // What libFuzzer is told in scripts/fuzz; a sanitizer takes more, of both.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef KADANS_SANITIZED
 constexpr time_t seconds_max = 10;
 constexpr rlim_t bytes_max = RLIM_INFINITY;
 #else

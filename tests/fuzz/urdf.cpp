@@ -1,10 +1,11 @@
-// Descriptions of robots: a URDF is a tree of links with numbers in it, or is refused with the places of all mistakes.
+// Descriptions of robots: a URDF is a tree of links with numbers in it, or is refused with the places of all mistakes;
+// an MJCF becomes one.
 #include "kadans/model/urdf.h"
 
 #include <cmath>
 
 #include "fuzz_input.h"
-
+#include "kadans/model/mjcf.h"
 namespace {
 
 using namespace kadans;
@@ -65,6 +66,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const InputError& error) {
       fuzz::require_told(error, "it.urdf", size > 0 ? fuzz::Placed::line : fuzz::Placed::nowhere);
     }
+  }
+  try {
+    if (is_mjcf(text)) require_right(read_urdf_text(read_mjcf_text(text, "it.xml").urdf, "it.xml"));
+  } catch (const InputError& error) {
+    fuzz::require_told(error, "it.xml", fuzz::Placed::nowhere);
   }
   return 0;
 }

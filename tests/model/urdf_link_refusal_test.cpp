@@ -79,7 +79,7 @@ warning: duo.urdf:8:23: <drake:capsule> in <geometry> is not known to URDF, and 
        "duo.urdf:9:37: <box> size '0.1 O.2 0.3' has a part 'O.2' that is not a number"},
       {"collision mesh that is not there", R"(<box size="0.1 0.2 0.3"/>)", R"(<mesh filename="hull.stl"/>)",
        "warning: duo.urdf:9:42: mesh file 'hull.stl' is not there: link 'base' collides without it; its path starts "
-       "from the URDF's folder"},
+       "from this file's folder"},
       {"visual mesh that is not there", R"(<sphere radius="0.1"/>)",
        R"(<mesh filename="package://duo/meshes/shell.stl"/>)",
        "warning: duo.urdf:8:39: mesh file 'package://duo/meshes/shell.stl' is not there: link 'base' is drawn with a "

@@ -136,7 +136,7 @@ TEST_CASE("Oddities of one kind are one line, with their number and the first pl
   CHECK(read_told(shells) ==
         "warning: duo.urdf:8:39: mesh file 'a.stl' is not there: link 'base' is drawn with a marker in its place; its "
         "path "
-        "starts from the URDF's folder (2 such: also in line 9)");
+        "starts from this file's folder (2 such: also in line 9)");
 }
 
 TEST_CASE("When warnings are mistakes, they are told with them by place") {

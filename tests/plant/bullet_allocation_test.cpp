@@ -31,7 +31,7 @@ TEST_CASE("A squatting TULip's plant allocates nothing after its first second") 
   CHECK(plant.truth().base.position_m[2] > 0.5);
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef KADANS_SANITIZED
 constexpr bool system_memory = true;  // sanitizers look into every block, so none is kept
 #else
 constexpr bool system_memory = false;

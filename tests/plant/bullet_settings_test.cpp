@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "small_robots.h"
+#include "tulip_robot.h"
 
 using namespace kadans;
 using namespace kadans::test;
@@ -139,4 +140,30 @@ TEST_CASE("A world that cannot be built is refused by name and value") {
        "payload 'bag': until_s = 1 must be later than from_s"},
   };
   check_all(table);
+}
+
+TEST_CASE("A robot that starts in the ground or in itself is refused, with the pair, the depth and the pose") {
+  Robot low = tulip(Drives::rigid);
+  CHECK(refusal(low) == "accepted");
+  low.settings.stand_on_ground = false;
+  low.settings.base.position_m = {0, 0, 0.4};
+  CHECK(refusal(low).starts_with("start: link 'l_ankle_roll_link' is "));
+  CHECK(refusal(low).find(" mm deep in the ground with '") != std::string::npos);
+  CHECK(refusal(low).ends_with(" and the base at a height of 0.4 m; start higher, or with stand_on_ground"));
+  low.settings.base.position_m = {0, 0, 2};
+  CHECK(refusal(low) == "accepted");
+
+  Robot bolted = tulip(Drives::rigid);
+  bolted.settings.fixed_base = true;  // it stays where it is put
+  CHECK(refusal(bolted).ends_with("a fixed base stays where it is put: start higher (start.position_m)"));
+  bolted.settings.base.position_m = {0, 0, 2};
+  CHECK(refusal(bolted) == "accepted");
+
+  Robot crossed = tulip(Drives::rigid);
+  for (const char* joint : {"l_hip_roll", "r_hip_roll"})
+    crossed.settings.position_rad[*crossed.model.find_joint(joint)] = joint[0] == 'l' ? -0.3 : 0.3;
+  CHECK(refusal(crossed).find(" deep in link '") != std::string::npos);
+  CHECK(refusal(crossed).find("'l_hip_roll' at -0.3") != std::string::npos);
+  crossed.settings.self_collision = false;
+  CHECK(refusal(crossed) == "accepted");
 }

@@ -193,6 +193,38 @@ TEST_CASE("Firmware without fast sync read is read one servo after the other") {
   CHECK(bench.sensors.joints[0].position_rad == doctest::Approx(0.5).epsilon(0.01));
   CHECK(bench.sensors.joints[1].position_rad == doctest::Approx(-0.7).epsilon(0.01));
   CHECK(bench.count("lost") == 0);
+  // An answer that comes again is not that of the next servo.
+  bench.world.port(0).twice = status_bytes_min + IndirectLayout(*find_model("XM430-W210")).read_bytes();
+  const std::uint32_t first = bench.sensors.joints[0].sequence, second = bench.sensors.joints[1].sequence;
+  const std::uint64_t corrupt = bench.count("corrupt");
+  bench.run(position(0.5), position(-0.7), 60);
+  CHECK(bench.count("corrupt") > corrupt + 5);
+  CHECK(bench.count("lost") == 0);
+  CHECK(bench.sensors.joints[1].sequence - second == bench.sensors.joints[0].sequence - first);
+}
+
+TEST_CASE("A servo whose mode changes has no torque, and gets no goal, until a reading in the new mode is here") {
+  Bench bench;
+  bench.run(position(0.1), position(-0.2), 50);
+  const EmulatedServo& servo = bench.world.servos().servo(0);
+  const auto mode = [&] {
+    std::vector<std::uint8_t> bytes;
+    (void)servo.read(operating_mode.address, 1, bytes);
+    return bytes.at(0);
+  };
+  std::uint64_t changed_in = 0, torque_in = 0;
+  for (int i = 0; i < 60; ++i) {
+    const bool torque_before = servo.torque();
+    const std::uint8_t mode_before = mode();
+    bench.run(velocity(0.5), position(-0.2), 1);
+    if (mode() != mode_before) {
+      CHECK(mode() == static_cast<std::uint8_t>(OperatingMode::velocity));
+      CHECK_FALSE(torque_before);  // a reading has said so before the mode is written
+      changed_in = bench.count("cycles");
+    }
+    if (servo.torque() && !torque_before && torque_in == 0) torque_in = bench.count("cycles");
+  }
+  CHECK((changed_in > 0 && torque_in >= changed_in + 2));  // in between, where it stands is read in the new mode
 }
 
 TEST_CASE("A servo that overheats lets go, says so in words, and comes back after reset and enable") {

@@ -11,7 +11,7 @@
 
 namespace kadans::test {
 
-class VirtualPort final : public dynamixel::SerialPort {
+class VirtualPort final : public SerialPort {
  public:
   VirtualPort(dynamixel::EmulatedBus& bus, std::uint32_t baud) : bus_(bus), baud_(baud) {}
   bool send(dynamixel::Octets bytes) noexcept override {
@@ -25,7 +25,12 @@ class VirtualPort final : public dynamixel::SerialPort {
       return 0;
     }
     now_ = std::max(now_, bus_.due_ns());
-    const std::size_t count = bus_.take(into, now_);
+    std::size_t count = bus_.take(into, now_);
+    if (twice > 0 && count >= twice && count + twice <= into.size()) {
+      std::copy_backward(into.begin(), into.begin() + static_cast<std::ptrdiff_t>(count),
+                         into.begin() + static_cast<std::ptrdiff_t>(count + twice));
+      count += twice;
+    }
     received += count;
     return count;
   }
@@ -37,6 +42,7 @@ class VirtualPort final : public dynamixel::SerialPort {
   std::int64_t now_ns() const noexcept override { return now_; }
   void set(std::int64_t now) noexcept { now_ = now; }
   std::size_t sent = 0, received = 0;
+  std::size_t twice = 0;  // so many bytes at the begin of what comes come twice
 
  private:
   dynamixel::EmulatedBus& bus_;
@@ -50,7 +56,7 @@ class DynamixelWorld final : public OneRobotWorld {
   DynamixelWorld(std::unique_ptr<World> model, const dynamixel::DynamixelSettings& settings, const PlantSite& site,
                  const dynamixel::DynamixelSettings* there = nullptr)
       : model_(std::move(model)), servos_(there == nullptr ? settings : *there, site, 1) {
-    std::vector<std::unique_ptr<dynamixel::SerialPort>> ports;
+    std::vector<std::unique_ptr<SerialPort>> ports;
     for (std::size_t i = 0; i < settings.ports.size(); ++i) {
       auto port = std::make_unique<VirtualPort>(servos_.bus(i), settings.ports[i].baud);
       ports_.push_back(port.get());

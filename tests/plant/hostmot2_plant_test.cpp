@@ -1,5 +1,6 @@
 // The driver and the emulated boards, on virtual time, with an ideal model behind them.
 #include "hostmot2_bench.h"
+#include "kadans/testing/allocation_count.h"
 
 namespace kadans::hostmot2 {
 
@@ -68,6 +69,30 @@ TEST_CASE("An amplifier of voltage gives the same effort, against the motor's ow
   CHECK(bench.world.truth().velocity_rad_s[0] - first == doctest::Approx(0.4).epsilon(0.02));
 }
 
+TEST_CASE("A velocity goes to an amplifier of velocity as it is, and its own loop gives the effort that is asked for") {
+  HostMot2Settings settings = two_axes();
+  for (DriveWiring& drive : settings.drives) {
+    drive.amplifier.kind = AmplifierSettings::Kind::velocity;
+    drive.amplifier.full = 100;  // of the motor: 10 rad/s of the joint
+    drive.amplifier.gain_Nms_per_rad = 8;
+  }
+  Bench bench(settings);
+  bench.run(velocity(0.2), velocity(-0.2), 2000);
+  CHECK(bench.world.truth().velocity_rad_s[0] == doctest::Approx(0.2).epsilon(0.02));  // its loop ends at the command
+  CHECK(bench.world.truth().velocity_rad_s[1] == doctest::Approx(-0.2).epsilon(0.02));
+  bench.run(effort(0.4), effort(-0.4), 20);
+  const double first = bench.world.truth().velocity_rad_s[0];
+  bench.run(effort(0.4), effort(-0.4), 500);
+  CHECK(bench.world.truth().velocity_rad_s[0] - first == doctest::Approx(0.2).epsilon(0.05));
+  bench.run(position(0.3), position(-0.4), 4000);
+  CHECK(bench.sensors.joints[0].position_rad == doctest::Approx(0.3).epsilon(0.01));
+  bench.run(effort(100), effort(0), 20);  // no more than 5 A, 2 Nm
+  CHECK(bench.count("limited") > 15);
+  CHECK(bench.sensors.joints[0].motor_effort_Nm <= 2.01);
+  bench.run(off, off, 20);
+  CHECK(bench.sensors.joints[0].drive == DriveState::ready);
+}
+
 TEST_CASE("No more current flows than the amplifier's limit, and cuts are counted") {
   Bench bench;
   bench.run(effort(100), effort(-100), 20);
@@ -129,8 +154,8 @@ TEST_CASE("What does not fit is told before anything moves") {
     HostMot2Settings settings = two_axes();
     settings.watchdog_s = 0.0019;
     CHECK_THROWS_WITH_AS(Bench{settings},
-                         "robot.json: plant.hm2-eth.watchdog_s must be at least two control periods, each of which "
-                         "pets it",
+                         "robot.json: plant.hm2-eth.watchdog_s must be at least two periods of the bus, each of "
+                         "which pets it",
                          InputError);
   }
   CHECK(Bench().why_not().empty());
@@ -170,6 +195,36 @@ TEST_CASE("When the driver falls silent the board releases its outputs, and obey
   CHECK(bench.world.machine().enabled(1));
 }
 
+TEST_CASE("A bus that is slower than the control is asked at its own period, and its readings have their own times") {
+  HostMot2Settings settings = two_axes();
+  settings.period_s = 0.01;
+  settings.watchdog_s = 0.05;
+  Bench bench(settings);
+  bench.run(position(0.3), position(-0.3), 1000);
+  CHECK(bench.count("sent") == 102);  // before the loop, in its first tick, and every 10 ms
+  CHECK(bench.count("lost") == 0);
+  CHECK(bench.count("bites") == 0);
+  const std::uint32_t sequence = bench.sensors.joints[0].sequence;
+  const std::int64_t time_ns = bench.sensors.joints[0].time_ns;
+  CHECK(bench.sensors.time_ns - time_ns == ms);  // at a whole multiple of its period it is as fresh as ever
+  bench.run(position(0.3), position(-0.3), 9);
+  CHECK(bench.sensors.joints[0].sequence == sequence);
+  CHECK(bench.sensors.joints[0].time_ns == time_ns);
+  bench.run(position(0.3), position(-0.3), 1);
+  CHECK(bench.sensors.joints[0].sequence == sequence + 1);
+  CHECK(bench.sensors.joints[0].time_ns == time_ns + 10 * ms);
+  bench.run(position(0.3), position(-0.3), 3000);
+  CHECK(bench.sensors.joints[0].position_rad == doctest::Approx(0.3).epsilon(0.01));
+  bench.world.silent = true;
+  bench.run(position(0), position(0), 45);
+  CHECK_FALSE(bench.board().bitten());
+  bench.run(position(0), position(0), 10);
+  CHECK(bench.board().bitten());
+  settings.period_s = 0.0015;
+  CHECK_THROWS_WITH_AS(Bench{settings},
+                       "robot.json: plant.hm2-eth.period_s must be a whole multiple of the control period", InputError);
+}
+
 TEST_CASE("At the end the amplifiers are off at once") {
   Bench bench;
   bench.run(effort(0.2), effort(0.2), 50);
@@ -187,6 +242,23 @@ TEST_CASE("A tick neither allocates nor takes more than one datagram each way") 
   CHECK(bench.count("received") == 51);
   CHECK(bench.world.cable(0).sent < 160);
   CHECK(bench.world.cable(0).received < 80);
+  bench.world.cable(0).holds = true;
+  Plant& driver = bench.world.driver();
+  driver.write(bench.actuation);
+  long allocations = 0;
+  for (int i = 0; i < 10; ++i) {
+    bench.world.cable(0).answer();
+    if (i == 5) bench.order(0, DriveOrder::disable), bench.order(1, DriveOrder::reset);
+    const testing::AllocationCount heap;
+    driver.read(bench.sensors);
+    driver.write(bench.actuation);
+    allocations += heap.count();
+  }
+  CHECK(allocations == 0);
+  bench.world.cable(0).answer();
+  driver.read(bench.sensors);
+  CHECK(bench.count("received") == 62);
+  CHECK(bench.sensors.joints[0].drive == DriveState::off);
 }
 
 TEST_CASE("The same modules are driven through the registers of a card on PCI") {

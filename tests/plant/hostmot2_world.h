@@ -2,15 +2,21 @@
 // thread.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "imu_line.h"
+#include "kadans/model/kinematics.h"
 #include "kadans/plant/world.h"
 #include "plant/hostmot2/emulator/emulated_machine.h"
 #include "plant/hostmot2/emulator/register_file.h"
 #include "plant/hostmot2/hostmot2_plant.h"
 #include "plant/hostmot2/lbp_link.h"
 #include "plant/hostmot2/mapped_link.h"
+#include "plant/imu/imu_plant.h"
 
 namespace kadans::test {
 
@@ -19,10 +25,18 @@ class VirtualCable final : public hostmot2::DatagramPort {
   explicit VirtualCable(hostmot2::EmulatedWire& wire) : wire_(wire) {}
   bool send(hostmot2::Octets datagram) noexcept override {
     sent = datagram.size();
+    if (holds) {
+      std::copy_n(datagram.begin(), sent, held_.begin());
+      return true;
+    }
     wire_.receive(datagram, now_);
     return true;
   }
   std::size_t receive(std::span<std::uint8_t> into, std::int64_t) noexcept override {
+    if (holds) {
+      std::copy_n(held_.begin(), std::min(answered_, into.size()), into.begin());
+      return std::exchange(answered_, 0);
+    }
     const std::vector<std::uint8_t> bytes = wire_.take(now_);
     std::copy_n(bytes.begin(), std::min(bytes.size(), into.size()), into.begin());
     if (!bytes.empty()) received = bytes.size();
@@ -33,8 +47,19 @@ class VirtualCable final : public hostmot2::DatagramPort {
   void set(std::int64_t now) noexcept { now_ = now; }
   std::size_t sent = 0, received = 0;  // bytes of the last datagrams
 
+  // The board gets a datagram, and the host the reply, with answer(): until then neither end allocates.
+  bool holds = false;
+  void answer() {
+    wire_.receive({held_.data(), sent}, now_);
+    const std::vector<std::uint8_t> bytes = wire_.take(now_);
+    std::ranges::copy(bytes, held_.begin());
+    answered_ = bytes.size();
+  }
+
  private:
   hostmot2::EmulatedWire& wire_;
+  std::array<std::uint8_t, 2048> held_{};
+  std::size_t answered_ = 0;
   std::int64_t now_ = -1'000'000'000'000;
 };
 
@@ -63,7 +88,8 @@ class VirtualCard final : public hostmot2::MappedLink {
 class HostMot2World final : public OneRobotWorld {
  public:
   HostMot2World(std::unique_ptr<World> model, const hostmot2::HostMot2Settings& settings,
-                const hostmot2::HostMot2Settings& there, const PlantSite& site)
+                const hostmot2::HostMot2Settings& there, const PlantSite& site,
+                const imu::SerialImuSettings& beside = {})
       : model_(std::move(model)), machine_(there, site, 1), wired_feet_(!settings.feet.empty()) {
     std::vector<std::unique_ptr<hostmot2::BoardLink>> links;
     for (std::size_t i = 0; i < settings.boards.size(); ++i) {
@@ -79,12 +105,28 @@ class HostMot2World final : public OneRobotWorld {
     plant_ = std::make_unique<hostmot2::HostMot2Plant>(settings, site, std::move(links));
     machine_.look(inner());
     for (const auto& file : files_) file->show();
+    if (beside.given()) stand_beside(beside, {1, 0, 0, 0});
+  }
+
+  // Before the start: its IMU is one on a serial line.
+  void stand_beside(const imu::SerialImuSettings& settings, const Quat& to_base) {
+    imu_ =
+        std::make_unique<imu::EmulatedImu>(imu::EmulatedImu::Settings{.old = settings.protocol == imu::Protocol::mtdata,
+                                                                      .delay_ns = std::llround(1e9 * settings.delay_s)},
+                                           1);
+    auto line = std::make_unique<ImuLine>(*imu_);
+    line_ = line.get();
+    line_->set(-100'000'000);
+    to_base_ = to_base;
+    feel();
+    plant_ = std::make_unique<imu::ImuPlant>(std::move(plant_), settings, to_base, std::move(line),
+                                             imu::ImuPlant::Threads::none);
   }
 
   // Throws InputError, as at the start of a run.
   void start() {
-    set_time();
-    (void)plant_->open();
+    for (VirtualCable* cable : cables_) cable->set(time_ns_);
+    (void)plant_->open(nullptr);
     started_ = true;
   }
 
@@ -112,12 +154,14 @@ class HostMot2World final : public OneRobotWorld {
     time_ns_ += dt_ns;
     machine_.look(inner());
     for (const auto& file : files_) file->show();
+    if (imu_) feel();
   }
   const PlantTruth& truth() const noexcept override { return model_->robot(0).truth(); }
   void hash(StateHash& hash) const noexcept override { model_->hash(hash); }
 
-  hostmot2::HostMot2Plant& driver() noexcept { return *plant_; }
+  Plant& driver() noexcept { return *plant_; }
   hostmot2::EmulatedMachine& machine() noexcept { return machine_; }
+  imu::EmulatedImu& imu_device() noexcept { return *imu_; }
   VirtualCable& cable(std::size_t number) noexcept { return *cables_[number]; }
   bool silent = false;  // the driver hangs
 
@@ -125,6 +169,14 @@ class HostMot2World final : public OneRobotWorld {
   WorldRobot& inner() noexcept { return model_->robot(0); }
   void set_time() noexcept {
     for (VirtualCable* cable : cables_) cable->set(time_ns_);
+    if (line_ != nullptr) line_->set(time_ns_);
+  }
+  void feel() {
+    if (started_) imu_->pass(time_ns_);  // what was due until now it has measured
+    SensorFrame sensors;
+    inner().read(sensors);
+    imu_->feels(rotate_inverse(to_base_, sensors.imu.angular_velocity_rad_s),
+                rotate_inverse(to_base_, sensors.imu.acceleration_m_s2));
   }
 
   std::unique_ptr<World> model_;
@@ -132,7 +184,10 @@ class HostMot2World final : public OneRobotWorld {
   bool wired_feet_;
   std::vector<VirtualCable*> cables_;
   std::vector<std::unique_ptr<hostmot2::RegisterFile>> files_;
-  std::unique_ptr<hostmot2::HostMot2Plant> plant_;
+  std::unique_ptr<imu::EmulatedImu> imu_;
+  ImuLine* line_ = nullptr;
+  Quat to_base_{1, 0, 0, 0};
+  std::unique_ptr<Plant> plant_;
   std::int64_t time_ns_ = 0;
   bool started_ = false;
 };

@@ -56,7 +56,7 @@ TEST_CASE_TEMPLATE("A drive that is not enabled gives no torque, its brake holds
   plant.write(asked.frame);
   run(plant, 50);
   CHECK(plant.truth().motor_torque_Nm[0] == doctest::Approx(3));
-  CHECK(plant.truth().position_rad[0] > 0.52);
+  CHECK(plant.truth().position_rad[0] > 0.503);  // 3 Nm for 50 ms, on the ideal plant's 1 kg m2
   plant.write(asked.to(DriveOrder::disable));
   run(plant, 300);
   CHECK(sample_of(plant).drive == DriveState::ready);

@@ -185,6 +185,24 @@ TEST_CASE("no test has a name that CTest would tear apart") {
             .empty());
 }
 
+TEST_CASE("every file of tests is compiled: the CMakeLists.txt of its folder, or of one above it, names it") {
+  const auto named = [](const fs::path& file) {
+    for (fs::path folder = file.parent_path(); folder != root; folder = folder.parent_path()) {
+      if (!fs::exists(folder / "CMakeLists.txt")) continue;
+      std::string words = read(folder / "CMakeLists.txt");
+      std::ranges::replace_if(
+          words, [](char c) { return c == '\n' || c == '(' || c == ')'; }, ' ');
+      if ((" " + words).find(" " + fs::relative(file, folder).generic_string() + " ") != std::string::npos) return true;
+    }
+    return false;
+  };
+  CHECK(named(root / "tests/project/layout_test.cpp"));
+  CHECK_FALSE(named(root / "tests/project/lay_test.cpp"));
+  for (const fs::path& file : files_below(root / "tests")) {
+    if (file.filename().string().ends_with("_test.cpp")) CHECK_MESSAGE(named(file), file);
+  }
+}
+
 TEST_CASE("docs/architecture.md lists the layers in the order in which they are built") {
   CHECK(layers().size() >= 16);
   CHECK(read_table_layers(read(root / "docs/architecture.md")) == layers());

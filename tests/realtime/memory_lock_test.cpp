@@ -46,7 +46,7 @@ int locked_and_a_thread_started(rlim_t limit) {
 
 }  // namespace
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef KADANS_SANITIZED
 constexpr bool locks = false;  // the sanitizers let nothing be locked
 #else
 constexpr bool locks = true;

@@ -8,6 +8,8 @@
 
 #include "kadans/signal/input_error.h"
 
+namespace durable_file_test {
+
 using namespace kadans;
 namespace fs = std::filesystem;
 
@@ -71,3 +73,5 @@ TEST_CASE("A place that is none is refused with its name, and nothing is left th
   }
   CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
 }
+
+}  // namespace durable_file_test

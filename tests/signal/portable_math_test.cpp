@@ -12,6 +12,7 @@
 
 #include <doctest/doctest.h>
 #include <mpfr.h>
+#include <sleef.h>
 
 #include "kadans/signal/random.h"
 #include "kadans/signal/state_hash.h"
@@ -281,7 +282,9 @@ TEST_CASE("the results are the same bits on every amd64") {
       hash.add(function.ours(x, random.uniform(-10, 10)));
     }
   }
-  CHECK(hash.value() == 0x31e64610f4fab0d1U);
+  // SLEEF's last digits are a version's own: 3.5 is Debian 12's, 3.8 Debian 13's. Golden hashes say theirs.
+  if constexpr (SLEEF_VERSION_MAJOR == 3 && SLEEF_VERSION_MINOR == 5) CHECK(hash.value() == 0x31e64610f4fab0d1U);
+  if constexpr (SLEEF_VERSION_MAJOR == 3 && SLEEF_VERSION_MINOR == 8) CHECK(hash.value() == 0xc165d9092bdf18d3U);
 }
 #endif
 

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -137,8 +138,8 @@ const std::vector<Call> throws{
     {"__cxa_allocate_exception",
      [] {
        try {
-         ignore(static_cast<long>(std::vector<int>().at(1)));
-       } catch (const std::out_of_range&) {
+         ignore(std::optional<int>().value());  // others format their message first
+       } catch (const std::bad_optional_access&) {
        }
      }},
 };

@@ -88,6 +88,7 @@ class Foresight {
     speed,   // by: the least time that it needs, s; joint: the one that would be too fast
     jump,    // by: the share of the way after which there is no smooth way on: `joint` would jump
     clash,   // by: the share of the way after which two links, `link` and `other`, come too near to each other
+    tilt,    // by: how far the trunk would lean on the way, rad
     bear     // by: the stiffness that is missing in this joint without a motor to stand on one foot, Nm/rad
   };
   struct Miss {

@@ -86,4 +86,8 @@ class Transmission {
 // The drives' names, each in its joint's place: the joint's own, where no transmission names another.
 std::vector<std::string> drive_names(std::vector<std::string> joints, std::span<const Transmission> transmissions);
 
+// For plants that read drives: the samples of the drives in their joints' places become those of the joints. A coupled
+// joint's reading is new when both of its drives were read, and as old as the older of both.
+void drives_to_joints(std::span<const Transmission> transmissions, SensorFrame& sensors) noexcept;
+
 }  // namespace kadans

@@ -72,7 +72,15 @@ struct PlantSite {
   PlantLayout layout;
   std::string peer;                // where the drives are, from the command line; "": where the configuration says
   double damping_Nms_per_rad = 2;  // of joints that nobody drives
+  std::uint64_t seed = 1;          // of what is random in an emulator
   std::vector<Transmission> transmissions{};  // frames speak of joints; what the drives speak of lies behind these
+};
+
+// What befalls an emulated bus or its drives, in the words of scenarios' faults where they have them.
+struct EmulatedFault {
+  std::string kind, of;              // "drive_hot", "tilt"
+  double from_s = 0, until_s = 1e9;  // of the model's time in a session; it begins again with each
+  double size = 0;                   // what the kind says
 };
 
 // The other side of a type's wire: programs that speak its protocol drive a modelled robot, one after the other.
@@ -101,6 +109,8 @@ class PlantEmulator {
   // From now on the world's time passes with the peer's control ticks, not with the periods of beats, which only say
   // how much may pass at most. False: this protocol does not count the peer's ticks.
   virtual bool step_with_peer() noexcept { return false; }
+  // Before the first session. Throws std::invalid_argument for what this bus or its drives cannot have.
+  virtual void plan_faults(const std::vector<EmulatedFault>& faults);
   virtual std::string peer_name() const = 0;
   virtual const Session& session() const noexcept = 0;
   virtual std::vector<PlantCount> link_counts() const = 0;
@@ -145,6 +155,9 @@ class PlantType {
 
   // The maker's words for the codes of its drives; nullptr: codes are told as numbers.
   virtual DriveWords drive_words() const noexcept { return nullptr; }
+
+  // Its frames have an IMU: none on a serial line stands beside it.
+  virtual bool has_imu() const noexcept { return false; }
 
   // Speaks a protocol: make_emulator makes the other side of it, which listens at `listen`. Throws InputError.
   virtual bool is_protocol() const noexcept { return false; }

@@ -56,6 +56,7 @@ struct alignas(8) ImuSample {
   Vec3 angular_velocity_rad_s{};  // in the base frame
   Vec3 acceleration_m_s2{};       // specific force in the base frame: +9.81 up when at rest
   std::uint32_t sequence = 0;
+  std::int64_t time_ns = 0;  // of the reading, on the frame's clock; 0: the frame's time
 };
 
 struct alignas(8) FootSample {
@@ -183,9 +184,9 @@ inline void copy_used(const ActuationFrame& from, ActuationFrame& to) noexcept {
 
 static_assert(std::is_trivially_copyable_v<SensorFrame> && std::is_trivially_copyable_v<JointStates> &&
               std::is_trivially_copyable_v<ActuationFrame>);
-static_assert(sizeof(JointSample) == 48 && sizeof(ImuSample) == 56 && sizeof(FootSample) == 40);
-static_assert(sizeof(SensorFrame) == 16 + 48 * max_joints + 56 + 40 * max_feet + 16 + 16 * max_channels &&
-              offsetof(SensorFrame, joints) == 16 && offsetof(SensorFrame, feet) == 72 + 48 * max_joints);
+static_assert(sizeof(JointSample) == 48 && sizeof(ImuSample) == 64 && sizeof(FootSample) == 40);
+static_assert(sizeof(SensorFrame) == 16 + 48 * max_joints + 64 + 40 * max_feet + 16 + 16 * max_channels &&
+              offsetof(SensorFrame, joints) == 16 && offsetof(SensorFrame, feet) == 80 + 48 * max_joints);
 static_assert(sizeof(JointState) == 24 && sizeof(JointStates) == 8 + 24 * max_joints &&
               offsetof(JointStates, joints) == 8);
 static_assert(sizeof(JointActuation) == 48 && offsetof(JointActuation, mode) == 40 && sizeof(DriveRequest) == 2 &&

@@ -15,7 +15,7 @@ void add_check(CLI::App& app, CheckOptions& options) {
   check
       ->add_option(
           "files", options.files,
-          "URDF or xacro, robot, scenario or plan (JSON), behaviors, modules and tests (Lua); folders, patterns")
+          "URDF, xacro or MJCF, robot, scenario or plan (JSON), behaviors, modules and tests (Lua); folders, patterns")
       ->required()
       ->type_name("PATH...");
   check

@@ -15,10 +15,10 @@
 #include "config/scenario/based_on.h"
 #include "estimate/estimator.h"
 #include "kadans/signal/input_error.h"
+#include "robot_description.h"
 #include "scenario/judge/checks.h"
 #include "script/check/check_behavior.h"
 #include "signal/shell_word.h"
-#include "xacro.h"
 
 namespace kadans {
 
@@ -31,15 +31,13 @@ bool hidden(const fs::path& path) {
   return name.starts_with('.') || name == "node_modules";
 }
 
-bool is_urdf(const fs::path& file) { return file.extension() == ".urdf" || file.extension() == ".URDF"; }
-
 bool counts(const fs::path& file, bool scripts_only) {
   const std::string extension = file.extension().string();
   if (extension == ".lua") return true;
   if (scripts_only) return false;
   const std::string name = file.filename().string();
   if (name.ends_with(".schema.json") || name.ends_with(".golden.json")) return false;
-  return is_urdf(file) || extension == ".json";
+  return is_robot_description(file) || extension == ".json";
 }
 
 void add_below(const fs::path& folder, bool scripts_only, std::vector<fs::path>& files) {
@@ -63,8 +61,9 @@ std::vector<fs::path> files_in(const fs::path& folder, bool scripts_only) {
   for (const fs::path& part : parts) add_below(part, scripts_only, files);
   std::ranges::sort(files);
   if (files.empty())
-    throw InputError({.file = folder.string(),
-                      .message = scripts_only ? "there is no .lua in it" : "there is no .urdf, .json or .lua in it"});
+    throw InputError(
+        {.file = folder.string(),
+         .message = scripts_only ? "there is no .lua in it" : "there is no .urdf, MJCF, .json or .lua in it"});
   return files;
 }
 
@@ -147,11 +146,9 @@ FileChecks::FileChecks(std::string robot, bool plugins, UrdfOptions urdf)
       gate_{.closed = !plugins, .let_in = {}, .remedy = "to load it is to run its code, which --plugins does"},
       urdf_(std::move(urdf)) {}
 
-std::string FileChecks::check_urdf(const fs::path& file) {
+std::string FileChecks::check_description_of(const fs::path& file) {
   std::vector<InputProblem> warnings;
-  const RobotModel model = file.extension() == ".xacro"
-                               ? read_urdf_text(expanded_xacro(file), file.string(), urdf_, &warnings)
-                               : read_urdf(file.string(), urdf_, &warnings);
+  const RobotModel model = read_robot_description(file, urdf_, &warnings).model;
   std::size_t motors = 0, mimics = 0;
   for (const Joint& joint : model.joints) {
     motors += joint.passive() ? 0 : 1;
@@ -263,14 +260,14 @@ std::string FileChecks::check_script_file(const CheckedFile& checked_file) {
 std::string FileChecks::check(const CheckedFile& checked) {
   const fs::path& file = checked.file;
   const std::string extension = file.extension().string();
-  if (is_urdf(file) || extension == ".xacro") return check_urdf(file);
+  if (is_robot_description(file) || extension == ".xacro" || extension == ".xml") return check_description_of(file);
   if (extension == ".lua") {
     const std::string what = check_script_file(checked);
     return what == "a module" || what == "tests" ? what : "behavior: " + what;
   }
   if (extension != ".json")
-    throw InputError(
-        {.file = file.string(), .message = "not a file that can be checked: .urdf, .xacro, .json or .lua"});
+    throw InputError({.file = file.string(),
+                      .message = "not a file that can be checked: .urdf, .xacro, .xml (MJCF), .json or .lua"});
   const std::string what = check_json(file);
   if (what.empty() && !checked.found)
     throw InputError({.file = file.string(), .message = "is no robot, scenario, sweep or tuning of ours"});

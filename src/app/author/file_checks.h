@@ -47,7 +47,7 @@ class FileChecks {
   const Known* robot_of(const std::filesystem::path& script, std::string& missing);
   std::string check_json(const std::filesystem::path& file);
 
-  std::string check_urdf(const std::filesystem::path& file);
+  std::string check_description_of(const std::filesystem::path& file);
   std::string check_robot(const std::filesystem::path& file);
   std::string told_robot(const RobotConfig& robot, const std::string& what) const;
   std::string check_scenario(const std::filesystem::path& file);

@@ -223,14 +223,6 @@ inline constexpr std::string_view cmake_plugin_template = R"(
 kadans_plugin(@type@ SOURCES plugin.cpp @type@.cpp)
 )";
 
-// The files that `kadans new control-object` writes: a folder with a control object, its test, and a program or a
-// plug-in that contains it. The folder builds and its test passes without changes, on its own (find_package(kadans))
-// and as a subdirectory of a project that already contains Kadans.
-struct ProjectFile {
-  std::string name;
-  std::string text;
-};
-
 struct ControlObjectNames {
   std::string type;        // "knee_damper": the name of the type, the folder and the files
   std::string class_name;  // "KneeDamper"
@@ -282,10 +274,12 @@ ControlObjectNames control_object_names(const std::string& type) {
   return names;
 }
 
-std::vector<ProjectFile> control_object_project(const ControlObjectNames& names, bool plugin) {
-  std::vector<ProjectFile> files{{names.type + ".h", filled(header_template, names)},
-                                 {names.type + ".cpp", filled(source_template, names)},
-                                 {names.type + "_test.cpp", filled(test_template, names)}};
+// A folder with a control object, its test, and a program or a plug-in that contains it. It builds and its test passes
+// without changes, on its own (find_package(kadans)) and as a subdirectory of a project that already contains Kadans.
+std::vector<NewFile> control_object_project(const ControlObjectNames& names, bool plugin) {
+  std::vector<NewFile> files{{names.type + ".h", filled(header_template, names)},
+                             {names.type + ".cpp", filled(source_template, names)},
+                             {names.type + "_test.cpp", filled(test_template, names)}};
   files.push_back({plugin ? "plugin.cpp" : "main.cpp", filled(plugin ? plugin_template : program_template, names)});
   files.push_back({"CMakeLists.txt", filled(cmake_template, names) +
                                          filled(plugin ? cmake_plugin_template : cmake_program_template, names)});
@@ -305,6 +299,21 @@ void add_new(CLI::App& app, NewControlObjectOptions& options, NewRobotOptions& r
   add_new_robot(*made, robot);
 }
 
+void write_new_files(const std::vector<fs::path>& fresh, const std::vector<NewFile>& files) {
+  std::error_code error;
+  for (const fs::path& path : fresh) {
+    if (fs::exists(path, error))
+      throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
+  }
+  for (const NewFile& file : files) {
+    const fs::path folder = file.path.parent_path();
+    fs::create_directories(folder, error);
+    if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
+    write_durably(file.path, file.text);
+    std::printf("%s\n", file.path.c_str());
+  }
+}
+
 int run_new_control_object(const NewControlObjectOptions& options) {
   ControlObjectNames names;
   try {
@@ -313,16 +322,9 @@ int run_new_control_object(const NewControlObjectOptions& options) {
     throw InputError({.message = "'" + options.name + "': " + error.what()});
   }
   const fs::path folder = fs::path(options.folder) / names.type;
-  std::error_code error;
-  if (fs::exists(folder, error)) {
-    throw InputError({.file = folder.string(), .message = "is there already; nothing is overwritten"});
-  }
-  fs::create_directories(folder, error);
-  if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
-  for (const ProjectFile& file : control_object_project(names, options.plugin)) {
-    write_durably(folder / file.name, file.text);
-    std::printf("%s\n", (folder / file.name).c_str());
-  }
+  std::vector<NewFile> files = control_object_project(names, options.plugin);
+  for (NewFile& file : files) file.path = folder / file.path;
+  write_new_files({folder}, files);
   std::fprintf(stderr, "Build and test it:  cd %s && cmake -B build && cmake --build build && build/%s_test\n",
                shell_word(folder.string()).c_str(), names.type.c_str());
   return exit_passed;

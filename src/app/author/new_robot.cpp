@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -20,19 +19,15 @@
 #include "kadans/model/urdf.h"
 #include "kadans/signal/input_error.h"
 #include "realtime/machine/child_process.h"
-#include "signal/durable_file.h"
-#include "signal/input_file.h"
+#include "robot_description.h"
 #include "signal/shell_word.h"
 #include "stance.h"
-#include "xacro.h"
 
 namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t urdf_max_bytes = std::size_t{16} << 20U;
 
 constexpr std::string_view sway_template =
     R"(-- Goes from one pose to another and back, a few times. Change it and run it again.
@@ -81,7 +76,7 @@ describe("sway", function()
 end)
 )";
 
-double rounded(double value, double to = 1e-4) { return std::round(value / to) * to; }
+double rounded(double value, double to = 1e-4) { return std::round(value / to) / std::round(1 / to); }
 double figures(double value) {  // three
   if (!(value > 0)) return 0;
   const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
@@ -103,8 +98,8 @@ std::string name_from(const std::string& text) {
   return name;
 }
 
-// The URDF's text with its meshes as they lie in `folder` of the project, which get their files in `copies`.
-std::string with_own_meshes(const std::string& text, const std::string& file, const std::string& folder,
+// The URDF's text with its meshes in a folder beside it; `copies` gets the name there of each mesh's file.
+std::string with_own_meshes(const std::string& text, const std::string& file,
                             std::map<std::string, std::string>& copies) {
   std::string result;
   std::set<std::string> taken;
@@ -131,19 +126,38 @@ std::string with_own_meshes(const std::string& text, const std::string& file, co
         copy = path.stem().string() + "_" + std::to_string(i) + path.extension().string();
       taken.insert(copy);
     }
-    result += folder + "/" + copy;
+    result += "meshes/" + copy;
   }
   return result + text.substr(at);
 }
 
 Json pose_json(const RobotModel& model, const std::vector<double>& position) {
   Json pose = Json::object();
-  for (std::size_t i = 0; i < position.size(); ++i) pose[model.joints[i].name] = rounded(position[i]);
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    pose[joint.name] = std::clamp(rounded(position[i]), joint.lower_rad, joint.upper_rad);  // keyframes lie beyond, too
+  }
   return pose;
 }
 
-Json robot_json(const RobotModel& model, const std::string& name, const StandingPose& stance,
+// The two that are worked out, and those of an MJCF's keyframes.
+Json poses_json(const RobotDescription& robot, const StandingPose& stance) {
+  Json poses = {{"stand", pose_json(robot.model, stance.stand)}, {"low", pose_json(robot.model, stance.low)}};
+  for (const MjcfPose& key : robot.poses) {
+    std::string name = name_from(key.name);
+    if (name.empty() || poses.contains(name)) name = "key_" + name;
+    std::vector<double> position(robot.model.joints.size());
+    for (const auto& [joint, at] : key.position) {
+      if (const auto number = robot.model.find_joint(joint)) position[*number] = at;
+    }
+    poses[name] = pose_json(robot.model, position);
+  }
+  return poses;
+}
+
+Json robot_json(const RobotDescription& robot, const std::string& name, const StandingPose& stance,
                 const std::vector<JointHold>& holds) {
+  const RobotModel& model = robot.model;
   const bool bolted = stance.feet.empty();
   Json drives = {{"doc",
                   "E: estimates, to be replaced by what the maker says. A rotor that the motor's whole torque brings "
@@ -175,10 +189,10 @@ Json robot_json(const RobotModel& model, const std::string& name, const Standing
   Json start = {{"pose", "stand"}};
   if (bolted) start = {{"pose", "stand"}, {"stand_on_ground", false}, {"position_m", {0, 0, 1}}};
   return {{"name", name},
-          {"doc", "Written by kadans new robot from the URDF. E marks an estimate."},
+          {"doc", "Written by kadans new robot. E marks an estimate."},
           {"urdf", "models/" + name + "/" + name + ".urdf"},
           {"engine", {{"control_period_s", 0.001}, {"behavior_period_s", 0.01}}},
-          {"poses", {{"stand", pose_json(model, stance.stand)}, {"low", pose_json(model, stance.low)}}},
+          {"poses", poses_json(robot, stance)},
           {"safe", {{"pose", "stand"}, {"after_s", 0.5}, {"time_s", 2}}},
           {"plant", {{"drives", drives}, {"fixed_base", bolted}, {"self_collision", true}}},
           {"start", start},
@@ -205,12 +219,6 @@ Json scenario_json(const std::string& name, const StandingPose& stance) {
           {"checks", checks}};
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
-}
-
 void tell(const RobotModel& model, const StandingPose& stance, const std::vector<JointHold>& holds) {
   std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
   if (stance.feet.empty()) {
@@ -231,9 +239,9 @@ void tell(const RobotModel& model, const StandingPose& stance, const std::vector
 }  // namespace
 
 void add_new_robot(CLI::App& made, NewRobotOptions& options) {
-  CLI::App* robot = made.add_subcommand("robot", "Write the files of a robot from its URDF, and see it stand");
-  robot->add_option("urdf", options.urdf, "URDF or xacro of the robot")->required()->type_name("FILE");
-  robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: the URDF's)")
+  CLI::App* robot = made.add_subcommand("robot", "Write the files of a robot from its URDF or MJCF, and see it stand");
+  robot->add_option("urdf", options.urdf, "URDF, xacro or MJCF of the robot")->required()->type_name("FILE");
+  robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: that of the file)")
       ->type_name("NAME");
   robot->add_option("--in", options.folder, "Project to which its files are added (default: this folder)")
       ->type_name("FOLDER");
@@ -241,10 +249,8 @@ void add_new_robot(CLI::App& made, NewRobotOptions& options) {
 }
 
 int run_new_robot(const NewRobotOptions& options) {
-  const fs::path source = options.urdf;
-  const std::string text =
-      source.extension() == ".xacro" ? expanded_xacro(source) : read_input_file(source, urdf_max_bytes);
-  const RobotModel model = read_urdf_text(text, options.urdf, {.mesh_hull = mesh_hull});
+  const RobotDescription description = read_robot_description(options.urdf, {.mesh_hull = mesh_hull});
+  const RobotModel& model = description.model;
   const std::string name = options.name.empty() ? name_from(model.name) : options.name;
   if (name.empty() || name != name_from(name))
     throw InputError({.message = "'" + name + "': a robot's name is words of a-z and 0-9 joined by _: --name NAME"});
@@ -252,11 +258,6 @@ int run_new_robot(const NewRobotOptions& options) {
   const fs::path models = project / "models" / name, config = project / "config" / name,
                  behaviors = project / "behaviors" / name,
                  scenario = project / "config" / "scenarios" / (name + "_hold.json");
-  for (const fs::path& path : {models, config, behaviors, scenario}) {
-    std::error_code error;
-    if (fs::exists(path, error))
-      throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
-  }
   const StandingPose stance = find_stance(model);
   const std::vector<JointHold> holds = hold_joints(model, stance);
   if (std::ranges::none_of(holds, [](const JointHold& hold) { return hold.stiffness_Nm_per_rad > 0; }))
@@ -264,25 +265,20 @@ int run_new_robot(const NewRobotOptions& options) {
         {.file = options.urdf, .message = "no joint of it has a motor: <limit effort=...> says which torque it has"});
 
   std::map<std::string, std::string> meshes;
-  const std::string own = with_own_meshes(text, options.urdf, "meshes", meshes);
-  make_folder(models / "meshes");
-  for (const auto& [from, to] : meshes) {
-    std::error_code error;
-    fs::copy_file(from, models / "meshes" / to, error);
-    if (error) throw InputError({.file = from, .message = "cannot be copied: " + error.message()});
-  }
-  for (const fs::path& folder : {config, behaviors, scenario.parent_path()}) make_folder(folder);
+  const std::string own = with_own_meshes(description.urdf, options.urdf, meshes);
   std::string test(sway_test_template);
   test.replace(test.find("@name@"), 6, name);
-  const std::vector<std::pair<fs::path, std::string>> files{
-      {models / (name + ".urdf"), own},
-      {config / "robot.json", json_text(robot_json(model, name, stance, holds), 2) + "\n"},
-      {scenario, json_text(scenario_json(name, stance), 2) + "\n"},
-      {behaviors / "sway.lua", std::string(sway_template)},
-      {behaviors / "sway_test.lua", test}};
-  for (const auto& [file, content] : files) {
-    write_durably(file, content);
-    std::printf("%s\n", file.c_str());
+  write_new_files({models, config, behaviors, scenario},
+                  {{models / (name + ".urdf"), own},
+                   {config / "robot.json", json_text(robot_json(description, name, stance, holds), 2) + "\n"},
+                   {scenario, json_text(scenario_json(name, stance), 2) + "\n"},
+                   {behaviors / "sway.lua", std::string(sway_template)},
+                   {behaviors / "sway_test.lua", test}});
+  for (const auto& [from, to] : meshes) {
+    std::error_code error;
+    fs::create_directories(models / "meshes", error);
+    fs::copy_file(from, models / "meshes" / to, error);
+    if (error) throw InputError({.file = from, .message = "cannot be copied: " + error.message()});
   }
   std::fflush(stdout);
   tell(model, stance, holds);

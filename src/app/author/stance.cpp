@@ -9,7 +9,8 @@
 
 #include <Eigen/Dense>
 
-#include "kadans/model/kinematics.h"
+#include "control/body/body_model.h"
+#include "kadans/model/dynamics.h"
 
 namespace kadans {
 namespace {
@@ -18,9 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double g_m_s2 = 9.81;
 
-Vector3d eigen_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
-
-// Points of a shape that are outermost: corners, points of rims, of spheres those along the axes.
+// Points of a shape that are outermost: corners, points of rims, of spheres some all around.
 std::vector<Vec3> tips(const Geometry& geometry) {
   std::vector<Vec3> points;
   const auto add = [&](double x, double y, double z) { points.push_back(transform(geometry.pose, {x, y, z})); };
@@ -29,7 +28,6 @@ std::vector<Vec3> tips(const Geometry& geometry) {
       add(((i & 1) != 0 ? 0.5 : -0.5) * box->size_m[0], ((i & 2) != 0 ? 0.5 : -0.5) * box->size_m[1],
           ((i & 4) != 0 ? 0.5 : -0.5) * box->size_m[2]);
   } else if (const auto* sphere = std::get_if<Sphere>(&geometry.shape)) {
-    // Turned with the pose, the axes would miss what is lowest; so all around.
     for (int i = 0; i < 200; ++i) {
       const double z = 1 - (2.0 * i + 1) / 200, angle = 2.399963 * i, r = std::sqrt(1 - z * z);
       add(sphere->radius_m * r * std::cos(angle), sphere->radius_m * r * std::sin(angle), sphere->radius_m * z);
@@ -46,9 +44,11 @@ std::vector<Vec3> tips(const Geometry& geometry) {
   return points;
 }
 
+// The robot at rest, its base where the world begins.
 class Body {
  public:
-  explicit Body(const RobotModel& model) : model_(model), kinematics_(model), tips_(model.links.size()) {
+  explicit Body(const RobotModel& model)
+      : model_(model), dynamics_(model), at_rest_(model.joints.size()), tips_(model.links.size()) {
     for (std::size_t i = 0; i < model.links.size(); ++i) {
       for (const Geometry& geometry : model.links[i].collisions) {
         const std::vector<Vec3> more = tips(geometry);
@@ -57,37 +57,42 @@ class Body {
     }
   }
 
-  void place(const std::vector<double>& position) { kinematics_.update(position); }
-  const Pose& link(std::size_t index) const { return kinematics_.link(index); }
-  Vector3d com() const { return eigen_of(kinematics_.com_m()); }
+  void place(const std::vector<double>& position) { dynamics_.update(position, at_rest_, {}); }
+  const Dynamics& dynamics() const { return dynamics_; }
+  const Pose& link(std::size_t index) const { return dynamics_.link(index); }
+  Vector3d point(std::size_t link, const Vec3& in_link_m) const {
+    return eigen(transform(dynamics_.link(link), in_link_m));
+  }
+  Vector3d com() const { return eigen(dynamics_.com_m()); }
   const std::vector<Vec3>& tips_of(std::size_t link) const { return tips_[link]; }
   double lowest(std::size_t link) const {
     double lowest = std::numeric_limits<double>::infinity();
-    for (const Vec3& tip : tips_[link]) lowest = std::min(lowest, transform(kinematics_.link(link), tip)[2]);
+    for (const Vec3& tip : tips_[link]) lowest = std::min(lowest, point(link, tip).z());
     return lowest;
   }
   // The middle of what stands on the ground, in the link's frame.
   Vec3 sole(std::size_t link) const {
     constexpr double near_m = 0.01;
     const double low = lowest(link);
-    Vec3 sum{};
+    Vector3d sum = Vector3d::Zero();
     double count = 0;
     for (const Vec3& tip : tips_[link]) {
-      if (transform(kinematics_.link(link), tip)[2] > low + near_m) continue;
-      for (std::size_t i = 0; i < 3; ++i) sum[i] += tip[i];
+      if (point(link, tip).z() > low + near_m) continue;
+      sum += eigen(tip);
       ++count;
     }
-    for (double& part : sum) part /= count;
-    return sum;
+    return vec3(sum / count);
   }
   Vector3d axis(std::size_t joint) const {
-    return eigen_of(rotate(kinematics_.link(joint + 1).orientation, model_.joints[joint].axis));
+    return eigen(rotate(link(joint + 1).orientation, model_.joints[joint].axis));
   }
-  Vector3d place_of(std::size_t joint) const { return eigen_of(kinematics_.link(joint + 1).position_m); }
+  Vector3d place_of(std::size_t joint) const { return eigen(link(joint + 1).position_m); }
+  bool swings(std::size_t joint) const { return std::abs(axis(joint).y()) > 0.7; }  // forward and back
 
  private:
   const RobotModel& model_;
-  Kinematics kinematics_;
+  Dynamics dynamics_;
+  std::vector<double> at_rest_;
   std::vector<std::vector<Vec3>> tips_;
 };
 
@@ -145,7 +150,7 @@ class StanceSearch {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (std::size_t i = 0; i < model_.links.size(); ++i) {
       for (const Vec3& tip : body_.tips_of(i)) {
-        const double z = transform(body_.link(i), tip)[2];
+        const double z = body_.point(i, tip).z();
         low = std::min(low, z);
         high = std::max(high, z);
       }
@@ -172,11 +177,11 @@ class StanceSearch {
       std::optional<Vector3d> last;
       double sum = 0;
       for (const std::size_t joint : leg.joints) {
-        if (std::abs(body_.axis(joint).y()) < 0.7) continue;
+        if (!body_.swings(joint)) continue;
         if (last) sum += (body_.place_of(joint) - *last).norm();
         last = body_.place_of(joint);
       }
-      if (last) sum += (eigen_of(transform(body_.link(leg.foot), leg.sole)) - *last).norm();
+      if (last) sum += (body_.point(leg.foot, leg.sole) - *last).norm();
       longest = std::max(longest, sum);
     }
     return longest;
@@ -188,23 +193,18 @@ class StanceSearch {
     body_.place(position_);
     const double leg_m = length();
     for (Leg& leg : legs_) {
-      const Vector3d foot = eigen_of(transform(body_.link(leg.foot), leg.sole));
-      const Vector3d root = body_.place_of(leg.joints.front());
-      const bool level = leg.joints.size() >= level_joints;
-      leg.target = foot;
-      if (level) {
+      leg.target = body_.point(leg.foot, leg.sole);
+      if (leg.joints.size() >= level_joints) {
         leg.target.z() += 0.06 * leg_m;
       } else {
-        const auto swings =
-            std::ranges::find_if(leg.joints, [&](std::size_t j) { return std::abs(body_.axis(j).y()) > 0.7; });
-        const double top = swings == leg.joints.end() ? root.z() : body_.place_of(*swings).z();
-        const double from = swings == leg.joints.end() ? root.x() : body_.place_of(*swings).x();
-        leg.target.x() = from;
-        leg.target.z() = top - 0.72 * leg_m;
+        const auto swinging = std::ranges::find_if(leg.joints, [&](std::size_t j) { return body_.swings(j); });
+        const Vector3d top = body_.place_of(swinging == leg.joints.end() ? leg.joints.front() : *swinging);
+        leg.target.x() = top.x();
+        leg.target.z() = top.z() - 0.72 * leg_m;
       }
       for (const std::size_t i : leg.joints) {
         const Joint& joint = model_.joints[i];
-        if (std::abs(body_.axis(i).y()) < 0.7 || !moves(joint)) continue;
+        if (!body_.swings(i) || !moves(joint)) continue;
         if (joint.upper_rad > -much * joint.lower_rad) position_[i] = within(i, std::max(position_[i], bent_rad), 0.02);
         if (-joint.lower_rad > much * joint.upper_rad)
           position_[i] = within(i, std::min(position_[i], -bent_rad), 0.02);
@@ -222,8 +222,7 @@ class StanceSearch {
       }
       body_.place(position);
       Vector3d middle = Vector3d::Zero();
-      for (const Leg& leg : legs_)
-        middle += eigen_of(transform(body_.link(leg.foot), leg.sole)) / static_cast<double>(legs_.size());
+      for (const Leg& leg : legs_) middle += body_.point(leg.foot, leg.sole) / static_cast<double>(legs_.size());
       Vector3d off = body_.com() - middle;
       off.z() = 0;
       shift += off;
@@ -232,30 +231,22 @@ class StanceSearch {
   }
 
   void improve(const Leg& leg, const Vector3d& target, std::vector<double>& position) {
-    constexpr double small = 1e-6, damping = 1e-3, step_max_rad = 0.1;
+    constexpr double damping = 1e-3, step_max_rad = 0.1;
     const double turn_m = leg.joints.size() >= level_joints ? 0.2 : 0;
     const auto count = static_cast<Eigen::Index>(leg.joints.size());
-    const auto error = [&]() -> Eigen::Vector<double, 6> {
-      body_.place(position);
-      const Pose& foot = body_.link(leg.foot);
-      const Quat off = multiply(leg.level, conjugate(foot.orientation));
-      const double sign = off[0] < 0 ? -1 : 1;
-      Eigen::Vector<double, 6> e;
-      e << target - eigen_of(transform(foot, leg.sole)), 2 * sign * turn_m * Vector3d(off[1], off[2], off[3]);
-      return e;
-    };
-    const Eigen::Vector<double, 6> now = error();
-    Eigen::MatrixXd slope(6, count);
+    body_.place(position);
+    Eigen::Vector<double, 6> error;
+    error << target - body_.point(leg.foot, leg.sole),
+        turn_m * turn_between(body_.link(leg.foot).orientation, leg.level);
+    Eigen::MatrixXd all(6, static_cast<Eigen::Index>(position.size())), slope = Eigen::MatrixXd::Zero(6, count);
+    body_.dynamics().link_jacobian(leg.foot, leg.sole, all);
+    all.bottomRows<3>() *= turn_m;
     for (Eigen::Index k = 0; k < count; ++k) {
       const std::size_t joint = leg.joints[static_cast<std::size_t>(k)];
-      slope.col(k).setZero();
-      if (!moves(model_.joints[joint])) continue;
-      position[joint] += small;
-      slope.col(k) = (error() - now) / small;
-      position[joint] -= small;
+      if (moves(model_.joints[joint])) slope.col(k) = all.col(static_cast<Eigen::Index>(joint));
     }
     const Eigen::MatrixXd square = slope.transpose() * slope + damping * Eigen::MatrixXd::Identity(count, count);
-    const Eigen::VectorXd way = square.ldlt().solve(-slope.transpose() * now);
+    const Eigen::VectorXd way = square.ldlt().solve(slope.transpose() * error);
     for (Eigen::Index k = 0; k < count; ++k) {
       const std::size_t joint = leg.joints[static_cast<std::size_t>(k)];
       position[joint] = within(joint, position[joint] + std::clamp(way[k], -step_max_rad, step_max_rad), 0.02);
@@ -270,34 +261,23 @@ class StanceSearch {
   std::vector<Leg> legs_;
 };
 
-// What hangs on a joint.
 struct Carried {
   double mass_kg = 0;
   Vector3d moment = Vector3d::Zero();  // mass times place
-  double inertia = 0;                  // about the joint's axis; kg of a slider
 };
 
-Carried carried_by(const RobotModel& model, const Body& body, std::size_t joint) {
-  std::vector<bool> hangs(model.links.size(), false);
-  hangs[joint + 1] = true;
-  for (std::size_t i = joint + 1; i < model.joints.size(); ++i) hangs[i + 1] = hangs[model.joints[i].parent];
-  hangs[joint + 1] = true;
-  Carried all;
-  const Vector3d axis = body.axis(joint), at = body.place_of(joint);
-  for (std::size_t i = joint + 1; i < model.links.size(); ++i) {
-    if (!hangs[i]) continue;
-    const Inertia& inertia = model.links[i].inertia;
-    const Vector3d com = eigen_of(transform(body.link(i), inertia.com_m));
-    all.mass_kg += inertia.mass_kg;
-    all.moment += inertia.mass_kg * com;
-    Eigen::Matrix3d own;
-    own << inertia.xx, inertia.xy, inertia.xz, inertia.xy, inertia.yy, inertia.yz, inertia.xz, inertia.yz, inertia.zz;
-    const Vec3 local = rotate_inverse(body.link(i).orientation, {axis.x(), axis.y(), axis.z()});
-    const Vector3d turned = eigen_of(local);
-    const Vector3d arm = axis.cross(com - at);
-    all.inertia += turned.dot(own * turned) + inertia.mass_kg * arm.squaredNorm();
+// What each link carries, itself included.
+std::vector<Carried> carried(const RobotModel& model, const Body& body) {
+  std::vector<Carried> all;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const Inertia& own = model.links[i].inertia;
+    all.push_back({own.mass_kg, own.mass_kg * body.point(i, own.com_m)});
   }
-  if (model.joints[joint].type == JointType::prismatic) all.inertia = all.mass_kg;
+  for (std::size_t i = model.joints.size(); i-- > 0;) {  // children come after their parents
+    Carried& parent = all[model.joints[i].parent];
+    parent.mass_kg += all[i + 1].mass_kg;
+    parent.moment += all[i + 1].moment;
+  }
   return all;
 }
 
@@ -314,9 +294,9 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
   constexpr double own_bandwidth = 225, sag_rad = 0.04, over_load = 3;  // (15 rad/s)^2
   Body body(model);
   body.place(stance.stand);
-  const Vector3d com = body.com();
-  const double mass_kg = model.mass_kg(),
-               share = stance.feet.empty() ? 0 : 1.0 / static_cast<double>(stance.feet.size());
+  const std::vector<Carried> all = carried(model, body);
+  // What each foot carries.
+  const double weight_N = g_m_s2 * model.mass_kg() / std::max(1.0, static_cast<double>(stance.feet.size()));
   std::map<std::size_t, std::size_t> foot_of;  // by joint of a leg
   for (const std::size_t foot : stance.feet) {
     for (std::size_t link = foot; link > 0; link = model.joints[link - 1].parent) foot_of[link - 1] = foot;
@@ -326,31 +306,31 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
     const Joint& joint = model.joints[i];
     if (!moves(joint)) continue;
     JointHold& hold = holds[i];
-    const Carried hung = carried_by(model, body, i);
+    const Carried& hung = all[i + 1];
     const bool slides = joint.type == JointType::prismatic;
     hold.rotor_inertia_kg_m2 =
         joint.rotor_inertia_kg_m2 > 0 ? joint.rotor_inertia_kg_m2 : std::max(1e-4, rotor_per_Nm * joint.effort_max_Nm);
     if (!std::isfinite(hold.rotor_inertia_kg_m2) || joint.effort_max_Nm > 1e5) hold.rotor_inertia_kg_m2 = 0.01;
-    const double inertia = hung.inertia + hold.rotor_inertia_kg_m2;
+    const auto at_joint = static_cast<Eigen::Index>(i);
+    const double inertia = body.dynamics().mass_matrix()(at_joint, at_joint) + hold.rotor_inertia_kg_m2;
     const Vector3d at = body.place_of(i);
     hold.load_Nm_per_rad = slides ? 0 : g_m_s2 * (hung.moment - hung.mass_kg * at).norm();
     double wanted = std::max(over_load * hold.load_Nm_per_rad, own_bandwidth * inertia);
     if (slides) wanted = std::max(wanted, hung.mass_kg * g_m_s2 / 0.005);
-    const auto foot = foot_of.find(i);
-    if (foot != foot_of.end() && !slides) {
-      const Vector3d sole = eigen_of(transform(body.link(foot->second), body.sole(foot->second)));
-      const double standing = share * mass_kg * g_m_s2 * std::max(0.0, com.z() - sole.z());
-      const double torque_Nm = std::abs(body.axis(i).dot((sole - at).cross(Vector3d(0, 0, share * mass_kg * g_m_s2))));
+    const auto foot = slides ? foot_of.end() : foot_of.find(i);
+    const bool leg = foot != foot_of.end();
+    if (leg) {
+      const Vector3d sole = body.point(foot->second, body.sole(foot->second));
+      const double standing = weight_N * std::max(0.0, body.com().z() - sole.z());
+      const double torque_Nm = std::abs(body.axis(i).dot((sole - at).cross(Vector3d(0, 0, weight_N))));
       hold.load_Nm_per_rad = std::max(hold.load_Nm_per_rad, standing);
       wanted = std::max({wanted, over_load * standing, torque_Nm / sag_rad});
     }
     hold.stiffness_Nm_per_rad = std::min(wanted, stiffest * inertia);
     hold.weak = hold.stiffness_Nm_per_rad < 1.2 * hold.load_Nm_per_rad;
     const double critical = 1.4 * std::sqrt(hold.stiffness_Nm_per_rad * inertia);
-    hold.damping_Nms_per_rad =
-        foot != foot_of.end() && !slides
-            ? std::min(std::max(critical, 0.03 * hold.stiffness_Nm_per_rad), most_damped * inertia)
-            : std::min(critical, most_damped * inertia);
+    const double damping = leg ? std::max(critical, 0.03 * hold.stiffness_Nm_per_rad) : critical;
+    hold.damping_Nms_per_rad = std::min(damping, most_damped * inertia);
   }
   return holds;
 }

@@ -7,6 +7,7 @@
 #include <pthread.h>
 
 #include "app/terminal.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans {
 namespace {
@@ -15,7 +16,7 @@ constexpr int bench_priority = 85;  // above the drives' own threads
 
 }  // namespace
 
-DriveBench::DriveBench(const Robot& robot, const std::string& plant, const std::string& peer)
+DriveBench::DriveBench(const Robot& robot, const std::string& plant, const std::string& peer, const std::string& imu)
     : period_ns_(robot.config.engine.control_period_ns()),
       joint_count_(static_cast<std::uint32_t>(robot.config.model.joints.size())) {
   const PlantType& type = plant_type_named(robot.config, "--plant", {plant, {}});
@@ -24,7 +25,7 @@ DriveBench::DriveBench(const Robot& robot, const std::string& plant, const std::
     if (type.is_model()) {
       world_ = type.make_world({robot.config.model, robot.config.plant, 1});
     } else {
-      plant_ = type.make_plant(plant_site(robot.config, peer));
+      plant_ = make_bus(robot.config, type, peer, imu);
     }
   } catch (const std::invalid_argument& error) {
     throw InputError({.file = robot.config.file, .message = error.what()});
@@ -61,10 +62,6 @@ void DriveBench::write(const ActuationFrame& actuation) {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
-std::int64_t DriveBench::now_ns() const noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * ns_per_s + now.tv_nsec;
-}
+std::int64_t DriveBench::now_ns() const noexcept { return monotonic_ns(); }
 
 }  // namespace kadans

@@ -14,9 +14,9 @@ namespace kadans {
 
 class DriveBench final : public Bench {
  public:
-  // `plant`: the type of plant; `peer`: where its drives are, "" where the configuration says. The robot must outlive
-  // the bench. Throws InputError.
-  DriveBench(const Robot& robot, const std::string& plant, const std::string& peer);
+  // `plant`: the type of plant; `peer`: where its drives are, `imu`: the serial port of its IMU, "" where the
+  // configuration says. The robot must outlive the bench. Throws InputError.
+  DriveBench(const Robot& robot, const std::string& plant, const std::string& peer, const std::string& imu);
   ~DriveBench() override;  // asks for nothing, and closes
 
   // False: somebody wants the program to end. Throws InputError that says what is in the way.

@@ -41,7 +41,7 @@ class JogRun {
                  .velocity_max_rad_s = options.speed_rad_s,
                  .lower_rad = joint.lower_rad + stop_margin_rad,
                  .upper_rad = joint.upper_rad - stop_margin_rad};
-    bench_ = std::make_unique<DriveBench>(robot_, options.plant, options.peer);
+    bench_ = std::make_unique<DriveBench>(robot_, options.plant, options.peer, options.imu);
   }
 
   int run() {
@@ -108,6 +108,7 @@ void add_jog(CLI::App& app, JogOptions& options) {
   jog->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
   jog->add_option("joint", options.joint, "The joint")->required()->type_name("NAME");
   jog->add_option("--plant", options.plant, "Plant to drive (default: bullet, its model)")->type_name("TYPE");
+  jog->add_option("--imu", options.imu, "Serial port of the IMU (default: the configuration's)")->type_name("FILE");
   jog->add_option("--peer", options.peer, "Address of the drives (default: the configuration's)")
       ->type_name("HOST:PORT");
   jog->add_option("--share", options.share, "Torque, as a share of the joint's greatest (default: 0.1)")

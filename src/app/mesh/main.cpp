@@ -30,7 +30,7 @@ void bound(__rlimit_resource what, rlim_t most) {
 }
 
 void add_points(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, unsigned depth,
-                std::vector<Point>& points) {
+                std::vector<btVector3>& points) {
   if (depth > depth_max) throw std::runtime_error("its nodes are nested too deep");
   const aiMatrix4x4 pose = above * node.mTransformation;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
@@ -39,18 +39,18 @@ void add_points(const aiScene& scene, const aiNode& node, const aiMatrix4x4& abo
       const aiVector3D point = pose * mesh.mVertices[k];
       if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z))
         throw std::runtime_error("a point of it is no number");
-      points.push_back({point.x, point.y, point.z});
+      points.emplace_back(point.x, point.y, point.z);
     }
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i) add_points(scene, *node.mChildren[i], pose, depth + 1, points);
 }
 
-std::vector<Point> read_points(const char* file) {
+std::vector<btVector3> read_points(const char* file) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // as ROS does: x y z are as they stand
   const aiScene* const scene = importer.ReadFile(file, aiProcess_ValidateDataStructure);
   if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
-  std::vector<Point> points;
+  std::vector<btVector3> points;
   if (scene->mRootNode != nullptr) add_points(*scene, *scene->mRootNode, aiMatrix4x4(), 0, points);
   if (points.empty()) throw std::runtime_error("it has no points");
   return points;
@@ -62,15 +62,15 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "usage: kadans-hull FILE CORNERS, %zu to %zu\n", corners_least, corners_most);
     return 2;
   }
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their shadow of the memory is larger
+#ifndef KADANS_SANITIZED  // a sanitizer's shadow of the memory is larger
   bound(RLIMIT_AS, memory_max_bytes);
 #endif
   bound(RLIMIT_CPU, cpu_max_s);
   bound(RLIMIT_CORE, 0);
-  const Hull hull = convex_hull(read_points(argv[1]), static_cast<std::size_t>(corners));
-  std::printf("{\"exact\": %zu, \"left_out\": %.9g, \"corners\": [", hull.exact, hull.left_out);
-  for (const Point& corner : hull.corners)
-    std::printf("%s[%.17g, %.17g, %.17g]", &corner == hull.corners.data() ? "" : ", ", corner[0], corner[1], corner[2]);
+  const std::vector<btVector3> hull = convex_hull(read_points(argv[1]), static_cast<std::size_t>(corners));
+  std::printf("{\"corners\": [");
+  for (const btVector3& corner : hull)
+    std::printf("%s[%.17g, %.17g, %.17g]", &corner == hull.data() ? "" : ", ", corner.x(), corner.y(), corner.z());
   std::printf("]}\n");
   return 0;
 }

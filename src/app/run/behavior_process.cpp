@@ -44,6 +44,7 @@ ScenarioConfig live_scenario(const RunOptions& options) {
   scenario.name = "run";
   scenario.plant = options.plant;
   scenario.peer = options.peer;
+  scenario.imu = options.imu;
   scenario.read_only = options.read_only;
   scenario.joystick_device = options.joystick;
   scenario.on_wall_clock = !options.virtual_time;

@@ -1,6 +1,8 @@
 // `kadans plant`: serves a model of a robot in real time to control engines on other machines, one after the other.
 // Each session begins with the robot in its configured start.
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +17,7 @@
 #include "app/timing/run_report.h"
 #include "config/json/foreign_json.h"
 #include "kadans/plant/plant_type.h"
+#include "plant/imu/emulator/imu_server.h"
 #include "real_time_start.h"
 #include "realtime/machine/keep_awake.h"
 #include "realtime/machine/machine.h"
@@ -45,6 +48,31 @@ class ServeTask final : public Task {
   std::uint64_t lost_periods_ = 0;
 };
 
+// "drive_hot:tilt@3+1=85". Throws std::invalid_argument.
+EmulatedFault read_fault(const std::string& text) {
+  EmulatedFault fault;
+  const std::size_t at = text.find('@');
+  const std::string what = text.substr(0, at);
+  const std::size_t colon = what.find(':');
+  fault.kind = what.substr(0, colon);
+  if (colon != std::string::npos) fault.of = what.substr(colon + 1);
+  const auto number = [&](std::size_t from, std::size_t until) {
+    double value = 0;
+    const char* const end = text.data() + std::min(until, text.size());
+    const auto [rest, error] = std::from_chars(text.data() + from, end, value);
+    if (error != std::errc() || rest != end || !(std::abs(value) <= 1e6))
+      throw std::invalid_argument("'" + text.substr(from, until - from) + "' is no number");
+    return value;
+  };
+  if (at == std::string::npos) throw std::invalid_argument("says no time: @ and seconds after the first torque");
+  const std::size_t equals = std::min(text.find('=', at), text.size()), plus = std::min(text.find('+', at), equals);
+  fault.from_s = number(at + 1, plus);
+  if (plus < equals) fault.until_s = fault.from_s + number(plus + 1, equals);
+  if (equals < text.size()) fault.size = number(equals + 1, text.size());
+  if (!(fault.from_s >= 0 && fault.until_s > fault.from_s)) throw std::invalid_argument("times must be above 0");
+  return fault;
+}
+
 class PlantService {
  public:
   explicit PlantService(const PlantOptions& options) : options_(options), robot_(read_robot(options.robot)) {
@@ -74,6 +102,34 @@ class PlantService {
       return served_.make_world({config.model, config.plant, options_.seed});
     } catch (const std::invalid_argument& error) {
       throw InputError({.file = config.file, .message = error.what()});
+    }
+  }
+
+  std::unique_ptr<PlantEmulator> make_emulator() const {
+    const PlantType& type = plant_type_named(robot_.config, "--as", {options_.as, {}}, &PlantType::is_protocol);
+    PlantSite site = plant_site(robot_.config, "");
+    site.seed = options_.seed;
+    std::unique_ptr<PlantEmulator> drives = type.make_emulator(site, options_.listen);
+    if (options_.imu.empty()) {
+      plan_faults(*drives);
+      return drives;
+    }
+    const imu::SerialImuSettings settings = serial_imu_at(robot_.config, type, "--imu", options_.imu);
+    if (!settings.given())
+      throw InputError({.file = "--imu", .message = "the protocol '" + options_.as + "' has the IMU in its frames"});
+    auto both = std::make_unique<imu::ImuServer>(std::move(drives), settings, robot_.config.plant.imu.pose.orientation,
+                                                 options_.imu);
+    plan_faults(*both);
+    return both;
+  }
+
+  void plan_faults(PlantEmulator& drives) const {
+    for (const std::string& text : options_.faults) {
+      try {
+        drives.plan_faults({read_fault(text)});
+      } catch (const std::invalid_argument& error) {
+        throw InputError({.file = "--fault", .message = text + ": " + error.what()});
+      }
     }
   }
 
@@ -133,9 +189,7 @@ class PlantService {
   const PlantOptions& options_;
   Robot robot_;
   const PlantType& served_ = plant_type_named(robot_.config, "--plant", {options_.plant, {}}, &PlantType::is_model);
-  std::unique_ptr<PlantEmulator> emulator_ =
-      plant_type_named(robot_.config, "--as", {options_.as, {}}, &PlantType::is_protocol)
-          .make_emulator(plant_site(robot_.config, ""), options_.listen);
+  std::unique_ptr<PlantEmulator> emulator_ = make_emulator();
 };
 
 }  // namespace
@@ -152,6 +206,10 @@ void add_plant(CLI::App& app, PlantOptions& options) {
           "serial port, which is made")
       ->required()
       ->type_name("HOST:PORT|PATH");
+  plant
+      ->add_option("--imu", options.imu,
+                   "Serve the robot's plant.serial_imu, too: the path of a serial port, which is made")
+      ->type_name("PATH");
   const auto names = [](bool (PlantType::*is)() const noexcept) {
     return CLI::detail::join(plant_type_names(is), ", ");
   };
@@ -166,6 +224,13 @@ void add_plant(CLI::App& app, PlantOptions& options) {
   plant->add_option("--seed", options.seed, "Seed of the model's random numbers (default: 1)")
       ->type_name("N")
       ->check(any_seed());
+  plant
+      ->add_option(
+          "--fault", options.faults,
+          "What befalls the bus or its drives, S seconds after the first torque, for D seconds: cable_out@2+0.5, "
+          "bytes_lost@1+4=0.02, drive_hot:tilt@3=85")
+      ->type_name("KIND[:OF]@S[+D][=SIZE]")
+      ->allow_extra_args(false);
   plant->add_flag("--once", options.once, "End with the first session");
   plant->add_flag("--in-step", options.in_step,
                   "Let time pass with the peer's ticks, not with the clock: for a peer that is emulated or debugged");

@@ -1,7 +1,6 @@
 #include "mesh_hull.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,6 +12,7 @@
 
 #include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
+#include "project_root.h"
 #include "realtime/machine/child_process.h"
 #include "signal/content_hash.h"
 #include "signal/durable_file.h"
@@ -33,17 +33,6 @@ fs::path hull_program() {
     if (fs::exists(folder / "kadans-hull", error)) return folder / "kadans-hull";
   }
   return {};
-}
-
-// Where hulls are kept; empty: nowhere.
-fs::path cache_folder() {
-  const auto variable = [](const char* name) -> fs::path {
-    const char* const value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): no thread changes it
-    return value == nullptr ? "" : value;
-  };
-  if (const fs::path cache = variable("XDG_CACHE_HOME"); cache.is_absolute()) return cache / "kadans" / "hulls";
-  const fs::path home = variable("HOME");
-  return home.is_absolute() ? home / ".cache" / "kadans" / "hulls" : fs::path();
 }
 
 // nullopt when the text is not what the program writes.
@@ -71,10 +60,10 @@ std::string read_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-void keep(const fs::path& folder, const std::string& name, std::string_view text) {
+void keep(const fs::path& file, std::string_view text) {
   try {
-    fs::create_directories(folder);
-    write_durably(folder / name, text);
+    fs::create_directories(file.parent_path());
+    write_durably(file, text);
   } catch (const std::exception&) {  // it is read again the next time
   }
 }
@@ -87,10 +76,10 @@ std::vector<Vec3> mesh_hull(const std::string& file) {
   hash.add(mesh_corners_max);
   hash.add(fs::path(file).extension().string());  // by which its format is known
   hash.add_file(file);
-  const fs::path folder = cache_folder();
-  const std::string name = hash.hex() + ".json";
+  const fs::path folder = user_folder("XDG_CACHE_HOME", ".cache");
+  const fs::path kept = folder / "hulls" / (hash.hex() + ".json");
   if (!folder.empty()) {
-    if (const auto kept = corners_in(read_text(folder / name))) return *kept;
+    if (const auto corners = corners_in(read_text(kept))) return *corners;
   }
   const fs::path program = hull_program();
   if (program.empty()) return {};
@@ -102,7 +91,7 @@ std::vector<Vec3> mesh_hull(const std::string& file) {
     if (why.empty()) why = "its reader ended without a word";
     throw InputError({.file = file, .message = "cannot be read as a mesh: " + why});
   }
-  if (!folder.empty()) keep(folder, name, made.out);
+  if (!folder.empty()) keep(kept, made.out);
   return *corners;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -94,6 +95,13 @@ fs::path resolve_file(std::string_view path, TextPlace place, std::string_view w
     problems.add(place, std::string(what) + ": " + in_quotes(path) + " is no path");
   }
   return {};
+}
+
+std::filesystem::path user_folder(const char* variable, const char* below_home) {
+  const char* const named = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): no thread changes it
+  const char* const home = std::getenv("HOME");     // NOLINT(concurrency-mt-unsafe)
+  if (named != nullptr && *named == '/') return fs::path(named) / "kadans";
+  return home != nullptr && *home == '/' ? fs::path(home) / below_home / "kadans" : fs::path();
 }
 
 }  // namespace kadans

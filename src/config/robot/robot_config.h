@@ -22,6 +22,7 @@
 #include "kadans/plant/plant_type.h"
 #include "kadans/plant/settings.h"
 #include "kadans/signal/input_error.h"
+#include "plant/imu/settings.h"
 #include "plant/joystick/settings.h"
 #include "record_config.h"
 #include "safety/settings.h"
@@ -62,6 +63,7 @@ struct RobotConfig {
   EngineSettings engine;
   PlantSettings plant;
   PlantTypes plant_types = kadans::plant_types();  // with this robot's settings
+  imu::SerialImuSettings serial_imu;               // beside a bus with drives
   JoystickSettings joystick;                       // engine.joystick is true when the file has one
   EstimateSettings estimate;
   SafetySettings safety;

@@ -1,5 +1,6 @@
 // The parts of a robot's configuration that stand on plant, start, estimator and safety.
 #include <algorithm>
+#include <cmath>
 
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/input_error.h"
@@ -9,8 +10,6 @@
 #include "signal/nearest_name.h"
 
 namespace kadans {
-
-// The parts of a robot's configuration that stand on plant, start and estimator.
 
 namespace {
 
@@ -207,10 +206,8 @@ void RobotReader::surface(Fields& entry) {
   entry.number("friction", surface.friction, {0, 10}, "coefficient of friction", Need::required);
   if (!have_model_) return;
   const std::vector<std::string> links = config_.model.link_names();
-  const std::vector<std::size_t> chosen = matching(entry.key(), links);
-  if (chosen.empty()) problems_.add_unknown(entry.key_place(), "link", entry.key(), links);
   std::vector<SurfaceSettings>& all = config_.plant.surfaces;
-  for (const std::size_t i : chosen) {
+  for (const std::size_t i : chosen(entry.key(), entry.key_place(), "link", links)) {
     std::erase_if(all, [&](const SurfaceSettings& s) { return s.link == links[i]; });
     all.push_back({links[i], surface.friction});
   }
@@ -239,9 +236,7 @@ void RobotReader::collision(Fields& entry) {
     }
   }
   const std::vector<std::string> links = config_.model.link_names();
-  const std::vector<std::size_t> chosen = matching(entry.key(), links);
-  if (chosen.empty()) problems_.add_unknown(entry.key_place(), "link", entry.key(), links);
-  for (const std::size_t i : chosen) {
+  for (const std::size_t i : chosen(entry.key(), entry.key_place(), "link", links)) {
     std::vector<Geometry>& all = config_.model.links[*config_.model.find_link(links[i])].collisions;
     if (as == As::nothing || !given.empty()) std::erase_if(all, [&](const Geometry& g) { return g.link == links[i]; });
     for (Geometry geometry : given) {
@@ -304,6 +299,14 @@ void RobotReader::plant(Fields& f) {
     });
   });
   f.object("imu", "inertial measurement unit on the base link", [&](Fields& e) { imu(e); });
+  f.object("serial_imu", "an IMU on a serial line of its own, beside a bus with drives", [&](Fields& e) {
+    TypeFields fields(e, problems_, drive_names_);
+    config_.serial_imu.fields(fields);
+  });
+  if (config_.serial_imu.given()) {
+    const double readings = 1e-9 * static_cast<double>(config_.engine.control_period_ns()) * config_.serial_imu.rate_Hz;
+    config_.estimate.imu_divisor = static_cast<std::uint32_t>(std::max(1.0, std::ceil(1 / readings - 1e-9)));
+  }
   f.list("feet", {0, max_feet}, "soles with four pressure sensors", [&](Fields& e) { foot(e); });
   f.map("surfaces", "friction of the links' surfaces by link pattern", [&](Fields& entry) { surface(entry); });
   f.map("collisions", "how links collide, by link pattern", [&](Fields& entry) { collision(entry); });

@@ -118,6 +118,7 @@ struct ScenarioConfig {
   std::string robot;             // path of the robot's configuration, resolved
   std::string plant = "bullet";  // name of a plant type (plant_type.h); a file may name only a model
   TextPlace plant_place;         // in a file that names one
+  std::string imu;   // not in the file: the device of the IMU beside it; "": the one in the robot's configuration
   std::string peer;  // not in the file: address of a plant that is no model; "": the one in the robot's configuration
   bool read_only = false;  // not in the file: nothing is asked of the drives
   double duration_s = 0;

@@ -46,6 +46,7 @@ struct BodySettings {
   double balance_m = 0.03;      // how far the centre of mass, and the point over which it comes to rest, stay from them
   double effort_share = 0.9;    // of the joints' torque limits
   double velocity_share = 0.8;  // of their velocity limits
+  double tilt_max_rad = 3.2;    // of the trunk, on the way of a motion
   double posture_weight = 1e-3, posture_per_s = 2;
   double passive_Nm_per_rad = 0, passive_Nms_per_rad = 0;  // springs and dampers in joints without motors
 };

@@ -19,7 +19,8 @@ constexpr double step_max_rad = 0.4;                     // of a joint, in one s
 constexpr double bent_share = 0.33;                      // of the weight, that the foot which bears less still bears
 constexpr double back_m = 0.03;  // how far the centre of mass comes back over the soles in one step
 constexpr double still = 5e-4;   // a step after which no other is made
-constexpr double reached_m = 0.005, reached_rad = 0.01;  // what counts as reached
+// What counts as reached. Where both feet stand, a turn is known no better than their springs bend and encoders read.
+constexpr double reached_m = 0.005, reached_rad = 0.02;
 constexpr double at_once = 2.4;      // the time in which a task without a motion gets there, times its gain
 constexpr double told_share = 1.02;  // of the least time, so that what is told is enough when it is asked for again
 
@@ -53,6 +54,7 @@ Foresight::Miss BodyReach::miss(const Asked& asked, const Snapshot& snapshot) no
   for (int step = 0; step < last_steps_max && missed.why != Why::none && improve(last_weight); ++step) missed = worst();
   const BodyWay::Time least = gone_.time();
   if (missed.why != Why::none) return missed;
+  if (!(tilt_rad_ <= settings_.tilt_max_rad)) return {.why = Why::tilt, .by = tilt_rad_};
   if (clashing_.found())
     return {.why = Why::clash, .by = clear_share_, .link = clashing_.link, .other = clashing_.other};
   if (least.jumps != no_body_joint) return {.why = Why::jump, .by = least.smooth_share, .joint = least.jumps};
@@ -82,12 +84,15 @@ void BodyReach::go(const Setpoints& from, const Setpoints& to, double time_s) no
   gone_.begin(settings_, support_, way_steps, time_s);
   clash_.begin(model_);
   clashing_ = {};
+  tilt_rad_ = 0;
   for (int number = 0; number <= way_steps + end_steps_max; ++number) {
     const double u = std::min(1.0, static_cast<double>(number + 1) / way_steps);
     const double share = u * u * u * (10 + u * (6 * u - 15));
     for (std::uint32_t i = 0; i < layout_->contact_channel; ++i)
       setpoints_[i].value = from[i].value + share * (to[i].value - from[i].value);
     const bool moves = improve(way_weight);
+    if (layout_->floating)
+      tilt_rad_ = std::max(tilt_rad_, std::acos(std::clamp(rotate(model_.base.orientation, {0, 0, 1})[2], -1.0, 1.0)));
     // The links are still where they were before the step.
     if (number < way_steps) gone_.add(model_, way_);
     if (!clashing_.found()) {

@@ -62,6 +62,7 @@ class BodyReach final : public Foresight {
   BodyWay gone_;
   BodyClash clash_;
   BodyClash::Pair clashing_;
+  double tilt_rad_ = 0;     // the largest of the trunk on the way
   double clear_share_ = 0;  // of the way, until they are too near
 };
 

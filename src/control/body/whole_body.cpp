@@ -216,6 +216,8 @@ void WholeBody::declare_ground(Declaration& d) {
   d.parameter({"balance_m", "m", 0, 0.05, 0.03,
                "How far the centre of mass, and the point over which it comes to rest, stay from the edges."},
               &s.balance_m);
+  d.parameter({"tilt_max_rad", "rad", 0, 3.2, 3.2, "How far the trunk may lean on the way of a motion."},
+              &s.tilt_max_rad);
   d.parameter({"passive_Nm_per_rad", "Nm/rad", 0, 1000, 0, "Springs in joints without a motor."},
               &s.passive_Nm_per_rad);
   d.parameter({"passive_Nms_per_rad", "Nm s/rad", 0, 100, 0, "Dampers in joints without a motor."},

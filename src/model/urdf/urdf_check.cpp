@@ -271,7 +271,7 @@ class MeshFiles {
   static std::string where(const std::string& name) {
     const std::string of = shown(package(name));
     if (!of.empty()) return "; --package " + of + "=FOLDER or ROS_PACKAGE_PATH says where the package is";
-    return scheme(name).empty() ? "; its path starts from the URDF's folder" : "";
+    return scheme(name).empty() ? "; its path starts from this file's folder" : "";
   }
 
   UrdfDocument& document_;

@@ -14,6 +14,11 @@
 
 namespace kadans {
 
+// A limit of this size says that nobody knew it. As a speed it stays finite, so that it can be multiplied.
+inline constexpr double no_limit = 1e6;
+
+inline constexpr std::size_t description_max_bytes = std::size_t{2} << 20U;  // of a file, with what it includes
+
 struct UrdfMaterial {
   std::string name;
   std::optional<std::array<double, 4>> color;

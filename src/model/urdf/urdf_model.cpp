@@ -11,8 +11,6 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t max_size = std::size_t{2} << 20U;
-
 // The description has been checked: a tree, mimics without rings.
 class Merger {
  public:
@@ -132,14 +130,15 @@ Pose motion_of(const Joint& joint, double position) noexcept {
 }
 
 RobotModel read_urdf(const std::string& file, const UrdfOptions& options, std::vector<InputProblem>* warnings) {
-  return read_urdf_text(read_input_file(file, max_size), file, options, warnings);
+  return read_urdf_text(read_input_file(file, description_max_bytes), file, options, warnings);
 }
 
 RobotModel read_urdf_text(const std::string& text, const std::string& file, const UrdfOptions& options,
                           std::vector<InputProblem>* warnings) {
   const auto fail = [&](const std::string& what) { throw InputError(InputProblem{file, 0, 0, what}); };
   if (text.empty()) fail("the file is empty");
-  if (text.size() > max_size) fail("the file has " + std::to_string(text.size()) + " bytes, a URDF may have 2 MiB");
+  if (text.size() > description_max_bytes)
+    fail("the file has " + std::to_string(text.size()) + " bytes, a URDF may have 2 MiB");
   UrdfDocument document(text, file);
   UrdfDescription robot = read_description(document);
   check_description(document, robot, options);

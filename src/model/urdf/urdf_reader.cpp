@@ -49,9 +49,6 @@ void find_xacro(UrdfDocument& document, const tinyxml2::XMLElement& element) {
   }
 }
 
-// A limit of this size says that nobody knew it. As a speed it stays finite, so that it can be multiplied.
-constexpr double no_limit = 1e6;
-
 class UrdfReader {
  public:
   explicit UrdfReader(UrdfDocument& document) : document_(document) {}

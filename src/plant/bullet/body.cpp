@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "convert.h"
+#include "signal/number_text.h"
 
 namespace kadans::bullet {
 namespace {
@@ -17,11 +21,51 @@ double friction_of(const RobotModel& model, const PlantSettings& settings, std::
   return friction;
 }
 
-bool overlaps(const btPersistentManifold& manifold) {
+// How deep the two bodies are in each other; negative when they only come near.
+double depth_m(const btPersistentManifold& manifold) {
+  double depth = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < manifold.getNumContacts(); ++i) {
-    if (manifold.getContactPoint(i).getDistance() <= 0) return true;
+    depth = std::max<double>(depth, -manifold.getContactPoint(i).getDistance());
   }
-  return false;
+  return depth;
+}
+
+// Two links, or one and the ground, that overlap.
+struct Overlap {
+  std::size_t link = 0;
+  std::optional<std::size_t> other;  // nothing: the ground
+  double depth_m = 0;
+};
+
+// What overlaps of pairs that may collide where the settings place the robot, the links of a fixed base left out.
+std::vector<Overlap> overlaps_at(Body& body, const PlantSettings& settings, PairMask& mask) {
+  body.place(settings);
+  ContactWorld world({.gravity_m_s2 = btVector3(0, 0, 0), .ground = to_bullet(ground_pose(settings.world))}, mask);
+  body.add_to(world);
+  world.detect_collisions();
+  std::vector<Overlap> found;
+  for (int i = 0; i < world.manifold_count(); ++i) {
+    const btPersistentManifold& manifold = world.manifold(i);
+    const auto* a = btMultiBodyLinkCollider::upcast(manifold.getBody0());
+    const auto* b = btMultiBodyLinkCollider::upcast(manifold.getBody1());
+    Overlap overlap{.depth_m = depth_m(manifold)};
+    if (overlap.depth_m < 0 || (a == nullptr && b == nullptr)) continue;
+    overlap.link = model_link((a != nullptr ? a : b)->m_link);
+    if (a != nullptr && b != nullptr) overlap.other = model_link(b->m_link);
+    found.push_back(overlap);
+  }
+  return found;
+}
+
+// "l_knee at 2.1" for each joint between a link and the robot's base that is not at 0.
+void tell_joints(const RobotModel& model, const PlantSettings& settings, std::size_t link, std::string& text) {
+  for (; link != 0; link = model.joints[link - 1].parent) {
+    const std::size_t joint = link - 1;
+    const double position = joint < settings.position_rad.size() ? settings.position_rad[joint] : 0;
+    const std::string& name = model.joints[joint].name;
+    if (position == 0 || text.find("'" + name + "'") != std::string::npos) continue;
+    text += (text.empty() ? "'" : ", '") + name + "' at " + printed("%.4g", position);
+  }
 }
 
 void set_up_joint(btMultiBody& body, const RobotModel& model, const std::vector<LinkFrame>& frames, std::size_t index) {
@@ -216,22 +260,37 @@ PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings) 
   }
   for (std::size_t i = 0; i < model.joints.size(); ++i) mask.forbid(model.joints[i].parent, i + 1);
   Body body(model, settings);
-  ContactWorld world({.gravity_m_s2 = btVector3(0, 0, 0)}, mask);
   PlantSettings zero_pose;
   zero_pose.stand_on_ground = false;
   zero_pose.base.position_m = {0, 0, 100};  // clear of the ground
-  body.place(zero_pose);
-  body.add_to(world);
-  world.detect_collisions();
-  std::vector<std::pair<int, int>> touching;
-  for (int i = 0; i < world.manifold_count(); ++i) {
-    const btPersistentManifold& manifold = world.manifold(i);
-    const auto* a = btMultiBodyLinkCollider::upcast(manifold.getBody0());
-    const auto* b = btMultiBodyLinkCollider::upcast(manifold.getBody1());
-    if (a != nullptr && b != nullptr && overlaps(manifold)) touching.emplace_back(a->m_link, b->m_link);
+  for (const Overlap& overlap : overlaps_at(body, zero_pose, mask)) {
+    if (overlap.other) mask.forbid(overlap.link, *overlap.other);
   }
-  for (const auto& [a, b] : touching) mask.forbid(model_link(a), model_link(b));
   return mask;
+}
+
+void check_start(const RobotModel& model, const PlantSettings& settings, PairMask& mask) {
+  Body body(model, settings);
+  Overlap worst{.depth_m = start_depth_max_m};
+  for (const Overlap& overlap : overlaps_at(body, settings, mask)) {
+    if (overlap.depth_m > worst.depth_m) worst = overlap;
+  }
+  if (!(worst.depth_m > start_depth_max_m)) return;
+  std::string joints;
+  tell_joints(model, settings, worst.link, joints);
+  if (worst.other) tell_joints(model, settings, *worst.other, joints);
+  const std::string with = joints.empty() ? " with all its joints at 0" : " with " + joints;
+  const std::string link =
+      "link '" + model.links[worst.link].name + "' is " + printed("%.0f", 1000 * worst.depth_m) + " mm deep in ";
+  if (worst.other) {
+    throw std::invalid_argument("start: " + link + "link '" + model.links[*worst.other].name + "'" + with +
+                                "; start in another pose, or let the two pass through each other (collisions)");
+  }
+  throw std::invalid_argument("start: " + link + "the ground" + with + " and the base at a height of " +
+                              printed("%.3g", settings.base.position_m[2]) + " m; " +
+                              (settings.fixed_base
+                                   ? "a fixed base stays where it is put: start higher (start.position_m)"
+                                   : "start higher, or with stand_on_ground"));
 }
 
 }  // namespace kadans::bullet

@@ -61,4 +61,11 @@ class Body {
 // Forbids parents with their children, and all other pairs that touch while all joints are at 0.
 PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings);
 
+// What begins deep in something is thrown out of it in the first steps, at any speed.
+inline constexpr double start_depth_max_m = 0.005;
+
+// Throws std::invalid_argument when the robot starts deeper than that in the ground or in itself, with the pair, the
+// depth and what may be done.
+void check_start(const RobotModel& model, const PlantSettings& settings, PairMask& mask);
+
 }  // namespace kadans::bullet

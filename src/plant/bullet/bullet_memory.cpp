@@ -81,7 +81,7 @@ class Blocks {
 
 constinit Blocks blocks;
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef KADANS_SANITIZED
 // Before main(): what Bullet got from elsewhere must not come back here.
 [[maybe_unused]] const bool hooked = [] {
   btAlignedAllocSetCustom([](std::size_t bytes) { return blocks.take(bytes); },

@@ -33,6 +33,7 @@ BulletRobot::BulletRobot(const WorldSite& site, const PlantSettings& settings, F
       sensors_(site.model, settings, site.seed),
       truth_(body_, site.model.joints.size()),
       world_(world_options(settings, friction), mask_) {
+  check_start(site.model, settings_, mask_);
   body_.place(settings_);
   body_.add_to(world_);
   if (first) objects.add_to(world_);

@@ -9,7 +9,6 @@
 #include <pthread.h>
 
 #include "kadans/signal/input_error.h"
-#include "plant/drive_samples.h"
 
 namespace kadans::dynamixel {
 namespace {
@@ -80,8 +79,7 @@ DynamixelPlant::~DynamixelPlant() { close(); }
 
 bool DynamixelPlant::open(bool (*give_up)() noexcept) {
   if (serial_.empty()) {
-    for (const PortSettings& port : settings_.ports)
-      serial_.push_back(std::make_unique<TerminalPort>(port.device, port.baud));
+    for (const PortSettings& port : settings_.ports) serial_.push_back(open_port(port.device, port.baud, port.place));
   }
   const std::vector<std::string> drives = drive_names(site_.layout.joints, site_.transmissions);
   for (std::size_t i = 0; i < settings_.ports.size(); ++i) {

@@ -25,7 +25,9 @@ PortCycle::PortCycle(SerialPort& port, const Timing& timing, std::vector<Servo> 
 }
 
 void PortCycle::fail(const Servo& servo, const std::string& where, const std::string& why) const {
-  throw InputError({.message = id_and_drive(servo) + " on " + where + " " + why});
+  InputProblem problem = servo.settings().place;
+  problem.message = id_and_drive(servo) + " on " + where + " " + why;
+  throw InputError(problem);
 }
 
 std::string PortCycle::others_that_answer(const Servo& but) {

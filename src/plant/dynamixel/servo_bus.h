@@ -8,14 +8,9 @@
 
 #include "control_table.h"
 #include "packet.h"
-#include "serial_port.h"
+#include "plant/serial/serial_port.h"
 
 namespace kadans::dynamixel {
-
-// The time that bytes take on the wire: 10 bits each.
-constexpr std::int64_t wire_ns(std::size_t bytes, std::uint32_t baud) noexcept {
-  return static_cast<std::int64_t>(bytes) * 10'000'000'000 / static_cast<std::int64_t>(baud);
-}
 
 enum class Answer : std::uint8_t { good, silence, garbage, refused };
 

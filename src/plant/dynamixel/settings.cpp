@@ -18,6 +18,7 @@ void port_fields(PlantFields& entry, PortSettings& port) {
   entry.string("device", port.device, "the serial port, such as /dev/serial/by-id/NAME");
   entry.integer("baud", port.baud, {9600, 10'000'000, "Bd"}, "baud rate that its servos are set to");
   if (!entry.reading()) return;
+  port.place = entry.place("device");
   if (!is_word(port.name)) entry.refuse("", "'" + port.name + "' is no name for a port: letters, digits and '_'");
   if (port.device.empty()) entry.refuse("", "port '" + port.name + "' names no device");
   if (std::ranges::find(baud_rates, port.baud) == baud_rates.end()) entry.refuse("baud", unknown_baud(port.baud));
@@ -80,6 +81,7 @@ void DynamixelSettings::fields(PlantFields& f) {
                      "its torque constant; 0: its stall torque by its stall current");
         if (!entry.reading()) return;
         servo.model = find_model(model);
+        servo.place = entry.place("");
         check_servo(entry, servo, model);
         servos.push_back(servo);
       },

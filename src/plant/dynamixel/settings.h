@@ -14,6 +14,7 @@ struct PortSettings {
   std::string name;
   std::string device;
   std::uint32_t baud = 1'000'000;
+  InputProblem place{};  // of its device in the configuration
 };
 
 struct ServoSettings {
@@ -24,6 +25,7 @@ struct ServoSettings {
   std::uint32_t zero_pulse = 2048;  // its position when the drive is at 0
   bool reversed = false;            // counts in the opposite direction
   double Nm_per_A = 0;              // 0: the model's, from its stall torque and current
+  InputProblem place{};             // in the configuration, for what only the servo shows
 
   double torque_constant_Nm_per_A() const noexcept { return Nm_per_A > 0 ? Nm_per_A : model->Nm_per_A(); }
 };

@@ -17,7 +17,7 @@ class DynamixelType final : public PlantType {
 
   std::unique_ptr<Plant> make_plant(const PlantSite& site) const override {
     return std::make_unique<dynamixel::DynamixelPlant>(settings_at(site, site.peer), site,
-                                                       std::vector<std::unique_ptr<dynamixel::SerialPort>>(),
+                                                       std::vector<std::unique_ptr<SerialPort>>(),
                                                        dynamixel::DynamixelPlant::Threads::own);
   }
   bool is_protocol() const noexcept override { return true; }
@@ -41,7 +41,10 @@ class DynamixelType final : public PlantType {
     if (!device.empty() && settings.ports.size() > 1)
       throw InputError(
           {.file = "--peer", .message = "the robot has several serial ports: write their devices in " + site.file});
-    if (!device.empty()) settings.ports.front().device = device;
+    if (!device.empty()) {
+      settings.ports.front().device = device;
+      settings.ports.front().place = {.file = "--peer"};
+    }
     return settings;
   }
 

@@ -1,8 +1,9 @@
-// An amplifier that takes a PWM's duty for a current or a voltage, and the motor with its gear behind it.
+// An amplifier that takes a PWM's duty for a current, a voltage or a velocity, and the motor with its gear behind it.
 //
 //   effort = Nm_per_A gear efficiency I            at the joint, seen from the drive
 //   current amplifier    I = duty full
 //   voltage amplifier    duty full = I Ohm + Nm_per_A gear w      (Nm/A = Vs/rad)
+//   velocity amplifier   effort = gain (duty full / gear - w)     its own loop, of that gain at the joint
 //
 // The torque is open loop: its error is that of these constants, and of friction in the gear beyond the efficiency.
 #pragma once
@@ -13,14 +14,15 @@
 namespace kadans::hostmot2 {
 
 struct AmplifierSettings {
-  enum class Kind : unsigned char { current, voltage };
+  enum class Kind : unsigned char { current, voltage, velocity };
   Kind kind = Kind::current;
-  double full = 1;           // A or V at full duty
-  double current_max_A = 1;  // never more than this
-  double winding_Ohm = 1;    // of a voltage amplifier's motor
-  double Nm_per_A = 1;       // of the motor's own shaft
-  double gear = 1;           // turns of the motor for one of the joint, > 0
-  double efficiency = 1;     // of the gear, 0..1
+  double full = 1;              // A, V, or rad/s of the motor, at full duty
+  double current_max_A = 1;     // never more than this
+  double gain_Nms_per_rad = 1;  // > 0, of a velocity amplifier's own loop
+  double winding_Ohm = 1;       // of a voltage amplifier's motor
+  double Nm_per_A = 1;          // of the motor's own shaft
+  double gear = 1;              // turns of the motor for one of the joint, > 0
+  double efficiency = 1;        // of the gear, 0..1
 };
 
 class Amplifier {
@@ -44,6 +46,10 @@ class Amplifier {
     if (settings_.kind == AmplifierSettings::Kind::current) {
       duty = std::clamp(current_A / settings_.full, -1.0, 1.0);
       current_A = duty * settings_.full;
+    } else if (settings_.kind == AmplifierSettings::Kind::velocity) {
+      const double asked_rad_s = velocity_rad_s + Nm_per_A_ * current_A / settings_.gain_Nms_per_rad;
+      duty = std::clamp(asked_rad_s * settings_.gear / settings_.full, -1.0, 1.0);
+      current_A = settings_.gain_Nms_per_rad * (duty * settings_.full / settings_.gear - velocity_rad_s) / Nm_per_A_;
     } else {
       const double back_V = Vs_per_rad_ * velocity_rad_s;
       duty = std::clamp((current_A * settings_.winding_Ohm + back_V) / settings_.full, -1.0, 1.0);

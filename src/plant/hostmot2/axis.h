@@ -1,7 +1,8 @@
 // One drive: its encoder, its amplifier's PWM, its pins; what is asked of it and what is wrong with it.
 //
-// The amplifier gets a current or a voltage, so effort is what follows from the motor's constants (amplifier.h). The
-// loops of position, velocity and impedance are closed here, in each control tick, with the encoder's own velocity.
+// The amplifier gets a current, a voltage or a velocity; effort is what follows from the motor's constants
+// (amplifier.h). The loops of position, velocity and impedance are closed here, in each control tick, with the
+// encoder's own velocity.
 //
 // One owner, the control thread; nothing allocates or throws.
 #pragma once
@@ -31,7 +32,6 @@ class Axis {
   bool plan(const JointActuation& asked, const DriveRequest& order, double period_s) noexcept;
   // As the frames have it, in the drive's coordinate.
   const JointSample& sample() const noexcept { return sample_; }
-  double velocity_rad_s() const noexcept { return velocity_rad_s_; }
   std::uint32_t limited() const noexcept { return limited_; }
   std::uint32_t strange() const noexcept { return strange_readings_; }
 

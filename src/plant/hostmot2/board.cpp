@@ -21,8 +21,8 @@ std::uint32_t increment(double clock_Hz, double wanted_Hz) noexcept {
 
 }  // namespace
 
-Board::Board(BoardSettings settings, std::unique_ptr<BoardLink> link, double watchdog_s)
-    : settings_(std::move(settings)), link_(std::move(link)), watchdog_s_(watchdog_s) {}
+Board::Board(BoardSettings settings, std::unique_ptr<BoardLink> link)
+    : settings_(std::move(settings)), link_(std::move(link)) {}
 
 void Board::fail(const InputProblem& place, const std::string& why) const {
   InputProblem problem = place;
@@ -30,26 +30,18 @@ void Board::fail(const InputProblem& place, const std::string& why) const {
   throw InputError(problem);
 }
 
-void Board::check_pin(const OptionalPin& pin) const {
-  if (!pin) return;
-  if (pin->number >= modules_.pin_count())
-    fail(pin->place,
-         "has no pin " + std::to_string(pin->number) + ", only 0.." + std::to_string(modules_.pin_count() - 1));
-}
-
 void Board::check_wiring(const HostMot2Settings& all) const {
   const unsigned encoders = modules_.encoder ? modules_.encoder->instances : 0;
   const unsigned pwms = modules_.pwmgen ? modules_.pwmgen->instances : 0;
   const auto used = [&](const OptionalPin& pin) {
-    check_pin(pin);
     if (!pin) return;
+    if (pin->number >= modules_.pin_count())
+      fail(pin->place,
+           "has no pin " + std::to_string(pin->number) + ", only 0.." + std::to_string(modules_.pin_count() - 1));
     const PinUse use = modules_.pins[pin->number];
     for (const DriveWiring& drive : all.drives) {
       if (drive.board != settings_.name) continue;
-      const bool by_encoder = use.tag == static_cast<std::uint8_t>(ModuleTag::encoder) && use.unit == drive.encoder;
-      const bool by_pwm =
-          use.tag == static_cast<std::uint8_t>(ModuleTag::pwmgen) && drive.pwm && use.unit == *drive.pwm;
-      if (by_encoder || by_pwm)
+      if (use.is(ModuleTag::encoder, drive.encoder) || (drive.pwm && use.is(ModuleTag::pwmgen, *drive.pwm)))
         fail(pin->place, "has " + module_name(use.tag) + " " + std::to_string(use.unit) + " of drive '" + drive.drive +
                              "' on pin " + std::to_string(pin->number) + ": choose another pin");
     }
@@ -97,7 +89,7 @@ void Board::open(const HostMot2Settings& all) {
   } catch (const std::length_error& error) {
     fail(settings_.place, std::string("is used for too much: ") + error.what());
   }
-  list_set_up(all, watchdog_s_);
+  list_set_up(all);
   for (std::size_t i = 0; i < armed_from_; ++i) {  // the rest follows with the first tick
     if (!link_->write(set_up_[i])) fail(settings_.place, "stopped answering while it was set up");
   }
@@ -136,7 +128,7 @@ void Board::lay_out() {
   link_->lay_out(layout);
 }
 
-void Board::list_set_up(const HostMot2Settings& all, double watchdog_s) {
+void Board::list_set_up(const HostMot2Settings& all) {
   const Modules& m = modules_;
   std::vector<std::uint32_t> direction(m.ports), secondary(m.ports);
   const auto set = [&](std::vector<std::uint32_t>& words, std::size_t pin) {
@@ -161,9 +153,7 @@ void Board::list_set_up(const HostMot2Settings& all, double watchdog_s) {
     output(drive.enable);
     output(drive.brake);
     for (std::size_t pin = 0; pin < m.pins.size(); ++pin) {
-      const bool its = drive.pwm && m.pins[pin].tag == static_cast<std::uint8_t>(ModuleTag::pwmgen) &&
-                       m.pins[pin].unit == *drive.pwm;
-      if (its) set(direction, pin), set(secondary, pin);
+      if (drive.pwm && m.pins[pin].is(ModuleTag::pwmgen, *drive.pwm)) set(direction, pin), set(secondary, pin);
     }
     if (!drive.pwm) continue;
     enabled_pwms |= 1U << *drive.pwm;
@@ -172,7 +162,7 @@ void Board::list_set_up(const HostMot2Settings& all, double watchdog_s) {
     modes[*drive.pwm] =
         (pwm_bits_[*drive.pwm] - 9) | static_cast<std::uint32_t>(drive.output) << 3U | (pulses ? 0U : 1U << 5U);
   }
-  const double timeout = std::clamp(watchdog_s * m.clock_low_Hz, 1.0, 0x7FFF0000 * 1.0);
+  const double timeout = std::clamp(all.watchdog_s * m.clock_low_Hz, 1.0, 0x7FFF0000 * 1.0);
   set_up_ = {{m.watchdog->at(0), watchdog_off}, {m.watchdog->at(1), 0}};
   const auto each_port = [&](unsigned which, const std::vector<std::uint32_t>& words) {
     for (std::uint32_t port = 0; port < m.ports; ++port) set_up_.push_back({m.ioport->at(which, port), words[port]});

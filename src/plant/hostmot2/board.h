@@ -19,7 +19,7 @@ namespace kadans::hostmot2 {
 
 class Board {
  public:
-  Board(BoardSettings settings, std::unique_ptr<BoardLink> link, double watchdog_s);
+  Board(BoardSettings settings, std::unique_ptr<BoardLink> link);
 
   // Finds the modules, checks what this robot wants of them, sets everything up but watchdog and outputs: these follow
   // with the first repair(). Throws InputError with the place in the configuration.
@@ -58,9 +58,6 @@ class Board {
   void arm_latch(unsigned instance, bool for_probe) noexcept;
   void disarm_latch(unsigned instance) noexcept;
 
-  const BoardSettings& settings() const noexcept { return settings_; }
-  const Modules& modules() const noexcept { return modules_; }
-  BoardLink& link() noexcept { return *link_; }
   const BoardLink& link() const noexcept { return *link_; }
 
  private:
@@ -69,14 +66,12 @@ class Board {
 
   [[noreturn]] void fail(const InputProblem& place, const std::string& why) const;
   void check_wiring(const HostMot2Settings& all) const;
-  void check_pin(const OptionalPin& pin) const;
   void lay_out();
-  void list_set_up(const HostMot2Settings& all, double watchdog_s);
+  void list_set_up(const HostMot2Settings& all);
   void write_latch(unsigned instance, std::uint32_t control) noexcept;
 
   BoardSettings settings_;
   std::unique_ptr<BoardLink> link_;
-  double watchdog_s_;
   Modules modules_;
   double stamps_per_s_ = 1;
   std::vector<unsigned> pwm_bits_;  // of each

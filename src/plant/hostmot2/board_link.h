@@ -16,8 +16,6 @@
 
 namespace kadans::hostmot2 {
 
-using Octets = std::span<const std::uint8_t>;
-
 // Registers of 32 bits that lie side by side, by the address of the first, in bytes.
 struct RegisterBlock {
   std::uint16_t address = 0;

@@ -7,9 +7,11 @@
 #include <span>
 #include <string>
 
-#include "board_link.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans::hostmot2 {
+
+using Octets = std::span<const std::uint8_t>;
 
 class DatagramPort {
  public:
@@ -35,7 +37,7 @@ class UdpPort final : public DatagramPort {
   bool send(Octets datagram) noexcept override;
   std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
   void await(std::int64_t until_ns) noexcept override;
-  std::int64_t now_ns() const noexcept override;
+  std::int64_t now_ns() const noexcept override { return monotonic_ns(); }
 
  private:
   int descriptor_;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "kadans/signal/input_error.h"
-#include "plant/drive_samples.h"
 
 namespace kadans::hostmot2 {
 namespace {
@@ -32,23 +31,23 @@ constexpr NamedLinkCount link_count_names[] = {
 HostMot2Plant::HostMot2Plant(HostMot2Settings settings, PlantSite site, std::vector<std::unique_ptr<BoardLink>> links)
     : settings_(std::move(settings)), site_(std::move(site)) {
   for (std::size_t i = 0; i < settings_.boards.size(); ++i)
-    boards_.emplace_back(settings_.boards[i], std::move(links.at(i)), settings_.watchdog_s);
+    boards_.emplace_back(settings_.boards[i], std::move(links.at(i)));
   fresh_.resize(boards_.size());
   repair_.resize(boards_.size());
   const double period_s = 1e-9 * static_cast<double>(site_.layout.period_ns);
-  if (!(settings_.watchdog_s >= 2 * period_s))
+  const double bus_period_s = settings_.period_s > 0 ? settings_.period_s : period_s;
+  divisor_ = static_cast<std::uint32_t>(std::max(1L, std::lround(bus_period_s / period_s)));
+  if (std::abs(bus_period_s - divisor_ * period_s) > 1e-9)
+    throw InputError(
+        {.file = site_.file, .message = "plant.hm2-eth.period_s must be a whole multiple of the control period"});
+  if (!(settings_.watchdog_s >= 2 * bus_period_s))
     throw InputError(
         {.file = site_.file,
-         .message = "plant.hm2-eth.watchdog_s must be at least two control periods, each of which pets it"});
-  silent_ticks_max_ = std::max(5U, static_cast<std::uint32_t>(std::ceil(settings_.watchdog_s / period_s)));
+         .message = "plant.hm2-eth.watchdog_s must be at least two periods of the bus, each of which pets it"});
+  silent_ticks_max_ = std::max(5U, static_cast<std::uint32_t>(std::ceil(settings_.watchdog_s / bus_period_s)));
 }
 
 HostMot2Plant::~HostMot2Plant() { close(); }
-
-std::size_t HostMot2Plant::board_number(const std::string& name) const {
-  return static_cast<std::size_t>(std::ranges::find(settings_.boards, name, &BoardSettings::name) -
-                                  settings_.boards.begin());
-}
 
 std::size_t HostMot2Plant::place_in(const std::vector<std::string>& names, const std::string& name,
                                     const char* what) const {
@@ -64,20 +63,20 @@ std::size_t HostMot2Plant::place_in(const std::vector<std::string>& names, const
 void HostMot2Plant::wire() {
   const std::vector<std::string> drives = drive_names(site_.layout.joints, site_.transmissions);
   for (const DriveWiring& wiring : settings_.drives) {
-    const std::size_t board = board_number(wiring.board);
+    const std::size_t board = settings_.board_number(wiring.board);
     axes_.push_back({board, Axis(wiring, boards_[board], place_in(drives, wiring.drive, "drives"))});
   }
   for (const FootWiring& wiring : settings_.feet) {
     Foot foot{.number = place_in(site_.layout.feet, wiring.foot, "feet"),
-              .board = board_number(wiring.board),
+              .board = settings_.board_number(wiring.board),
               .closed_N = wiring.closed_N};
     for (std::size_t i = 0; i < foot.corners.size(); ++i) foot.corners[i] = {foot.board, wiring.corners[i]};
     feet_.push_back(foot);
   }
   for (const InputWiring& wiring : settings_.inputs)
     inputs_.push_back({.number = place_in(site_.layout.sensors, wiring.name, "inputs"),
-                       .pin = {board_number(wiring.board), wiring.pin}});
-  emergency_ = {settings_.emergency ? board_number(settings_.emergency_board) : 0, settings_.emergency};
+                       .pin = {settings_.board_number(wiring.board), wiring.pin}});
+  emergency_ = {settings_.emergency ? settings_.board_number(settings_.emergency_board) : 0, settings_.emergency};
 }
 
 bool HostMot2Plant::open(bool (*give_up)() noexcept) {
@@ -113,7 +112,11 @@ void HostMot2Plant::read(SensorFrame& sensors) noexcept {
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     const bool bitten = boards_[i].bitten();
     // The first one of all came in open().
-    fresh_[i] = driven_ ? boards_[i].collect() : boards_[i].collect() || fresh_[i];
+    if (!driven_) {
+      fresh_[i] = boards_[i].collect() || fresh_[i];
+    } else {
+      fresh_[i] = asked_ && boards_[i].collect();
+    }
     if (boards_[i].bitten() && !bitten) ++bites_;
     const LinkCounts& of = boards_[i].link().counts();
     for (const NamedLinkCount& one : link_count_names) counts_.*one.value += of.*one.value;
@@ -145,7 +148,8 @@ void HostMot2Plant::write(const ActuationFrame& actuation) noexcept {
   for (const Transmission& transmission : site_.transmissions) transmission.to_drives(drives_);
   const double period_s = 1e-9 * static_cast<double>(site_.layout.period_ns);
   // From the first tick on there are outputs, and a watchdog that is petted.
-  std::fill(repair_.begin(), repair_.end(), !driven_);
+  if (!driven_) std::fill(repair_.begin(), repair_.end(), true);
+  asked_ = !driven_ || ++tick_ % divisor_ == divisor_ - 1;
   driven_ = true;
   for (Wired& wired : axes_) {
     const std::size_t joint = wired.axis.joint();
@@ -154,8 +158,10 @@ void HostMot2Plant::write(const ActuationFrame& actuation) noexcept {
                                         there ? drives_.drives[joint] : DriveRequest{}, period_s);
     if (repair) repair_[wired.board] = true;
   }
+  if (!asked_) return;
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     if (repair_[i]) boards_[i].repair();
+    repair_[i] = false;
     boards_[i].send();
   }
 }

@@ -2,7 +2,8 @@
 //
 // The control thread does it all, with one datagram to each board and one back in a tick. `read` takes what a board
 // read when it got the last tick's datagram; each joint has that time. `write` sends the actuation, and asks for the
-// next readings. So a reading is one control period old, and an actuation is not delayed.
+// next readings. So a reading is one control period old, and an actuation is not delayed. A bus that is slower than the
+// control is written in the tick before each whole multiple of its period: in that one a reading is one tick old.
 //
 // Safe state: a board's watchdog makes all of its pins inputs when no datagram came for watchdog_s. Amplifiers are
 // disabled then, and brakes hold. close() lets it bite at once.
@@ -31,8 +32,6 @@ class HostMot2Plant final : public Plant {
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
 
-  const Board& board(std::size_t number) const noexcept { return boards_[number]; }
-
  private:
   struct Pin {
     std::size_t board = 0;
@@ -53,7 +52,6 @@ class HostMot2Plant final : public Plant {
     Axis axis;
   };
 
-  std::size_t board_number(const std::string& name) const;
   std::size_t place_in(const std::vector<std::string>& names, const std::string& name, const char* what) const;
   void wire();
 
@@ -67,6 +65,8 @@ class HostMot2Plant final : public Plant {
   std::vector<Input> inputs_;
   Pin emergency_;
   bool open_ = false, driven_ = false;
+  std::uint32_t divisor_ = 1, tick_ = 0;  // the boards are asked in every so many ticks
+  bool asked_ = true;                     // in the last one
   std::uint32_t silent_ticks_max_ = 5;
   ActuationFrame drives_;
   LinkCounts counts_;

@@ -15,46 +15,57 @@ std::size_t bytes_of(std::span<const RegisterBlock> blocks) noexcept {
   return command_bytes * blocks.size() + 4 * TickLayout::words(blocks);
 }
 
+// Writes a datagram of commands; what does not fit is left out, and ok() tells of it.
+class LbpWriter {
+ public:
+  enum class Space : std::uint8_t { registers = 0, timers = 4, card = 7 };
+
+  explicit LbpWriter(std::span<std::uint8_t> into) noexcept : into_(into) {}
+  // Elements of the space's own size: 32 bits of registers, 16 of the others.
+  LbpWriter& read(Space space, std::uint16_t address, std::size_t elements) noexcept {
+    return command(false, space, address, elements);
+  }
+  // The data follow by the caller: u16 or u32.
+  LbpWriter& write(Space space, std::uint16_t address, std::size_t elements) noexcept {
+    return command(true, space, address, elements);
+  }
+  LbpWriter& u16(std::uint16_t value) noexcept {
+    ok_ = ok_ && size_ + 2 <= into_.size();
+    if (!ok_) return *this;
+    into_[size_++] = static_cast<std::uint8_t>(value);
+    into_[size_++] = static_cast<std::uint8_t>(value >> 8U);
+    return *this;
+  }
+  LbpWriter& u32(std::uint32_t value) noexcept {
+    return u16(static_cast<std::uint16_t>(value)).u16(static_cast<std::uint16_t>(value >> 16U));
+  }
+  std::size_t size() const noexcept { return size_; }
+  bool ok() const noexcept { return ok_; }
+
+ private:
+  LbpWriter& command(bool writes, Space space, std::uint16_t address, std::size_t elements) noexcept {
+    ok_ = ok_ && elements >= 1 && elements <= elements_max;
+    if (!ok_) return *this;
+    const unsigned size = space == Space::registers ? 2 : 1;
+    const unsigned word = (writes ? 0x8000U : 0U) | 0x4000U | static_cast<unsigned>(space) << 10U | size << 8U | 0x80U |
+                          static_cast<unsigned>(elements);
+    return u16(static_cast<std::uint16_t>(word)).u16(address);
+  }
+
+  std::span<std::uint8_t> into_;
+  std::size_t size_ = 0;
+  bool ok_ = true;
+};
+
 }  // namespace
-
-LbpWriter& LbpWriter::u16(std::uint16_t value) noexcept {
-  ok_ = ok_ && size_ + 2 <= into_.size();
-  if (!ok_) return *this;
-  into_[size_++] = static_cast<std::uint8_t>(value);
-  into_[size_++] = static_cast<std::uint8_t>(value >> 8U);
-  return *this;
-}
-
-LbpWriter& LbpWriter::u32(std::uint32_t value) noexcept {
-  return u16(static_cast<std::uint16_t>(value)).u16(static_cast<std::uint16_t>(value >> 16U));
-}
-
-LbpWriter& LbpWriter::command(bool writes, Space space, std::uint16_t address, std::size_t elements) noexcept {
-  ok_ = ok_ && elements >= 1 && elements <= elements_max;
-  if (!ok_) return *this;
-  const unsigned size = space == Space::registers ? 2 : 1;
-  const unsigned word = (writes ? 0x8000U : 0U) | 0x4000U | static_cast<unsigned>(space) << 10U | size << 8U | 0x80U |
-                        static_cast<unsigned>(elements);
-  return u16(static_cast<std::uint16_t>(word)).u16(address);
-}
-
-LbpWriter& LbpWriter::read(Space space, std::uint16_t address, std::size_t elements) noexcept {
-  return command(false, space, address, elements);
-}
-
-LbpWriter& LbpWriter::write(Space space, std::uint16_t address, std::size_t elements) noexcept {
-  return command(true, space, address, elements);
-}
 
 LbpLink::LbpLink(std::unique_ptr<DatagramPort> port, std::int64_t patience_ns, std::int64_t wait_ns)
     : port_(std::move(port)), patience_ns_(patience_ns), wait_ns_(wait_ns) {}
 
-std::uint16_t LbpLink::u16_at(std::size_t at) const noexcept {
-  return static_cast<std::uint16_t>(answer_[at] | answer_[at + 1] << 8U);
-}
-
 std::uint32_t LbpLink::u32_at(std::size_t at) const noexcept {
-  return u16_at(at) | std::uint32_t{u16_at(at + 2)} << 16U;
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value |= std::uint32_t{answer_[at + i]} << (8 * i);
+  return value;
 }
 
 bool LbpLink::exchange(std::size_t request_bytes, std::size_t reply_bytes) {
@@ -110,18 +121,16 @@ void LbpLink::lay_out(const TickLayout& layout) {
   usual_words_ = TickLayout::words(layout.writes);
   LbpWriter tick(tick_);
   tick.write(LbpWriter::Space::timers, scratch, number_words);
-  number_at_ = tick.size();
-  tick.u32(0);
+  tick.u32(0);  // send() puts the number there
   tick.read(LbpWriter::Space::timers, scratch, number_words);
   for (const RegisterBlock& block : layout.reads) tick.read(LbpWriter::Space::registers, block.address, block.words);
   tick.read(LbpWriter::Space::timers, scratch, 2 * number_words);
   reply_bytes_ = 6 * number_words + 4 * TickLayout::words(layout.reads);
   writes_at_ = tick.size();
-  usual_bytes_ = writes_at_ + bytes_of(layout.writes) + command_bytes + 2 * number_words;
+  const std::size_t usual_bytes = writes_at_ + bytes_of(layout.writes) + command_bytes + 2 * number_words;
   const bool fits = std::ranges::all_of(layout.writes, [](const auto& b) { return b.words <= elements_max; }) &&
                     std::ranges::all_of(layout.rare_writes, [](const auto& b) { return b.words <= elements_max; });
-  if (!tick.ok() || !fits || usual_bytes_ + bytes_of(layout.rare_writes) > tick_.size() ||
-      reply_bytes_ > answer_.size())
+  if (!tick.ok() || !fits || usual_bytes + bytes_of(layout.rare_writes) > tick_.size() || reply_bytes_ > answer_.size())
     throw std::length_error("what is read and written in a tick does not fit into a datagram");
   // The board may still have the numbers of an earlier run.
   LbpWriter fresh(asked_);
@@ -133,7 +142,7 @@ void LbpLink::lay_out(const TickLayout& layout) {
 void LbpLink::send(std::span<const std::uint32_t> words) noexcept {
   ++sent_;
   const auto number = static_cast<std::uint32_t>(sent_);
-  LbpWriter head(std::span<std::uint8_t>(tick_).subspan(number_at_));
+  LbpWriter head(std::span<std::uint8_t>(tick_).subspan(command_bytes));
   head.u32(number);
   LbpWriter tail(std::span<std::uint8_t>(tick_).subspan(writes_at_));
   std::size_t next = 0;

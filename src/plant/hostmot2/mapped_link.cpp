@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <ctime>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -12,7 +11,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "kadans/signal/frames.h"
 #include "kadans/signal/input_error.h"
 
 namespace kadans::hostmot2 {
@@ -88,12 +86,6 @@ bool MappedLink::collect(std::span<std::uint32_t> words, Sample& sample) noexcep
 
 void MappedLink::write_all(std::span<const RegisterWrite> writes) noexcept {
   for (const RegisterWrite& one : writes) registers_[one.address / 4U] = one.value;
-}
-
-std::int64_t MappedLink::now_ns() const noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * ns_per_s + now.tv_nsec;
 }
 
 }  // namespace kadans::hostmot2

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "board_link.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans::hostmot2 {
 
@@ -25,7 +26,7 @@ class MappedLink : public BoardLink {
   void send(std::span<const std::uint32_t> words) noexcept override;
   bool collect(std::span<std::uint32_t> words, Sample& sample) noexcept override;
   void write_all(std::span<const RegisterWrite> writes) noexcept override;
-  std::int64_t now_ns() const noexcept override;
+  std::int64_t now_ns() const noexcept override { return monotonic_ns(); }
   const LinkCounts& counts() const noexcept override { return counts_; }
 
  private:

@@ -48,7 +48,6 @@ Module module_in(const std::array<std::uint32_t, 3>& words, const Modules& modul
   const auto head = bytes_of(words[0]), body = bytes_of(words[1]);
   Module one;
   one.tag = head[0];
-  one.version = head[1];
   one.instances = head[3];
   one.base = static_cast<std::uint16_t>(words[1]);
   one.registers = body[2];
@@ -84,8 +83,6 @@ void take(Modules& modules, const Module& one) {
       return known(modules.pwmgen, 5);
     case ModuleTag::led:
       return known(modules.led, 1);
-    case ModuleTag::none:
-      break;
   }
   modules.others.push_back(one);
 }

@@ -17,10 +17,10 @@ namespace kadans::hostmot2 {
 inline constexpr std::uint16_t cookie_at = 0x100;
 inline constexpr std::uint32_t cookie = 0x55AACAFE;
 
-enum class ModuleTag : std::uint8_t { none = 0, watchdog = 2, ioport = 3, encoder = 4, pwmgen = 6, led = 128 };
+enum class ModuleTag : std::uint8_t { watchdog = 2, ioport = 3, encoder = 4, pwmgen = 6, led = 128 };
 
 struct Module {
-  std::uint8_t tag = 0, version = 0, instances = 0, registers = 0;
+  std::uint8_t tag = 0, instances = 0, registers = 0;
   std::uint16_t base = 0, register_stride = 256, instance_stride = 4;
   std::uint32_t clock_Hz = 0;
 
@@ -34,6 +34,10 @@ std::string module_name(std::uint8_t tag);  // "encoder"; "module 26" where it i
 struct PinUse {
   std::uint8_t tag = 0;   // of the module that may use it; 0: none
   std::uint8_t unit = 0;  // its instance
+
+  bool is(ModuleTag module, std::uint32_t instance) const noexcept {
+    return tag == static_cast<std::uint8_t>(module) && unit == instance;
+  }
 };
 
 struct Modules {

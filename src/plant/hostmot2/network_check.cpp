@@ -27,28 +27,35 @@ std::string text_of(std::uint32_t address) {
   return text.data();
 }
 
-}  // namespace
-
-CardFinding network_card_for(const std::string& address) {
-  const std::string host = address.substr(0, address.find(':'));
+PlantType::Finding examine_card(const BoardSettings& board) {
+  const auto found = [&](bool good, const std::string& is, const std::string& how) {
+    return PlantType::Finding{.topic = "board " + board.name,
+                              .good = good,
+                              .is = board.address + ": " + is,
+                              .should = "a network card of this machine in its network",
+                              .how = how};
+  };
+  const std::string host = board.address.substr(0, board.address.find(':'));
   in_addr wanted{};
   if (inet_pton(AF_INET, host.c_str(), &wanted) != 1)
-    return {.is = "no address", .how = "an address such as 192.168.1.121"};
+    return found(false, "no address", "an address such as 192.168.1.121");
   const CardList cards;
   for (const ifaddrs* at = cards.first; at != nullptr; at = at->ifa_next) {
     if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET || at->ifa_netmask == nullptr) continue;
     if (((ipv4(at->ifa_addr) ^ wanted.s_addr) & ipv4(at->ifa_netmask)) != 0) continue;
     const std::string card = std::string(at->ifa_name) + " (" + text_of(ipv4(at->ifa_addr)) + ")";
     if ((at->ifa_flags & IFF_UP) == 0)
-      return {.is = card + " is down", .how = std::string("sudo ip link set ") + at->ifa_name + " up"};
+      return found(false, card + " is down", std::string("sudo ip link set ") + at->ifa_name + " up");
     if ((at->ifa_flags & IFF_RUNNING) == 0)
-      return {.is = card + " has no cable in, or nothing is powered at its other end", .how = "plug the cable in"};
-    return {.good = true, .is = card + " is in its network", .how = {}};
+      return found(false, card + " has no cable in, or nothing is powered at its other end", "plug the cable in");
+    return found(true, card + " is in its network", "");
   }
-  return {.is = "no network card of this machine is in the network of " + host,
-          .how = "give the card to it an address there, such as `sudo ip address add " +
-                 host.substr(0, host.rfind('.')) + ".1/24 dev eth0`"};
+  return found(false, "no network card of this machine is in the network of " + host,
+               "give the card to it an address there, such as `sudo ip address add " + host.substr(0, host.rfind('.')) +
+                   ".1/24 dev eth0`");
 }
+
+}  // namespace
 
 std::vector<PlantType::Finding> examine_boards(const HostMot2Settings& settings, std::int64_t control_period_ns) {
   std::vector<PlantType::Finding> findings;
@@ -62,12 +69,7 @@ std::vector<PlantType::Finding> examine_boards(const HostMot2Settings& settings,
                           .how = "`lspci` shows the card; a rule for udev may give the file to a group"});
       continue;
     }
-    const CardFinding card = network_card_for(board.address);
-    findings.push_back({.topic = "board " + board.name,
-                        .good = card.good,
-                        .is = board.address + ": " + card.is,
-                        .should = "a network card of this machine in its network",
-                        .how = card.how});
+    findings.push_back(examine_card(board));
   }
   const double periods = 1e9 * settings.watchdog_s / static_cast<double>(control_period_ns);
   findings.push_back({.topic = "watchdog",

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 
-#include "lbp_link.h"
 #include "signal/nearest_name.h"
 
 namespace kadans::hostmot2 {
@@ -14,7 +13,7 @@ constexpr std::uint32_t no_instance = 255, instances_max = 31, pins_max = 143;
 
 constexpr std::array<const char*, 4> output_names{"pwm_dir", "dir_pwm", "up_down", "pdm"};
 constexpr std::array<const char*, 4> home_names{"power_on", "index", "probe", "switch"};
-constexpr std::array<const char*, 2> amplifier_names{"current", "voltage"};
+constexpr std::array<const char*, 3> amplifier_names{"current", "voltage", "velocity"};
 
 std::string one_of(std::span<const char* const> names) {
   std::string all;
@@ -103,7 +102,7 @@ class Reader {
   }
 
   void drive(PlantFields& f, const std::string& key) {
-    DriveWiring is{.drive = key, .encoder = no_instance, .place = f.place("")};
+    DriveWiring is{.drive = key, .encoder = no_instance};
     std::uint32_t pwm = no_instance;
     its_board(f, is.board);
     f.integer("encoder", is.encoder, {0, instances_max, ""}, "number of its encoder");
@@ -117,7 +116,7 @@ class Reader {
     f.number("position_gain_Nm_per_rad", is.position_gain_Nm_per_rad, {0, 1e5, "Nm/rad"},
              "of the position mode, whose loop is closed here");
     f.number("velocity_gain_Nms_per_rad", is.velocity_gain_Nms_per_rad, {0, 1e4, "Nms/rad"},
-             "of the position and velocity modes");
+             "of the position and velocity modes; of a velocity amplifier the gain of its own loop");
     f.number("velocity_max_rad_s", is.velocity_max_rad_s, {0.01, 1e4, "rad/s"}, "a faster reading is not believed");
     f.number("spring_Nm_per_rad", is.spring_Nm_per_rad, {0, 1e6, "Nm/rad"},
              "of a spring between its motor and its encoder, which then sits at the joint; 0: none");
@@ -131,6 +130,11 @@ class Reader {
     is.encoder_place = f.place("encoder");
     is.pwm_place = f.place("pwm");
     if (pwm != no_instance) is.pwm = pwm;
+    const bool by_velocity = is.amplifier.kind == AmplifierSettings::Kind::velocity;
+    if (by_velocity && !(is.velocity_gain_Nms_per_rad > 0))
+      f.refuse("velocity_gain_Nms_per_rad",
+               "a velocity amplifier needs the gain of its own loop: Nm at the drive by rad/s");
+    if (by_velocity) is.amplifier.gain_Nms_per_rad = is.velocity_gain_Nms_per_rad;
     check_drive(f, is);
     settings_.drives.push_back(is);
   }
@@ -167,8 +171,7 @@ class Reader {
   void its_board(PlantFields& f, std::string& name) {
     if (f.reading() && settings_.boards.size() == 1) name = settings_.boards[0].name;
     f.string("board", name, "its board (default: the only one)");
-    if (!f.reading() || std::ranges::find(settings_.boards, name, &BoardSettings::name) != settings_.boards.end())
-      return;
+    if (!f.reading() || settings_.board_number(name) < settings_.boards.size()) return;
     f.refuse("board", name.empty() ? "names no board, and there are several"
                                    : "no board '" + name + "' in plant.hm2-eth.boards");
   }
@@ -176,14 +179,17 @@ class Reader {
   static void amplifier(PlantFields& f, AmplifierSettings& is) {
     choice(f, "amplifier", is.kind, amplifier_names, "what the duty of its PWM is for its amplifier");
     is.current_max_A = 0;
-    f.number("amplifier_full", is.full, {1e-3, 1e4, ""}, "amperes or volts of the amplifier at full duty");
-    f.number("current_max_A", is.current_max_A, {0, 1e4, "A"}, "most that the motor gets; 0: what the amplifier has");
+    f.number("amplifier_full", is.full, {1e-3, 1e4, ""}, "amperes, volts, or rad/s of the motor, at full duty");
+    f.number("current_max_A", is.current_max_A, {0, 1e4, "A"},
+             "most that the motor gets; 0: what an amplifier of current or voltage has");
     f.number("winding_Ohm", is.winding_Ohm, {1e-3, 1e4, "Ohm"}, "of the motor, for an amplifier of voltage");
     f.number("Nm_per_A", is.Nm_per_A, {1e-6, 1e3, "Nm/A"}, "torque constant of the motor");
     f.number("gear", is.gear, {1e-3, 1e5, ""}, "turns of the motor for one of the drive");
     f.number("efficiency", is.efficiency, {0.01, 1, ""}, "of the gear");
-    const bool voltage = is.kind == AmplifierSettings::Kind::voltage;
-    if (is.current_max_A == 0) is.current_max_A = voltage ? is.full / is.winding_Ohm : is.full;
+    if (f.reading() && is.kind == AmplifierSettings::Kind::velocity && is.current_max_A == 0)
+      f.refuse("current_max_A", "a velocity amplifier's duty says nothing of it: name what its motor gets at most");
+    if (is.current_max_A == 0)
+      is.current_max_A = is.kind == AmplifierSettings::Kind::voltage ? is.full / is.winding_Ohm : is.full;
   }
 
   static void pins(PlantFields& f, DriveWiring& is) {
@@ -240,6 +246,10 @@ std::string board_place(const std::string& address) {
   return colon == std::string::npos ? host + ":" + std::to_string(lbp_udp_port) : address;
 }
 
+std::size_t HostMot2Settings::board_number(const std::string& name) const noexcept {
+  return static_cast<std::size_t>(std::ranges::find(boards, name, &BoardSettings::name) - boards.begin());
+}
+
 void HostMot2Settings::move_boards(const std::string& first_address) {
   const std::size_t colon = first_address.find(':');
   const std::string port = colon == std::string::npos ? "" : first_address.substr(colon);
@@ -269,6 +279,8 @@ void HostMot2Settings::fields(PlantFields& f) {
   f.map(
       "emergency", [&](PlantFields& entry, const std::string& key) { reader.emergency(entry, key); },
       "inputs of the emergency stop, by names of your own");
+  f.number("period_s", period_s, {0, 1, "s"},
+           "period of the bus, a whole multiple of the control period; 0: that period");
   f.number("watchdog_s", watchdog_s, {1e-4, 1, "s"},
            "time without a word after which the boards release their outputs");
   f.number("reply_wait_s", reply_wait_s, {0, 0.01, "s"}, "how long a tick waits for an answer that is not there yet");

@@ -54,7 +54,7 @@ struct DriveWiring {
   double home_rad_s = 0.1;  // how fast, and in which direction, it looks for it
   double home_timeout_s = 30;
   OptionalPin enable{}, fault{}, brake{}, low{}, high{}, home_switch{};
-  InputProblem place{}, encoder_place{}, pwm_place{};
+  InputProblem encoder_place{}, pwm_place{};
 };
 
 // Switches under the corners of a sole.
@@ -78,16 +78,20 @@ struct HostMot2Settings {
   std::vector<InputWiring> inputs;
   std::string emergency_board;
   OptionalPin emergency{};
+  double period_s = 0;  // of the bus; 0: the control period
   double watchdog_s = 0.01;
   double reply_wait_s = 0.0002;
   double patience_s = 0.05;
 
   // Lists the fields; refuses what does not fit together.
   void fields(PlantFields& f);
+  // The board's place in `boards`; their number where none has the name.
+  std::size_t board_number(const std::string& name) const noexcept;
   // The same boards, at this address and those that follow it.
   void move_boards(const std::string& first_address);
 };
 
+inline constexpr std::uint16_t lbp_udp_port = 27181;
 // "192.168.1.121" as "192.168.1.121:27181". Throws InputError where it is none.
 std::string board_place(const std::string& address);
 

@@ -1,11 +1,8 @@
-#include <ctime>
-
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "datagram_port.h"
-#include "kadans/signal/frames.h"
 #include "plant/socket_address.h"
 
 namespace kadans::hostmot2 {
@@ -32,12 +29,6 @@ void UdpPort::await(std::int64_t until_ns) noexcept {
   const std::int64_t left_ms = (until_ns - now_ns()) / 1'000'000;
   pollfd wanted{descriptor_, POLLIN, 0};
   if (left_ms > 0) (void)poll(&wanted, 1, static_cast<int>(left_ms));
-}
-
-std::int64_t UdpPort::now_ns() const noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * ns_per_s + now.tv_nsec;
 }
 
 }  // namespace kadans::hostmot2

@@ -38,6 +38,7 @@ class UdpType final : public PlantType {
     return std::make_unique<UdpPlant>(settings, site.layout, DatagramSocket::connected(settings.peer), session);
   }
 
+  bool has_imu() const noexcept override { return true; }
   bool is_protocol() const noexcept override { return true; }
   std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const override {
     UdpSettings settings = settings_;

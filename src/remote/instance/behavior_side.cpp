@@ -322,9 +322,8 @@ bool BehaviorSide::ask(Pending& pending, const BehaviorQuestion& question) {
     pending.asked = p_.process->ask(question);
     return false;
   }
-  const bool charts = question.kind == BehaviorQuestion::Kind::describe;
   const auto snapshot = p_.exchange.snapshot.read(0);
-  take(pending, charts ? BehaviorReply{.text = behaviors_description(p_.host)} : p_.host->reply(question, *snapshot));
+  take(pending, p_.host->reply(question, *snapshot, behaviors_description));
   return true;
 }
 
@@ -336,7 +335,6 @@ bool BehaviorSide::ask_why(Pending& pending) {
 
 void BehaviorSide::take(Pending& pending, BehaviorReply&& reply) {
   Answer& answer = pending.order->answer;
-  if (!reply.error.empty()) throw InputError({.message = reply.error});
   answer.paused = reply.paused;
   answer.behaviors = std::move(reply.behaviors);
   answer.reasons = std::move(reply.reasons);
@@ -356,11 +354,11 @@ void BehaviorSide::hear(Pending& pending, std::int64_t time_ns) {
                 : BehaviorReply{.error = "the behaviors' process did not answer within a second"};
   }
   pending.asked = 0;
-  try {
+  pending.failed = !reply->error.empty();
+  if (pending.failed) {
+    pending.order->answer.text = reply->error;
+  } else {
     take(pending, std::move(*reply));
-  } catch (const InputError& error) {
-    pending.order->answer.text = error.what();
-    pending.failed = true;
   }
 }
 

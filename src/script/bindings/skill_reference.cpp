@@ -23,13 +23,6 @@ struct SkillReading {
   std::map<std::string, std::string> skills{};  // by field: as Markdown
 };
 
-std::string text_of_field(lua_State* state, int table, const char* key) {
-  lua_getfield(state, table, key);
-  const std::string text = lua_type(state, -1) == LUA_TSTRING ? lua_tostring(state, -1) : "";
-  lua_pop(state, 1);
-  return text;
-}
-
 std::string default_text(const ScriptArgument& argument) {
   if (!argument.initial) return "a table";
   if (const auto* number = std::get_if<double>(&*argument.initial)) return number_text(*number);

@@ -145,13 +145,6 @@ int read_argument(lua_State* state) {  // (handle, key)
   return 1;
 }
 
-std::string text_at(lua_State* state, int declared, const char* key) {
-  lua_getfield(state, declared, key);
-  const std::string text = lua_type(state, -1) == LUA_TSTRING ? lua_tostring(state, -1) : "";
-  lua_pop(state, 1);
-  return text;
-}
-
 std::optional<PlayValue> default_of(lua_State* state, int declared) {
   std::optional<PlayValue> value;
   lua_rawgeti(state, declared, 1);
@@ -251,6 +244,13 @@ bool push_followed_refusal(lua_State* state, int declared, const ScriptParameter
   return false;
 }
 
+std::string text_of_field(lua_State* state, int table, const char* key) {
+  lua_getfield(state, table, key);
+  const std::string text = lua_type(state, -1) == LUA_TSTRING ? lua_tostring(state, -1) : "";
+  lua_pop(state, 1);
+  return text;
+}
+
 std::vector<ScriptArgument> read_declarations(lua_State* state, int index) {
   std::vector<ScriptArgument> all;
   luaL_checkstack(state, 8, "arguments");
@@ -258,8 +258,8 @@ std::vector<ScriptArgument> read_declarations(lua_State* state, int index) {
     const int one = lua_gettop(state);
     ScriptArgument& argument = all.emplace_back();
     argument.name = lua_tostring(state, one - 1);
-    argument.unit = text_at(state, one, "unit");
-    argument.doc = text_at(state, one, "doc");
+    argument.unit = text_of_field(state, one, "unit");
+    argument.doc = text_of_field(state, one, "doc");
     argument.initial = default_of(state, one);
     (void)bound(state, one, "min", argument.min);
     (void)bound(state, one, "max", argument.max);

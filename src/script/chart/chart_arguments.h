@@ -10,6 +10,7 @@
 // give. The same check serves k.call, skills, and lists of behaviors.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <lua.hpp>
@@ -33,6 +34,9 @@ bool push_refusal(lua_State* state, int declared, int value, const char* name, c
 // [-0 +1 when true] The same for all values that a parameter may have: the argument follows it.
 bool push_followed_refusal(lua_State* state, int declared, const ScriptParameter& parameter, const char* name,
                            const char* of);
+
+// [-0 +0] The text in the field `key` of the table at `table`; "" when it is none.
+std::string text_of_field(lua_State* state, int table, const char* key);
 
 // [-0 +0] The declarations in the table at `index`, by name.
 std::vector<ScriptArgument> read_declarations(lua_State* state, int index);

@@ -135,6 +135,7 @@ std::vector<InputProblem> check_behavior(const std::filesystem::path& root, cons
     check_chart(parts.chart, problems);
     check_vars(parts, problems);
     check_livelocks(parts, problems);
+    check_event_data(parts, problems);
     KnownNames known = read_known_names(parts);
     check_sources(parts, known, problems);
   } catch (const InputError& error) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <set>
+#include <span>
 
 #include "check_source.h"
 #include "hint.h"
@@ -23,8 +24,8 @@ class ChartCheck {
       never_entered(i);
       if (reached_[i] && state.kind != Chart::Kind::history) {
         no_way_out(i);
-        shadowed(i, state.first_transition, state.transition_count);
-        shadowed(i, state.first_always, state.always_count);
+        shadowed(state, transitions(state.first_transition, state.transition_count));
+        shadowed(state, transitions(state.first_always, state.always_count));
         run_done_without_run(i);
       }
       if (state.kind == Chart::Kind::final_state && !state.outcome_given) {
@@ -36,6 +37,10 @@ class ChartCheck {
  private:
   void problem(const Chart::State& state, int line, std::string message) {
     problems_.push_back({state.chunk, line, 0, std::move(message)});
+  }
+
+  std::span<const Chart::Transition> transitions(std::size_t first, std::size_t count) const {
+    return std::span(chart_.transitions).subspan(first, count);
   }
 
   void find_reached() {
@@ -96,37 +101,32 @@ class ChartCheck {
     for (StateIndex around = index; around != no_state; around = chart_.states[around].parent) {
       const Chart::State& at = chart_.states[around];
       if (at.endless) return;
-      const auto leads_on = [&](std::uint16_t number) { return chart_.transitions[number].target != no_state; };
-      for (std::uint16_t i = 0; i < at.transition_count; ++i) {
-        if (leads_on(static_cast<std::uint16_t>(at.first_transition + i))) return;
+      for (const Chart::Transition& one : transitions(at.first_transition, at.transition_count)) {
+        if (one.target != no_state) return;
       }
-      for (std::uint16_t i = 0; i < at.always_count; ++i) {
-        const auto number = static_cast<std::uint16_t>(at.first_always + i);
-        if (leads_on(number) && chart_.transitions[number].target != index) return;
+      for (const Chart::Transition& one : transitions(at.first_always, at.always_count)) {
+        if (one.target != no_state && one.target != index) return;
       }
     }
     const std::string shown = state.name.empty() ? chart_.name : state.name;
     problem(state, state.line, "state '" + shown + "' has no way out: give it a transition, or say endless = true");
   }
 
-  void shadowed(StateIndex index, std::uint16_t first, std::uint16_t count) {
-    for (std::uint16_t i = 0; i + 1 < count; ++i) {
-      const Chart::Transition& transition = chart_.transitions[static_cast<std::size_t>(first) + i];
-      const bool open = transition.when != Chart::no_function || transition.on != no_event || transition.timed;
-      if (open || transition.target == no_state) continue;
-      problem(chart_.states[index], chart_.transitions[static_cast<std::size_t>(first) + i + 1].line,
-              "this transition is never looked at: the one before it, to '" + transition.target_names.front() +
+  void shadowed(const Chart::State& state, std::span<const Chart::Transition> all) {
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+      const bool open = all[i].when != Chart::no_function || all[i].on != no_event || all[i].timed;
+      if (open || all[i].target == no_state) continue;
+      problem(state, all[i + 1].line,
+              "this transition is never looked at: the one before it, to '" + all[i].target_names.front() +
                   "', is always taken");
       return;
     }
-    for (std::uint16_t i = 0; i + 1 < count; ++i) {
-      for (auto k = static_cast<std::uint16_t>(i + 1); k < count; ++k) {
-        const std::size_t one = static_cast<std::size_t>(first) + i, later = static_cast<std::size_t>(first) + k;
-        if (hides(chart_.transitions[one], chart_.transitions[later]))
-          problem(chart_.states[index], chart_.transitions[later].line,
-                  "this transition is never taken: the one in line " + std::to_string(chart_.transitions[one].line) +
-                      ", to '" + chart_.transitions[one].target_names.front() +
-                      "', takes all that it could, and comes no later");
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+      for (std::size_t k = i + 1; k < all.size(); ++k) {
+        if (hides(all[i], all[k]))
+          problem(state, all[k].line,
+                  "this transition is never taken: the one in line " + std::to_string(all[i].line) + ", to '" +
+                      all[i].target_names.front() + "', takes all that it could, and comes no later");
       }
     }
   }
@@ -134,7 +134,6 @@ class ChartCheck {
   // Whether whatever takes the later one of a state has been taken by the first: the same event, or none, and no later.
   static bool hides(const Chart::Transition& first, const Chart::Transition& later) {
     if (first.when != Chart::no_function || first.target == no_state || first.on != later.on) return false;
-    if (first.on == no_event && !first.timed) return false;  // told above
     if (!first.timed) return true;
     if (!later.timed || first.after_parameter != later.after_parameter) return false;
     return first.after_parameter != Chart::no_parameter || first.after_s <= later.after_s;
@@ -142,8 +141,7 @@ class ChartCheck {
 
   void run_done_without_run(StateIndex index) {
     const Chart::State& state = chart_.states[index];
-    for (std::uint16_t i = 0; i < state.transition_count; ++i) {
-      const Chart::Transition& transition = chart_.transitions[static_cast<std::size_t>(state.first_transition) + i];
+    for (const Chart::Transition& transition : transitions(state.first_transition, state.transition_count)) {
       if (transition.on != run_done_event || state.run != Chart::no_function) continue;
       problem(state, transition.line,
               "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");

@@ -17,18 +17,6 @@ namespace {
 
 using SourceTokens = std::vector<SourceToken>;
 
-// Of a function of the chart: which one it is, and where it is written.
-struct ChartFunction {
-  const void* identity = nullptr;
-  std::string chunk;
-  int line = 0;
-};
-
-struct ChartFunctions {
-  const Chart& chart;
-  std::map<int, ChartFunction> by_reference{};
-};
-
 int read_chart_functions(lua_State* state) {
   auto& reading = *static_cast<ChartFunctions*>(lua_touserdata(state, 1));
   const auto read = [&](int reference) {
@@ -43,6 +31,26 @@ int read_chart_functions(lua_State* state) {
   for (const Chart::Transition& one : reading.chart.transitions) read(one.when), read(one.action);
   return 0;
 }
+
+}  // namespace
+
+ChartFunctions chart_functions(Behavior::Parts& parts) {
+  ChartFunctions functions{parts.chart};
+  functions.known = parts.lua->call(read_chart_functions, &functions, parts.settings.limits.load_instructions, 0);
+  return functions;
+}
+
+std::size_t function_in_line(const std::vector<SourceToken>& tokens, int line) {
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    if (tokens[i].line != line || !tokens[i].is("function")) continue;
+    if (found != 0) return 0;
+    found = i;
+  }
+  return found;
+}
+
+namespace {
 
 class LivelockCheck {
  public:
@@ -68,14 +76,7 @@ class LivelockCheck {
   // The only function that begins in this line; 0: there are several, or none.
   std::size_t function_at(const ChartFunction& function) const {
     const auto file = tokens_.find(function.chunk);
-    if (file == tokens_.end()) return 0;
-    std::size_t found = 0;
-    for (std::size_t i = 0; i < file->second.size(); ++i) {
-      if (file->second[i].line != function.line || !file->second[i].is("function")) continue;
-      if (found != 0) return 0;
-      found = i;
-    }
-    return found;
+    return file == tokens_.end() ? 0 : function_in_line(file->second, function.line);
   }
 
   // The first token behind the arguments.
@@ -116,6 +117,25 @@ class LivelockCheck {
       const EventId event = chart_.find_event(tokens[text].text);
       if (event != no_event) events.insert(event);
     }
+  }
+
+  // Whether a guard looks at m, its second argument: the time in the state, vars and set-points change with the state.
+  // A function that cannot be read may.
+  bool looks_at_machine(const ChartFunction& function) const {
+    const std::size_t at = function_at(function);
+    if (at == 0) return true;
+    const SourceTokens& tokens = tokens_.at(function.chunk);
+    std::size_t open = at;
+    while (!tokens[open].is("(") && tokens[open].kind != SourceToken::Kind::end) ++open;
+    if (open + 3 >= tokens.size() || !tokens[open + 2].is(",")) return false;
+    const std::string& machine = tokens[open + 3].text;
+    int depth = 0;
+    for (std::size_t i = open + 4; i < tokens.size() && depth >= 0; ++i) {
+      for (const char* opening : {"if", "do", "function", "repeat"}) depth += tokens[i].is(opening) ? 1 : 0;
+      for (const char* closing : {"end", "until"}) depth -= tokens[i].is(closing) ? 1 : 0;
+      if (tokens[i].kind == SourceToken::Kind::name && tokens[i].text == machine) return true;
+    }
+    return false;
   }
 
   // The innermost state that is entered through `target`; no_state when there are several, or a history decides.
@@ -177,6 +197,7 @@ class LivelockCheck {
     for (const std::size_t number : circle) {
       const int when = chart_.transitions[number].when;
       const ChartFunction* function = always_true(when) ? nullptr : function_of(when);
+      if (function != nullptr && looks_at_machine(*function)) return;
       conditions.insert(function == nullptr ? nullptr : function->identity);
     }
     const bool held = !conditions.contains(nullptr);
@@ -203,9 +224,8 @@ class LivelockCheck {
 }  // namespace
 
 void check_livelocks(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
-  ChartFunctions functions{parts.chart};
-  if (!parts.lua->call(read_chart_functions, &functions, parts.settings.limits.load_instructions, 0)) return;
-  LivelockCheck(parts, functions, problems).run();
+  const ChartFunctions functions = chart_functions(parts);
+  if (functions.known) LivelockCheck(parts, functions, problems).run();
 }
 
 }  // namespace kadans

@@ -1,6 +1,9 @@
 // The checks of a loaded behavior: of the shape of its chart, of its modules, and of the text in every branch.
 #pragma once
 
+#include <cstddef>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "known_names.h"
@@ -54,6 +57,28 @@ void check_chart(const Chart& chart, std::vector<InputProblem>& problems);
 // Finds also events that a behavior's own file declares in k.events, and that nothing waits for or emits.
 void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, const std::vector<ReadSource>& read,
                   std::vector<InputProblem>& problems);
+
+// Of a function of the chart: which one it is, and where it is written.
+struct ChartFunction {
+  const void* identity = nullptr;
+  std::string chunk;
+  int line = 0;
+};
+
+// What states enter with, and the guards and actions of transitions, by their references.
+struct ChartFunctions {
+  const Chart& chart;
+  bool known = false;  // all were read
+  std::map<int, ChartFunction> by_reference{};
+};
+ChartFunctions chart_functions(Behavior::Parts& parts);
+
+// The token of the only function that begins in this line; 0: there are several, or none.
+std::size_t function_in_line(const std::vector<SourceToken>& tokens, int line);
+
+// Finds guards and actions that read data of an event where there is none, or a field that may be missing as if it
+// were always there.
+void check_event_data(Behavior::Parts& parts, std::vector<InputProblem>& problems);
 
 // Finds states that lead to each other for ever and take no time.
 void check_livelocks(Behavior::Parts& parts, std::vector<InputProblem>& problems);

@@ -80,7 +80,12 @@ ValueCheck::ValueCheck(const Behavior::Parts& parts) : parts_(parts), fields_(st
 ValueCheck::Type ValueCheck::field_of(StatusField::Part part, const std::string& name) const {
   for (const StatusField& field : fields_) {
     if (field.part != part || field.name != name) continue;
-    if (field.type == StatusField::Type::number) return {Kind::number, {}};
+    if (field.type == StatusField::Type::number) {
+      using Part = StatusField::Part;
+      const bool sensed = part == Part::joint || part == Part::base || part == Part::rate || part == Part::foot ||
+                          part == Part::support;
+      return {Kind::number, {}, sensed};
+    }
     if (field.type == StatusField::Type::flag) return {Kind::flag, {}};
     Type type{Kind::choice, {}};
     for (std::size_t i = 0; i < field.choices; ++i) type.texts.emplace_back(field.choice(i));
@@ -122,6 +127,10 @@ std::string ValueCheck::compared(const SourceUse& use, const Type& type, const T
   const bool text = other.kind == TokenKind::text, number = other.kind == TokenKind::number;
   const std::string what = text ? "a text" : number ? "a number" : "true or false";
   if (type.kind == Kind::number && !number) return name + " is a number, it is compared with " + what;
+  const bool exactly = sign.is("==") || sign.is("~=");
+  const bool no_force = name.ends_with("force_N") && other.text == "0";  // what does not touch reads exactly that
+  if (type.measured && exactly && !no_force)
+    return name + " is measured, it is hardly ever exactly " + other.text + ": compare with < or >";
   if (type.kind == Kind::flag && !is_truth(other))
     return name + " is true or false, it is compared with " + what + ": write " + name + " or not " + name;
   if (type.kind != Kind::choice) return "";
@@ -169,6 +178,8 @@ std::vector<ArgumentProblem> ValueCheck::of_use(const SourceUse& use, const Toke
   if (use.assigned) return found;
   const std::string wrong = call(use, tokens);
   if (!wrong.empty()) found.push_back({use.line, wrong});
+  const std::string unit = other_unit(use, tokens);
+  if (!unit.empty()) found.push_back({use.line, unit});
   SourceMeaning meaning = use.known ? use.meaning : SourceMeaning{};
   const bool in_brackets = !meaning.path.empty() && meaning.path.back() == "*";  // s.joints[1]
   if (in_brackets) meaning.path.pop_back();
@@ -181,6 +192,22 @@ std::vector<ArgumentProblem> ValueCheck::of_use(const SourceUse& use, const Toke
     found.push_back({use.line, as_written(tokens, use.at, use.next - 1) + " is a value: it stands without brackets"});
   }
   return found;
+}
+
+// A parameter in milliseconds, minutes or hours where seconds are asked for: m:wait(P.x), time_s = P.x, after = P.x.
+std::string ValueCheck::other_unit(const SourceUse& use, const Tokens& tokens) const {
+  if (use.meaning.role != SourceRole::parameters || use.meaning.path.size() != 1) return "";
+  const auto& declared = parts_.lua->core().parameters;
+  const auto named = [&](const ScriptParameter& one) { return one.name == use.meaning.path[0]; };
+  const auto found = std::ranges::find_if(declared, named);
+  if (found == declared.end() || std::ranges::count_if(declared, named) != 1) return "";
+  if (found->unit != "ms" && found->unit != "min" && found->unit != "h") return "";
+  const SourceToken& left = before(tokens, use.at);
+  const SourceToken& name = before(tokens, use.at, 2);
+  const bool given = left.is("=") && (name.text == "after" || name.text.ends_with("_s"));
+  const bool waits = left.is("(") && name.text == "wait" && before(tokens, use.at, 3).is(":");
+  if ((!given && !waits) || changes(tokens[use.next])) return "";
+  return name.text + " takes seconds, and " + found->name + " is in " + found->unit;
 }
 
 // What is wrong with how something is called, or given to a call.

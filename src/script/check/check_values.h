@@ -28,6 +28,7 @@ class ValueCheck {
   struct Type {
     Kind kind = Kind::unknown;
     std::vector<std::string> texts;
+    bool measured = false;  // a number that comes from a sensor
   };
   Type type_of(const SourceMeaning& meaning) const;
   Type field_of(StatusField::Part part, const std::string& name) const;
@@ -35,6 +36,7 @@ class ValueCheck {
                        const SourceToken& sign) const;
   void operands(const SourceUse& use, const Type& type, const Tokens& tokens,
                 std::vector<ArgumentProblem>& found) const;
+  std::string other_unit(const SourceUse& use, const Tokens& tokens) const;
   std::string call(const SourceUse& use, const Tokens& tokens) const;
   std::string machine_call(const SourceUse& use, const Tokens& tokens) const;
   std::string armed(const SourceUse& use, const Tokens& tokens) const;

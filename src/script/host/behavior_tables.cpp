@@ -12,14 +12,11 @@ struct Put {
   void operator()(const std::string& text) { bytes.put_string(text); }
   template <Number T>
   void operator()(T value) {
-    if constexpr (std::is_same_v<T, bool>) {
-      bytes.put<std::uint8_t>(value);
-    } else {
-      bytes.put(value);
-    }
+    bytes.put(value);
   }
-  void operator()(ScriptEvent::Field::Type type) { bytes.put(static_cast<std::uint8_t>(type)); }
-  void operator()(BehaviorQuestion::Kind kind) { bytes.put(static_cast<std::uint8_t>(kind)); }
+  template <typename T>
+  requires std::is_enum_v<T>
+  void operator()(T kind) { bytes.put(static_cast<std::uint8_t>(kind)); }
   template <typename T>
   void operator()(const std::vector<T>& all) {
     bytes.put(static_cast<std::uint32_t>(all.size()));

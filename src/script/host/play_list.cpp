@@ -69,7 +69,7 @@ void PlayList::publish(bool paused) noexcept {
 
 namespace {
 
-enum Type : std::uint8_t { number, boolean, text };
+enum ArgumentKind : std::uint8_t { number, boolean, text };
 
 void put_argument(const PlayArgument& argument, ByteWriter& bytes) {
   bytes.put_string(argument.name);

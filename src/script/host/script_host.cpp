@@ -6,6 +6,7 @@
 #include "config/json/problems.h"
 #include "config/scenario/event_text.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/state_hash.h"
 #include "play_list.h"
 #include "script/bindings/machine_sets.h"
 #include "signal/byte_order.h"
@@ -16,16 +17,15 @@ namespace {
 
 constexpr std::uint32_t kept_format = 3;
 
-// FNV-1a.
 std::uint64_t chart_sign(const Chart& chart) noexcept {
-  std::uint64_t sign = 14695981039346656037ULL;
-  const auto mix = [&](std::uint64_t value) { sign = (sign ^ value) * 1099511628211ULL; };
+  StateHash sign;
   for (const Chart::State& state : chart.states) {
-    for (const char c : state.path) mix(static_cast<unsigned char>(c));
-    mix(state.parent);
+    for (const char c : state.path) sign.add(c);
+    sign.add(state.parent);
   }
-  for (const Chart::Transition& transition : chart.transitions) mix(transition.source), mix(transition.target);
-  return sign;
+  for (const Chart::Transition& transition : chart.transitions)
+    sign.add(transition.source), sign.add(transition.target);
+  return sign.value();
 }
 
 // Each state with the signal of the region that it is in; not those in regions that have no signal.
@@ -314,18 +314,18 @@ void ScriptHost::watch_folders() {
   }
 }
 
-BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
+BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot, Describe describe) {
   switch (question.kind) {
     case BehaviorQuestion::Kind::report:
       return {.paused = paused(), .behaviors = reports()};
     case BehaviorQuestion::Kind::why:
       return {.reasons = why(question.text, snapshot)};
-    case BehaviorQuestion::Kind::set_parameter:
-      return set_parameter(question.text, question.value);
     case BehaviorQuestion::Kind::describe:
+      return {.text = describe(this)};
+    case BehaviorQuestion::Kind::set_parameter:
       break;
   }
-  return {};
+  return set_parameter(question.text, question.value);
 }
 
 std::vector<BehaviorReport> ScriptHost::reports() const {

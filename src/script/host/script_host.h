@@ -60,9 +60,10 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   // motions, too.
   void note(const Snapshot& snapshot, const CommandSender& commands) noexcept { pause_.note(snapshot, commands); }
 
-  // Behavior thread, between ticks: reports, reasons and changes of parameters (charts are described by
-  // remote/instance). Throws InputError.
-  BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot);
+  using Describe = std::string (*)(const ScriptHost*);  // the charts for viewers
+  // Behavior thread, between ticks: reports, reasons, charts as `describe` tells them, and changes of parameters.
+  // Throws InputError.
+  BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot, Describe describe);
   std::vector<BehaviorReasons> why(const std::string& name, const Snapshot& snapshot) const;
 
   // Behavior thread, between ticks: writes the state of everything that plays as bytes. Returns "", or why it is
@@ -95,7 +96,6 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   Behavior& behavior(std::size_t index) noexcept { return *list_.entries()[index].behavior; }
   const Behavior& behavior(std::size_t index) const noexcept { return *list_.entries()[index].behavior; }
   bool over(std::size_t index) const noexcept { return list_.entries()[index].over; }
-  std::uint32_t lane(std::size_t index) const noexcept { return list_.entries()[index].lane; }
 
  private:
   struct Due {  // an order with its loaded behaviors

@@ -98,6 +98,7 @@ int push_miss(lua_State* state, const ObjectInfo& object, const Foresight::Miss&
   const char* const word = miss.why == Why::reach   ? "out_of_reach"
                            : miss.why == Why::bear  ? "cannot_stand"
                            : miss.why == Why::clash ? "in_the_way"
+                           : miss.why == Why::tilt  ? "too_tilted"
                            : miss.why == Why::jump  ? "no_smooth_way"
                                                     : "too_quick";
   const auto joint = [&](std::size_t i) {
@@ -113,6 +114,7 @@ int push_miss(lua_State* state, const ObjectInfo& object, const Foresight::Miss&
     lua_pushfstring(state, "it topples after %f s: give it at least %f s", rounded(miss.after_s), rounded(miss.by));
   if (miss.why == Why::speed)
     lua_pushfstring(state, "%s would be too fast: give it at least %f s", joint(miss.joint), rounded(miss.by));
+  if (miss.why == Why::tilt) lua_pushfstring(state, "the trunk would lean by %f rad", rounded(miss.by));
   if (miss.why == Why::jump) lua_pushfstring(state, "%s would jump on the way", joint(miss.joint));
   if (miss.why == Why::clash) lua_pushfstring(state, "%s would hit %s", link(miss.link), link(miss.other));
   if (miss.why == Why::bear)
@@ -130,6 +132,7 @@ int push_miss(lua_State* state, const ObjectInfo& object, const Foresight::Miss&
 //   "out_of_reach", how far it is from there, and the set-point that it misses most;
 //   "too_quick", the least time in s, and a sentence;
 //   "in_the_way", the share of the way that is clear, and a sentence with the links that would hit each other;
+//   "too_tilted", how far the trunk would lean, and a sentence with it;
 //   "no_smooth_way", the share of the way that is smooth, and a sentence with the joint that would jump;
 //   "cannot_stand", the stiffness in Nm/rad that is missing, and a sentence.
 int foresee(lua_State* state, const ObjectInfo& object, const MotionTargets& targets, const TaskOptions& tasks,

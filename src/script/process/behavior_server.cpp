@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "behavior_link.h"
-#include "config/json/problems.h"
 #include "kadans/signal/input_error.h"
 #include "script/host/play_list.h"
 
@@ -59,7 +58,7 @@ void SpokenLines::tell_emitted(const EmittedEvent& event) {
 }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,
-                               SpokenLines& lines, Catalog& catalog, ControlSets& sets, Describe describe)
+                               SpokenLines& lines, Catalog& catalog, ControlSets& sets, ScriptHost::Describe describe)
     : link_(link),
       bell_(bell),
       host_(host),
@@ -145,8 +144,7 @@ void BehaviorServer::answer_questions() {
     BehaviorQuestion question;
     if (!take_question(bytes, question)) break;
     try {
-      const bool charts = question.kind == BehaviorQuestion::Kind::describe;
-      put(number, charts ? BehaviorReply{.text = describe_(&host_)} : host_.reply(question, snapshot_));
+      put(number, host_.reply(question, snapshot_, describe_));
     } catch (const InputError& error) {
       put(number, {.error = error.what()});
     }

@@ -37,11 +37,9 @@ class SpokenLines final : public LineSink {
 
 class BehaviorServer {
  public:
-  using Describe = std::string (*)(const ScriptHost*);  // the charts for viewers
-
   // `log` and `catalog` are those of the host, `sets` those of the catalog; `lines` is a sink of the log.
   BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log, SpokenLines& lines,
-                 Catalog& catalog, ControlSets& sets, Describe describe);
+                 Catalog& catalog, ControlSets& sets, ScriptHost::Describe describe);
 
   // Serves until the runtime closes the doorbell. Returns the exit code of the process: 0, or 1 when the host cannot
   // continue from the kept state.
@@ -63,7 +61,7 @@ class BehaviorServer {
   SpokenLines& lines_;
   Catalog& catalog_;
   ControlSets& sets_;
-  Describe describe_;
+  ScriptHost::Describe describe_;
   CommandSender commands_;
   Snapshot snapshot_;
   ByteWriter kept_, replies_;

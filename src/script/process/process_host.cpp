@@ -159,15 +159,19 @@ bool ChildAnswer::tell_line(std::span<const std::byte> line, BehaviorLog& log, s
   return fields.ok() && fields.left() == 0;
 }
 
+void ChildAnswer::copy(std::span<const std::byte> shared) {
+  bytes_.resize(shared.size());
+  std::memcpy(bytes_.data(), shared.data(), shared.size());
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+}
+
 bool ChildAnswer::take_kept(BehaviorLink& link, std::optional<std::vector<std::byte>>& kept) {
   if (once(link.answer.kept_changed) == 0) return true;
   const std::uint32_t size = once(link.answer.kept.size);
   if (size == KeptState::none) return kept.reset(), true;
   if (size > KeptState::bytes_max) return false;
   const std::uint64_t hash = copy_of(link.answer.kept.hash);
-  bytes_.resize(size);
-  std::memcpy(bytes_.data(), link.answer.kept.bytes.data(), size);
-  std::atomic_signal_fence(std::memory_order_seq_cst);
+  copy(std::span(link.answer.kept.bytes).first(size));
   if (hash_of_kept(bytes_.data(), size) != hash) return false;
   if (!kept) kept.emplace();
   kept->assign(bytes_.begin(), bytes_.end());
@@ -177,9 +181,7 @@ bool ChildAnswer::take_kept(BehaviorLink& link, std::optional<std::vector<std::b
 bool ChildAnswer::take_replies(BehaviorLink& link, std::map<std::uint32_t, BehaviorReply>& replies) {
   const std::uint32_t size = once(link.answer.reply_size);
   if (size > BehaviorLink::reply_bytes) return false;
-  bytes_.resize(size);
-  std::memcpy(bytes_.data(), link.answer.replies.data(), size);
-  std::atomic_signal_fence(std::memory_order_seq_cst);
+  copy(std::span(link.answer.replies).first(size));
   ByteReader bytes(bytes_);
   while (bytes.left() > 0) {
     const auto number = bytes.take<std::uint32_t>();
@@ -270,19 +272,14 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
   if (!names) refuse("it tells no names");
   if (ChildAnswer::fingerprint(child_->link) != fingerprint_) refuse("the robot's files changed meanwhile");
   play_.declare(catalog.signals);
-  names_ = *names;
-  for (std::size_t i = 0; i < names_.size(); ++i) {
+  for (std::size_t i = 0; i < names->size(); ++i) {
     BehaviorStatus& status = behaviors_.emplace_back();
     status.region_paths = ChildAnswer::regions(child_->link, i);
-    (void)status.declare_numbered(catalog.signals, names_[i]);
-    reported_.push_back({.name = names_[i]});
+    (void)status.declare_numbered(catalog.signals, (*names)[i]);
+    reported_.push_back({.name = (*names)[i]});
   }
   play_.phase.store(behaviors_.empty() ? 0 : 1, std::memory_order_relaxed);
   phase_ = Phase::playing;
-}
-
-bool ProcessHost::is_event(const Sent& order) noexcept {
-  return order.bytes[sizeof order.number] == std::byte{static_cast<std::uint8_t>(PlayOrder::Kind::emit)};
 }
 
 std::uint32_t ProcessHost::send(const PlayOrder& order) {
@@ -291,12 +288,13 @@ std::uint32_t ProcessHost::send(const PlayOrder& order) {
   put_order(order, bytes);
   if (bytes.size() > BehaviorLink::order_bytes) throw InputError({.message = "the order is too long"});
   if (phase_ == Phase::down) throw InputError({.message = "the behaviors' process is down"});
-  if (order.kind == PlayOrder::Kind::emit) {
+  const bool event = order.kind == PlayOrder::Kind::emit;
+  if (event) {
     if (paused()) throw InputError({.message = "the behaviors are paused; the event would be old when they go on"});
-    if (std::ranges::count_if(orders_, is_event) >= static_cast<std::ptrdiff_t>(EventQueue::sent_max))
+    if (std::ranges::count(orders_.sent, true, &Sent::shares) >= static_cast<std::ptrdiff_t>(EventQueue::sent_max))
       throw InputError({.message = std::to_string(EventQueue::sent_max) + " events wait for the next tick already"});
   }
-  orders_.push_back({++sent_, {bytes.bytes().begin(), bytes.bytes().end()}});
+  orders_.sent.push_back({++sent_, {bytes.bytes().begin(), bytes.bytes().end()}, event});
   stopping_ = order.kind == PlayOrder::Kind::stop;
   return sent_;
 }
@@ -309,14 +307,17 @@ std::uint32_t ProcessHost::ask(const PlayOrder& order) {
 
 std::uint32_t ProcessHost::ask(const BehaviorQuestion& question) {
   const bool report = question.kind == BehaviorQuestion::Kind::report;
-  if (phase_ == Phase::down && !report) throw InputError({.message = "the behaviors' process is down"});
+  if (phase_ == Phase::down) {
+    if (!report) throw InputError({.message = "the behaviors' process is down"});
+    asked_for_[++sent_] = last_report();
+    return sent_;
+  }
   ByteWriter bytes;
   bytes.put(sent_ + 1);
   put_question(question, bytes);
   if (bytes.size() > BehaviorLink::question_bytes) throw InputError({.message = "the question is too long"});
   asked_for_[++sent_];
-  questions_.push_back({sent_, {bytes.bytes().begin(), bytes.bytes().end()}, report});
-  if (phase_ == Phase::down) fail_questions(questions_.size(), "");
+  questions_.sent.push_back({sent_, {bytes.bytes().begin(), bytes.bytes().end()}, true, report});
   return sent_;
 }
 
@@ -341,12 +342,13 @@ BehaviorReply ProcessHost::last_report() const {
 }
 
 // The first ones.
-void ProcessHost::fail_questions(std::size_t count, const std::string& why) {
-  for (; count > 0; --count, questions_.pop_front()) {
-    const auto asked = asked_for_.find(questions_.front().number);
+void ProcessHost::fail(Queue& queue, std::size_t count, const std::string& why) {
+  for (; count > 0; --count, queue.sent.pop_front()) {
+    const auto asked = asked_for_.find(queue.sent.front().number);
     if (asked == asked_for_.end()) continue;
-    asked->second = questions_.front().report ? last_report() : BehaviorReply{.error = why};
+    asked->second = queue.sent.front().report ? last_report() : BehaviorReply{.error = why};
   }
+  queue.asked = 0;
 }
 
 void ProcessHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -384,30 +386,18 @@ void ProcessHost::look_if_ready() noexcept {
   }
 }
 
-// The oldest, and events behind an event as far as there is room: they are for the same tick.
-void ProcessHost::put_orders(BehaviorLink::Request& request) noexcept {
+// The oldest, and those behind it that share a request with it, as far as there is room. Returns their size in bytes.
+std::uint32_t ProcessHost::put(Queue& queue, std::span<std::byte> request) noexcept {
   std::size_t size = 0;
-  asked_orders_ = 0;
-  for (const Sent& order : orders_) {
-    const bool next = asked_orders_ == 0 || (is_event(order) && is_event(orders_.front()));
-    if (!next || size + order.bytes.size() > BehaviorLink::order_bytes) break;
-    std::ranges::copy(order.bytes, request.order.begin() + static_cast<std::ptrdiff_t>(size));
-    size += order.bytes.size();
-    ++asked_orders_;
+  queue.asked = 0;
+  for (const Sent& one : queue.sent) {
+    const bool next = queue.asked == 0 || (one.shares && queue.sent.front().shares);
+    if (!next || size + one.bytes.size() > request.size()) break;
+    std::ranges::copy(one.bytes, request.begin() + static_cast<std::ptrdiff_t>(size));
+    size += one.bytes.size();
+    ++queue.asked;
   }
-  request.order_size = static_cast<std::uint32_t>(size);
-}
-
-void ProcessHost::put_questions(BehaviorLink::Request& request) noexcept {
-  std::size_t size = 0;
-  asked_questions_ = 0;
-  for (const Sent& question : questions_) {
-    if (size + question.bytes.size() > BehaviorLink::question_bytes) break;
-    std::ranges::copy(question.bytes, request.questions.begin() + static_cast<std::ptrdiff_t>(size));
-    size += question.bytes.size();
-    ++asked_questions_;
-  }
-  request.question_size = static_cast<std::uint32_t>(size);
+  return static_cast<std::uint32_t>(size);
 }
 
 // The process reads the robot's files; what was changed since it has to be told.
@@ -425,8 +415,8 @@ void ProcessHost::ask(const Snapshot& snapshot, const CommandSender& commands) n
   BehaviorLink::Request& request = child_->link.request;
   request.last_sequence = asked_sequence_ = commands.last_sequence();
   request.room = static_cast<std::uint32_t>(std::min(commands.room(), CommandQueue::capacity()));
-  put_orders(request);
-  put_questions(request);
+  request.order_size = put(orders_, request.order);
+  request.question_size = put(questions_, request.questions);
   put_parameters(request);
   request.snapshot = snapshot;
   asked_for_ns_ = snapshot.time_ns;
@@ -476,16 +466,16 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
 bool ProcessHost::take_replies() {
   std::map<std::uint32_t, BehaviorReply> replies;
   if (!answer_.take_replies(child_->link, replies)) return false;
-  const auto settle = [&](std::deque<Sent>& sent, std::size_t& asked) {
-    for (; asked > 0; --asked, sent.pop_front()) {
-      BehaviorReply& reply = replies[sent.front().number];
-      if (sent.front().report) reported_ = reply.behaviors;
-      if (const auto waits = asked_for_.find(sent.front().number); waits != asked_for_.end())
-        waits->second = std::move(reply);
+  const auto settle = [&](Queue& queue) {
+    for (; queue.asked > 0; --queue.asked, queue.sent.pop_front()) {
+      const Sent& first = queue.sent.front();
+      BehaviorReply& reply = replies[first.number];
+      if (first.report) reported_ = reply.behaviors;
+      if (const auto waits = asked_for_.find(first.number); waits != asked_for_.end()) waits->second = std::move(reply);
     }
   };
-  settle(orders_, asked_orders_);
-  settle(questions_, asked_questions_);
+  settle(orders_);
+  settle(questions_);
   return true;
 }
 
@@ -503,8 +493,7 @@ void ProcessHost::bury(const std::string& why, bool alive) noexcept {
     if (play_.phase.load(std::memory_order_relaxed) != 0) safe_->failed(now_ns_, ~ObjectMask{0});
   }
   give_up_order();
-  fail_questions(asked_questions_, "the behaviors' process died of it, or at the same time: ask again");
-  asked_questions_ = 0;
+  fail(questions_, questions_.asked, "the behaviors' process died of it, or at the same time: ask again");
   const std::optional<std::int64_t> due_ns = policy_.died(now_ns_);
   if (!kept_) return stay_down(how + ", and its state could not be kept");
   if (!due_ns) return stay_down(how + ", " + std::to_string(policy_.in_a_row()) + " times in a row");
@@ -516,27 +505,19 @@ void ProcessHost::bury(const std::string& why, bool alive) noexcept {
 // The next process gets it too, but not for ever.
 void ProcessHost::give_up_order() noexcept {
   constexpr std::uint32_t deaths_max = 3;
-  if (!asked_ || asked_orders_ == 0 || ++order_deaths_ < deaths_max) return;
-  drop_orders(asked_orders_, "the behaviors' process died of it three times");
+  if (!asked_ || orders_.asked == 0 || ++order_deaths_ < deaths_max) return;
+  fail(orders_, orders_.asked, "the behaviors' process died of it three times");
   order_deaths_ = 0;
   say(Severity::error, "an order was dropped: the behaviors' process died of it three times");
-}
-
-void ProcessHost::drop_orders(std::size_t count, const std::string& why) {
-  for (; count > 0; --count, orders_.pop_front()) {
-    if (const auto asked = asked_for_.find(orders_.front().number); asked != asked_for_.end())
-      asked->second = BehaviorReply{.error = why};
-  }
-  asked_orders_ = 0;
 }
 
 void ProcessHost::stay_down(const std::string& why) noexcept {
   child_.reset();
   phase_ = Phase::down;
-  drop_orders(orders_.size(), "the behaviors' process stays down: " + why);
-  fail_questions(questions_.size(), "the behaviors' process stays down: " + why);
-  asked_questions_ = 0;
-  say(Severity::error, "the behaviors' process stays down: " + why);
+  const std::string how = "the behaviors' process stays down: " + why;
+  fail(orders_, orders_.sent.size(), how);
+  fail(questions_, questions_.sent.size(), how);
+  say(Severity::error, how);
 }
 
 void ProcessHost::say(Severity severity, const std::string& text) noexcept {

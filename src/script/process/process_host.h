@@ -74,6 +74,7 @@ class ChildAnswer {
 
  private:
   bool tell_line(std::span<const std::byte> line, BehaviorLog& log, std::int64_t time_ns);
+  void copy(std::span<const std::byte> shared);  // to bytes_
 
   std::vector<std::byte> bytes_;
   std::vector<Command> commands_;
@@ -148,10 +149,6 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   // As a report told them last, each with what is wrong with the process.
   BehaviorReply last_report() const;
 
-  // The behaviors that the process was started with.
-  const std::vector<std::string>& names() const noexcept { return names_; }
-  bool paused() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 2; }
-  bool finished() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 0; }
   bool down() const noexcept { return phase_ == Phase::down; }
   std::uint64_t deaths() const noexcept { return policy_.deaths(); }
   std::uint64_t takeovers() const noexcept { return takeovers_; }
@@ -164,26 +161,29 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   struct Sent {
     std::uint32_t number = 0;
     std::vector<std::byte> bytes;
-    bool report = false;  // of a question
+    bool shares = false;  // a request with others: an event or a question
+    bool report = false;  // a question for one
   };
-  static bool is_event(const Sent& order) noexcept;
+  struct Queue {
+    std::deque<Sent> sent;
+    std::size_t asked = 0;  // the first of them are in the request
+  };
   struct Incarnation;  // a process and the memory shared with it
 
   void start();
   void start_when_due() noexcept;
   void look_if_ready() noexcept;
+  bool paused() const noexcept { return play_.phase.load(std::memory_order_relaxed) == 2; }
   std::uint32_t send(const PlayOrder& order);
-  void put_orders(BehaviorLink::Request& request) noexcept;
-  void put_questions(BehaviorLink::Request& request) noexcept;
+  static std::uint32_t put(Queue& queue, std::span<std::byte> request) noexcept;
   bool take_replies();
-  void fail_questions(std::size_t count, const std::string& why);
+  void fail(Queue& queue, std::size_t count, const std::string& why);
   void put_parameters(BehaviorLink::Request& request) noexcept;
   void ask(const Snapshot& snapshot, const CommandSender& commands) noexcept;
   void wait_for_answer(CommandSender& commands) noexcept;
   bool take_answer(CommandSender& commands) noexcept;
   void bury(const std::string& why, bool alive) noexcept;
   void give_up_order() noexcept;
-  void drop_orders(std::size_t count, const std::string& why);
   void stay_down(const std::string& why) noexcept;
   void say(BehaviorLog::Severity severity, const std::string& text) noexcept;
 
@@ -197,9 +197,8 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   ChildAnswer answer_;
   std::optional<std::vector<std::byte>> kept_{std::in_place};  // empty: no answer yet; nullopt: cannot be kept
   PlayStatus play_;
-  std::vector<std::string> names_;
   std::deque<BehaviorStatus> behaviors_;
-  std::deque<Sent> orders_, questions_;
+  Queue orders_, questions_;
   std::uint32_t sent_ = 0;
   std::map<std::uint32_t, std::optional<BehaviorReply>> asked_for_;  // by those who will ask for the reply
   std::vector<BehaviorReport> reported_;
@@ -209,8 +208,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
     double sent = 0;  // NaN: this process has not got it
   };
   std::vector<Foreseen> foreseen_;
-  std::size_t asked_orders_ = 0, asked_questions_ = 0;  // the first of them are in the request
-  bool stopping_ = false;                               // the last order was to stop
+  bool stopping_ = false;  // the last order was to stop
   WallClock clock_;
 
   std::int64_t now_ns_ = 0;         // on the engine's clock

@@ -7,6 +7,18 @@
 namespace kadans::dynamixel {
 namespace {
 
+constexpr EmulatedFaultKind servo_faults[] = {
+    {"bytes_lost", EmulatedFaultKind::Of::line, "share of the bytes"},
+    {"bytes_corrupt", EmulatedFaultKind::Of::line, "share of the bytes"},
+    {"cable_out", EmulatedFaultKind::Of::line, ""},
+    {"drive_reboots", EmulatedFaultKind::Of::drive, ""},
+    {"drive_hot", EmulatedFaultKind::Of::drive, "its temperature, C"},
+    {"drive_zero", EmulatedFaultKind::Of::drive, "by which it is wrong, rad"},
+    {"drive_gone", EmulatedFaultKind::Of::drive, ""},
+    {"drive_tripped", EmulatedFaultKind::Of::drive, "bits of the register Hardware Error Status"},
+};
+
+constexpr double rad_per_count = 2 * 3.14159265358979 / 4096;
 constexpr double supply_V = 12, supply_Ohm = 0.15;
 
 std::uint8_t code_of_baud(std::uint32_t baud) {
@@ -19,6 +31,7 @@ EmulatedRobot::EmulatedRobot(const DynamixelSettings& settings, const PlantSite&
     : shafts_(site) {
   const auto latency_ns = static_cast<std::int64_t>(0.5e9 * settings.usb_latency_s);
   for (const PortSettings& port : settings.ports) {
+    ports_.push_back(port.name);
     buses_.push_back(std::make_unique<EmulatedBus>(latency_ns, seed + buses_.size()));
     for (const ServoSettings& is : settings.servos) {
       if (is.port != port.name) continue;
@@ -69,6 +82,30 @@ void EmulatedRobot::switch_power() noexcept {
     for (EmulatedServo& servo : bus->servos) servo.switch_power();
   }
   shafts_.rest();
+}
+
+void EmulatedRobot::check(const EmulatedFault& fault) const {
+  check_fault(fault, servo_faults, shafts_.drives(), ports_);
+}
+
+void EmulatedRobot::befall(const EmulatedFault& fault, bool begins) noexcept {
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    if (!hits(fault, i)) continue;
+    if (fault.kind == "bytes_lost") buses_[i]->faults.lost = begins ? fault.size : 0;
+    if (fault.kind == "bytes_corrupt") buses_[i]->faults.corrupt = begins ? fault.size : 0;
+    if (fault.kind != "cable_out") continue;
+    for (EmulatedServo& servo : buses_[i]->servos) servo.unplug(begins);
+  }
+  const std::size_t place = shafts_.place(fault.of);
+  if (fault.kind.starts_with("bytes_") || place >= shafts_.drives().size()) return;
+  EmulatedServo& its = servo(place);
+  if (fault.kind == "drive_gone") its.unplug(begins);
+  if (fault.kind == "drive_zero")
+    its.shift_zero((begins ? 1 : -1) * static_cast<int>(std::lround(fault.size / rad_per_count)));
+  if (!begins) return;
+  if (fault.kind == "drive_reboots") its.reboot();
+  if (fault.kind == "drive_hot") its.heat_to(static_cast<int>(fault.size));
+  if (fault.kind == "drive_tripped") its.break_down(static_cast<std::uint8_t>(fault.size));
 }
 
 bool EmulatedRobot::any_torque() const noexcept {

@@ -1,5 +1,5 @@
-// Serves a modelled robot's servos on pseudo-terminals (drive_server.h). The baud rate is the one that the other end
-// has set its terminal to: at another one than the servos' they understand nothing.
+// Serves a modelled robot's servos on pseudo-terminals (drive_server.h). At another baud rate than
+// the servos' they understand nothing.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 #include "emulated_robot.h"
 #include "plant/drive_server.h"
+#include "plant/serial/pseudo_terminal.h"
 
 namespace kadans::dynamixel {
 
@@ -20,20 +21,13 @@ class ServoServer final : public DriveServer {
   std::vector<PlantCount> link_counts() const override;
 
  private:
-  std::vector<int> descriptors() const override { return masters_; }
+  std::vector<int> descriptors() const override;
   std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
   std::uint64_t heard() const noexcept override;
-  void look(WorldRobot& robot) override { robot_.look(robot); }
-  void drive(WorldRobot& robot) override { robot_.drive(robot); }
-  void pass(std::int64_t dt_ns) noexcept override { robot_.pass(dt_ns); }
-  bool any_torque() const noexcept override { return robot_.any_torque(); }
-  bool any_watchdog_tripped() const noexcept override { return robot_.any_watchdog_tripped(); }
-  void switch_power() noexcept override { robot_.switch_power(); }
-  void open_terminal(const std::string& link);
+  EmulatedDrives& drives() noexcept override { return robot_; }
 
   std::string listen_;
-  std::vector<int> masters_, slaves_;  // a slave of our own keeps the terminal alive while nobody else has it open
-  std::vector<std::string> links_;
+  std::vector<PseudoTerminal> terminals_;
   EmulatedRobot robot_;
 };
 

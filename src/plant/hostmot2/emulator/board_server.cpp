@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include <unistd.h>
 
@@ -10,7 +11,7 @@
 namespace kadans::hostmot2 {
 
 BoardServer::BoardServer(const HostMot2Settings& settings, const PlantSite& site)
-    : DriveServer(site.layout.period_ns), machine_(settings, site, 1), peers_(settings.boards.size()) {
+    : DriveServer(site.layout.period_ns), machine_(settings, site, site.seed), peers_(settings.boards.size()) {
   try {
     for (const BoardSettings& board : settings.boards) {
       if (!board.resource.empty()) throw InputError({.message = "board '" + board.name + "' is no board on Ethernet"});

@@ -23,12 +23,7 @@ class BoardServer final : public DriveServer {
   std::vector<int> descriptors() const override { return sockets_; }
   std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
   std::uint64_t heard() const noexcept override;
-  void look(WorldRobot& robot) override { machine_.look(robot); }
-  void drive(WorldRobot& robot) override { machine_.drive(robot); }
-  void pass(std::int64_t dt_ns) noexcept override { machine_.pass(dt_ns); }
-  bool any_torque() const noexcept override { return machine_.any_torque(); }
-  bool any_watchdog_tripped() const noexcept override { return machine_.any_watchdog_tripped(); }
-  void switch_power() noexcept override { machine_.switch_power(); }
+  EmulatedDrives& drives() noexcept override { return machine_; }
 
   EmulatedMachine machine_;
   std::vector<int> sockets_;

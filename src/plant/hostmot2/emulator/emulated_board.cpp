@@ -83,7 +83,7 @@ void EmulatedBoard::power_on() noexcept {
   for (Encoder& one : encoders_) one = {.count = one.count, .origin = one.origin, .probe = one.probe};
   for (Pwm& one : pwms_) one = {};
   for (Port& one : ports_) one = {};
-  pwm_rate_ = pdm_rate_ = pwm_enable_ = stamp_divisor_ = filter_divisor_ = led_ = 0;
+  pwm_rate_ = pdm_rate_ = pwm_enable_ = stamp_divisor_ = 0;
   timeout_ = 0x80000000U;
   bitten_ = false;
   left_ns_ = 0;
@@ -256,9 +256,6 @@ bool EmulatedBoard::write(unsigned address, std::uint32_t value) noexcept {
   const unsigned block = address & 0xFF00U, instance = (address & 0xFFU) / 4;
   const bool port = instance < ports_.size(), encoder = instance < encoders_.size(), pwm = instance < pwms_.size();
   switch (block) {
-    case 0x0200:
-      led_ = value;
-      break;
     case 0x0C00:
       timeout_ = value;
       left_ns_ = (static_cast<double>(value & 0x7FFFFFFFU) + 1) / low_clock_Hz * 1e9;
@@ -294,9 +291,6 @@ bool EmulatedBoard::write(unsigned address, std::uint32_t value) noexcept {
     case 0x3200:
       stamp_divisor_ = value & 0xFFFFU;
       break;
-    case 0x3400:
-      filter_divisor_ = value & 0xFFFU;
-      break;
     case 0x4000:
       if (pwm) pwms_[instance].value = value;
       break;
@@ -313,7 +307,7 @@ bool EmulatedBoard::write(unsigned address, std::uint32_t value) noexcept {
       pwm_enable_ = value;
       break;
     default:
-      break;
+      break;  // a LED, the filter of encoders, or nothing: no input shows it
   }
   return true;
 }

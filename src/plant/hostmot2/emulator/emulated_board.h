@@ -44,17 +44,15 @@ class EmulatedBoard {
   bool driven(unsigned pin) const noexcept;
   // Numbers of its pins.
   unsigned pwm_pin(unsigned pwm) const noexcept { return 3 * pwm; }  // and the two that follow
-  unsigned encoder_pin(unsigned encoder) const noexcept { return 3 * settings_.pwms + 3 * encoder; }
   unsigned first_free_pin() const noexcept { return 3 * (settings_.pwms + settings_.encoders); }
   unsigned pins() const noexcept { return settings_.ports * settings_.width; }
 
+  void bite() noexcept;  // its watchdog does
   bool bitten() const noexcept { return bitten_; }
   bool watching() const noexcept { return (timeout_ & 0x80000000U) == 0 && !bitten_; }
-  void bite() noexcept;
   void switch_power() noexcept;  // off and on again: everything is as after its power came on
   // Its counter is what the outside counts.
   void restore_origin(unsigned encoder) noexcept { encoders_[encoder].origin = 0; }
-  std::uint32_t led() const noexcept { return led_; }
 
  private:
   struct Encoder {
@@ -88,8 +86,7 @@ class EmulatedBoard {
   std::vector<Port> ports_;
   std::vector<bool> inputs_;
   std::uint32_t pwm_rate_ = 0, pdm_rate_ = 0, pwm_enable_ = 0;
-  std::uint32_t stamp_divisor_ = 0, filter_divisor_ = 0;
-  std::uint32_t timeout_ = 0x80000000U, led_ = 0;
+  std::uint32_t stamp_divisor_ = 0, timeout_ = 0x80000000U;
   double left_ns_ = 0;  // until the watchdog bites
   bool bitten_ = false;
   std::int64_t time_ns_ = 0;

@@ -15,17 +15,33 @@ struct Kind {
 };
 constexpr Kind kinds[] = {{"7I96", 3, 17}, {"7I92", 2, 17}, {"7I76E-16", 3, 17}, {"5I20", 3, 24}, {"4I65", 3, 24}};
 
+constexpr EmulatedFaultKind board_faults[] = {
+    {"datagrams_lost", EmulatedFaultKind::Of::line, "share of the datagrams"},
+    {"datagrams_corrupt", EmulatedFaultKind::Of::line, "share of the datagrams"},
+    {"datagrams_twice", EmulatedFaultKind::Of::line, "share of the datagrams"},
+    {"datagrams_late", EmulatedFaultKind::Of::line, "share of the datagrams"},
+    {"cable_out", EmulatedFaultKind::Of::line, ""},
+    {"watchdog_bites", EmulatedFaultKind::Of::line, ""},
+    {"board_reboots", EmulatedFaultKind::Of::line, ""},
+    {"drive_tripped", EmulatedFaultKind::Of::drive, ""},
+    {"emergency_button", EmulatedFaultKind::Of::nothing, ""},
+};
+
 }  // namespace
 
 EmulatedMachine::EmulatedMachine(const HostMot2Settings& settings, const PlantSite& site, std::uint64_t seed)
-    : settings_(settings), site_(site), shafts_(site) {
+    : shafts_(site),
+      emergency_{.board = settings.board_number(settings.emergency_board), .is = {.pin = settings.emergency}} {
   for (const BoardSettings& board : settings.boards) {
-    const auto* const kind = std::ranges::find(kinds, board.card, &Kind::name);
-    if (kind == std::end(kinds)) {
+    names_.push_back(board.name);
+    const auto refuse = [&](const std::string& why) {
       InputProblem problem = board.place;
-      problem.message = "there is no emulator of a '" + board.card + "'; there are 7I96, 7I92, 7I76E-16, 5I20 and 4I65";
+      problem.message = why;
       throw InputError(problem);
-    }
+    };
+    const auto* const kind = std::ranges::find(kinds, board.card, &Kind::name);
+    if (kind == std::end(kinds))
+      refuse("there is no emulator of a '" + board.card + "'; there are 7I96, 7I92, 7I76E-16, 5I20 and 4I65");
     EmulatedBoard::Settings is{
         .name = board.card, .ports = kind->ports, .width = kind->width, .encoders = 0, .pwms = 0};
     for (const DriveWiring& drive : settings.drives) {
@@ -36,20 +52,18 @@ EmulatedMachine::EmulatedMachine(const HostMot2Settings& settings, const PlantSi
     try {
       boards_.emplace_back(is);
     } catch (const std::invalid_argument& error) {
-      InputProblem problem = board.place;
-      problem.message = error.what();
-      throw InputError(problem);
+      refuse(error.what());
     }
     wires_.emplace_back(boards_.back(), seed + boards_.size());
   }
   for (const DriveWiring& drive : settings.drives)
-    wired_.push_back({.board = board_number(drive.board), .joint = shafts_.place(drive.drive), .is = drive});
-  inputs_active_.resize(settings.inputs.size());
-}
-
-std::size_t EmulatedMachine::board_number(const std::string& name) const {
-  return static_cast<std::size_t>(std::ranges::find(settings_.boards, name, &BoardSettings::name) -
-                                  settings_.boards.begin());
+    wired_.push_back({.board = settings.board_number(drive.board), .joint = shafts_.place(drive.drive), .is = drive});
+  for (const FootWiring& foot : settings.feet) {
+    const std::vector<std::string>& feet = site.layout.feet;
+    const auto number = static_cast<std::size_t>(std::ranges::find(feet, foot.foot) - feet.begin());
+    if (number < feet.size()) feet_.push_back({settings.board_number(foot.board), number, foot});
+  }
+  for (const InputWiring& input : settings.inputs) inputs_.push_back({settings.board_number(input.board), input});
 }
 
 EmulatedMachine::Wired& EmulatedMachine::at(std::size_t joint) noexcept {
@@ -64,8 +78,8 @@ void EmulatedMachine::block(std::size_t joint, double low_rad, double high_rad) 
 }
 
 void EmulatedMachine::set_sensor(const std::string& name, bool active) noexcept {
-  for (std::size_t i = 0; i < settings_.inputs.size(); ++i) {
-    if (settings_.inputs[i].name == name) inputs_active_[i] = active;
+  for (Input& one : inputs_) {
+    if (one.is.name == name) one.active = active;
   }
 }
 
@@ -94,16 +108,13 @@ void EmulatedMachine::look(WorldRobot& robot) {
     input(w.board, w.is.fault, w.fails);
   }
   looked_ = true;
-  for (const FootWiring& foot : settings_.feet) {
-    const auto number =
-        static_cast<std::size_t>(std::ranges::find(site_.layout.feet, foot.foot) - site_.layout.feet.begin());
-    if (number >= site_.layout.feet.size()) continue;
-    for (std::size_t i = 0; i < foot.corners.size(); ++i)
-      input(board_number(foot.board), foot.corners[i], shafts_.sensors().feet[number].force_N[i] > foot.closed_N / 2);
+  for (const Foot& foot : feet_) {
+    const auto& force_N = shafts_.sensors().feet[foot.number].force_N;
+    for (std::size_t i = 0; i < force_N.size(); ++i)
+      input(foot.board, foot.is.corners[i], force_N[i] > foot.is.closed_N / 2);
   }
-  for (std::size_t i = 0; i < settings_.inputs.size(); ++i)
-    input(board_number(settings_.inputs[i].board), settings_.inputs[i].pin, inputs_active_[i]);
-  if (settings_.emergency) input(board_number(settings_.emergency_board), settings_.emergency, emergency_pressed_);
+  for (const Input& one : inputs_) input(one.board, one.is.pin, one.active);
+  input(emergency_.board, emergency_.is.pin, emergency_.active);
 }
 
 bool EmulatedMachine::enabled(std::size_t joint) const noexcept {
@@ -142,6 +153,10 @@ void EmulatedMachine::drive(WorldRobot& robot) {
       does = {.effort_Nm = duty(w) * a.full * turn_Nm_per_A, .mode = ActuationMode::effort};
     if (enabled(w.joint) && a.kind == AmplifierSettings::Kind::voltage)
       does = motor_at_voltage(duty(w), a.full / a.winding_Ohm * turn_Nm_per_A, a.full / (a.Nm_per_A * a.gear));
+    if (enabled(w.joint) && a.kind == AmplifierSettings::Kind::velocity)
+      does = {.velocity_rad_s = duty(w) * a.full / a.gear,
+              .damping_Nms_per_rad = a.gain_Nms_per_rad,
+              .mode = ActuationMode::impedance};
     shafts_.set(w.joint, does);
     if (w.is.brake) shafts_.set_brake(w.joint, output(w.board, w.is.brake));
   }
@@ -164,6 +179,27 @@ void EmulatedMachine::switch_power() noexcept {
   }
   shafts_.rest();
   looked_ = false;
+}
+
+void EmulatedMachine::check(const EmulatedFault& fault) const {
+  check_fault(fault, board_faults, shafts_.drives(), names_);
+}
+
+void EmulatedMachine::befall(const EmulatedFault& fault, bool begins) noexcept {
+  if (fault.kind == "emergency_button") return press_emergency(begins);
+  if (fault.kind == "drive_tripped") return fail_amplifier(shafts_.place(fault.of), begins);
+  const double share = begins ? fault.size : 0;
+  for (std::size_t i = 0; i < boards_.size(); ++i) {
+    if (!fault.of.empty() && fault.of != names_[i]) continue;
+    if (fault.kind == "datagrams_lost") wires_[i].faults.lost = share;
+    if (fault.kind == "datagrams_corrupt") wires_[i].faults.corrupt = share;
+    if (fault.kind == "datagrams_twice") wires_[i].faults.duplicated = share;
+    if (fault.kind == "datagrams_late") wires_[i].faults.late = share;
+    if (fault.kind == "cable_out") wires_[i].pulled = begins;
+    if (!begins) continue;
+    if (fault.kind == "watchdog_bites") boards_[i].bite();
+    if (fault.kind == "board_reboots") boards_[i].switch_power();
+  }
 }
 
 bool EmulatedMachine::any_torque() const noexcept {

@@ -19,6 +19,8 @@ void EmulatedWire::receive(std::span<const std::uint8_t> datagram, std::int64_t 
     std::vector<std::uint8_t> bytes = responder.answer(datagram);
     if (bytes.empty()) continue;
     if (replace) replace(bytes);
+    if (happens(faults.corrupt))
+      bytes[static_cast<std::size_t>(random_.uniform() * static_cast<double>(bytes.size()))] ^= 0x10;
     send(bytes, now_ns);
     if (happens(faults.duplicated)) send(bytes, now_ns);
   }

@@ -16,7 +16,7 @@
 namespace kadans::hostmot2 {
 
 struct WireFaults {  // shares of the datagrams, in each direction
-  double lost = 0, duplicated = 0, late = 0;
+  double lost = 0, corrupt = 0, duplicated = 0, late = 0;
   std::int64_t late_ns = 3'000'000;
 };
 

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "bench.h"
+#include "app/bench/bench.h"
+#include "app/bench/pushed_joint.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/plant_type.h"
 #include "person.h"
 #include "push.h"
-#include "pushed_joint.h"
 
 namespace kadans {
 

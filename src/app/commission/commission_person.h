@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "keys.h"
+#include "app/bench/keys.h"
 #include "person.h"
 
 namespace kadans {

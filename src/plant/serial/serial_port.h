@@ -5,14 +5,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
-#include "packet.h"
+#include "kadans/signal/input_error.h"
+#include "signal/monotonic_clock.h"
 
-namespace kadans::dynamixel {
-
-std::int64_t monotonic_ns() noexcept;  // of CLOCK_MONOTONIC
+namespace kadans {
 
 class SerialPort {
  public:
@@ -22,7 +22,7 @@ class SerialPort {
   SerialPort& operator=(const SerialPort&) = delete;
 
   // False: the system did not take all of it.
-  virtual bool send(Octets bytes) noexcept = 0;
+  virtual bool send(std::span<const std::uint8_t> bytes) noexcept = 0;
   // Waits until bytes are here, at most until this time; returns how many it put into `into`.
   virtual std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept = 0;
   virtual void discard() noexcept = 0;  // what came unasked
@@ -37,7 +37,7 @@ class TerminalPort final : public SerialPort {
   TerminalPort(const std::string& device, std::uint32_t baud);
   ~TerminalPort() override;
 
-  bool send(Octets bytes) noexcept override;
+  bool send(std::span<const std::uint8_t> bytes) noexcept override;
   std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
   void discard() noexcept override;
   std::int64_t now_ns() const noexcept override { return monotonic_ns(); }
@@ -48,7 +48,15 @@ class TerminalPort final : public SerialPort {
   int descriptor_ = -1;
 };
 
+// The port of this device. Throws InputError at `place`, where the device is named.
+std::unique_ptr<SerialPort> open_port(const std::string& device, std::uint32_t baud, const InputProblem& place);
+
+// The time that bytes take on the wire: 10 bits each.
+constexpr std::int64_t wire_ns(std::size_t bytes, std::uint32_t baud) noexcept {
+  return static_cast<std::int64_t>(bytes) * 10'000'000'000 / static_cast<std::int64_t>(baud);
+}
+
 // How long a USB adapter may keep bytes back: its latency timer, from /sys below `root`; 0: the device tells none.
 int latency_timer_ms(const std::string& root, const std::string& device);
 
-}  // namespace kadans::dynamixel
+}  // namespace kadans

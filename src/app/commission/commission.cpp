@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "app/bench/commission_steps.h"
+#include "commission_steps.h"
 #include "signal/nearest_name.h"
 
 namespace kadans {

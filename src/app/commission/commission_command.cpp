@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 #include "app/author/file_checks.h"
+#include "app/bench/drive_bench.h"
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "commission.h"
 #include "commission_person.h"
 #include "config/scenario/based_on.h"
-#include "drive_bench.h"
 #include "signal/input_file.h"
 
 namespace kadans {
@@ -72,7 +72,7 @@ int run_commission(const CommissionOptions& options) {
     person = std::make_unique<WrittenPerson>(options.answers);
   }
   const OpenDrives open = [&](const Robot& robot) -> OpenBench {
-    auto bench = std::make_unique<DriveBench>(robot, settings.plant, options.peer);
+    auto bench = std::make_unique<DriveBench>(robot, settings.plant, options.peer, "");
     if (!bench->open()) return {};
     const DriveWords words = bench->words();
     return {std::move(bench), words};

@@ -47,8 +47,6 @@ class Wiring {
   void write();
 
  private:
-  const JsonValue* entry(const JsonValue& root, const std::string& drive, std::string_view field) const;
-
   const WiringFields& fields_;
   std::string file_, text_;
   JsonValue merged_;

@@ -16,7 +16,7 @@
 #include "kadans/signal/input_error.h"
 #include "serial_port.h"
 
-namespace kadans::dynamixel {
+namespace kadans {
 namespace {
 
 [[noreturn]] void refuse_device(const std::string& device, const std::string& why) {
@@ -45,13 +45,23 @@ TerminalPort::TerminalPort(const std::string& device, std::uint32_t baud) : devi
   if (descriptor_ < 0) refuse_device(device, words_of(errno));
   try {
     if (isatty(descriptor_) == 0) refuse_device(device, "is no serial port");
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) refuse_device(device, "another program drives the servos on it");
+    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) refuse_device(device, "another program has it");
     set_baud(baud);
   } catch (...) {
     close(descriptor_);
     throw;
   }
   ask_for_low_latency(descriptor_);
+}
+
+std::unique_ptr<SerialPort> open_port(const std::string& device, std::uint32_t baud, const InputProblem& place) {
+  try {
+    return std::make_unique<TerminalPort>(device, baud);
+  } catch (const InputError& error) {
+    InputProblem problem = place;
+    problem.message = error.problems().front().message;
+    throw InputError(problem);
+  }
 }
 
 TerminalPort::~TerminalPort() { close(descriptor_); }
@@ -75,7 +85,7 @@ void TerminalPort::set_baud(std::uint32_t baud) {
                   "cannot run at " + std::to_string(baud) + " baud, the nearest is " + std::to_string(is.c_ospeed));
 }
 
-bool TerminalPort::send(Octets bytes) noexcept {
+bool TerminalPort::send(std::span<const std::uint8_t> bytes) noexcept {
   while (!bytes.empty()) {
     const ssize_t sent = ::write(descriptor_, bytes.data(), bytes.size());
     if (sent < 0 && errno == EINTR) continue;
@@ -104,12 +114,6 @@ std::size_t TerminalPort::receive(std::span<std::uint8_t> into, std::int64_t unt
 
 void TerminalPort::discard() noexcept { (void)ioctl(descriptor_, TCFLSH, TCIFLUSH); }
 
-std::int64_t monotonic_ns() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
 int latency_timer_ms(const std::string& root, const std::string& device) {
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(device, error);
@@ -119,4 +123,4 @@ int latency_timer_ms(const std::string& root, const std::string& device) {
   return in >> ms ? ms : 0;
 }
 
-}  // namespace kadans::dynamixel
+}  // namespace kadans

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "app/assembly.h"
-#include "bench.h"
+#include "app/bench/bench.h"
 #include "person.h"
 
 namespace kadans {

@@ -1,0 +1,111 @@
+#include "imu_server.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <poll.h>
+#include <pthread.h>
+
+#include "kadans/model/kinematics.h"
+#include "signal/monotonic_clock.h"
+
+namespace kadans::imu {
+namespace {
+
+constexpr int device_priority = 85;                  // it measures whatever else this machine does
+constexpr std::int64_t device_look_ns = 50'000'000;  // how soon the thread sees that it shall end
+
+EmulatedImu::Settings device_of(const SerialImuSettings& settings) {
+  EmulatedImu::Settings is{.old = settings.protocol == Protocol::mtdata,
+                           .delay_ns = std::llround(1e9 * settings.delay_s),
+                           .rate_max_Hz = std::max(settings.rate_Hz, 100U)};
+  if (!settings.id.empty()) is.id = static_cast<std::uint32_t>(std::stoul(settings.id, nullptr, 16));
+  return is;
+}
+
+}  // namespace
+
+ImuServer::ImuServer(std::unique_ptr<PlantEmulator> drives, const SerialImuSettings& settings, const Quat& to_base,
+                     const std::string& link)
+    : drives_(std::move(drives)),
+      to_base_(to_base),
+      terminal_(link, "--imu"),
+      device_(device_of(settings), 1),
+      thread_([this] { serve(); }) {}
+
+ImuServer::~ImuServer() {
+  stop_.store(true, std::memory_order_relaxed);
+  thread_.join();
+}
+
+void ImuServer::serve() noexcept {
+  sched_param parameter{};
+  parameter.sched_priority = device_priority;
+  (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);  // without the right it is a usual thread
+  pollfd wanted{terminal_.descriptor(), POLLIN, 0};
+  std::array<std::uint8_t, 1024> bytes;
+  while (!stop_.load(std::memory_order_relaxed)) {
+    const std::int64_t now_ns = monotonic_ns();
+    std::int64_t wake_ns = now_ns + device_look_ns;
+    {
+      const std::lock_guard lock(mutex_);
+      const std::size_t got = terminal_.read(bytes);
+      if (got > 0) device_.receive({bytes.data(), got}, now_ns, terminal_.baud());
+      device_.pass(now_ns);
+      const std::size_t count = device_.take(bytes, now_ns);
+      if (count > 0) terminal_.write({bytes.data(), count});
+      wake_ns = std::min(wake_ns, device_.due_ns());
+    }
+    const timespec wait{.tv_sec = 0, .tv_nsec = std::max<std::int64_t>(0, wake_ns - monotonic_ns())};
+    (void)ppoll(&wanted, 1, &wait, nullptr);
+  }
+}
+
+void ImuServer::plan_faults(const std::vector<EmulatedFault>& faults) {
+  for (const EmulatedFault& fault : faults) {
+    if (fault.of != "imu") {
+      drives_->plan_faults({fault});
+      continue;
+    }
+    const bool share = fault.kind == "bytes_lost" || fault.kind == "bytes_corrupt";
+    if (!share && fault.kind != "cable_out")
+      throw std::invalid_argument("no fault '" + fault.kind +
+                                  "' of the IMU; there are bytes_lost, bytes_corrupt, cable_out");
+    if (share && !(fault.size > 0 && fault.size <= 1)) throw std::invalid_argument(fault.kind + ": a share is 0..1");
+    faults_.push_back(fault);
+  }
+}
+
+void ImuServer::let_faults_happen(double time_s) noexcept {
+  device_.faults = {};
+  device_.silent = false;
+  for (const EmulatedFault& fault : faults_) {
+    if (!(time_s >= fault.from_s && time_s < fault.until_s)) continue;
+    if (fault.kind == "bytes_lost") device_.faults.lost = fault.size;
+    if (fault.kind == "bytes_corrupt") device_.faults.corrupt = fault.size;
+    if (fault.kind == "cable_out") device_.silent = true;
+  }
+}
+
+bool ImuServer::beat(World& world, std::uint32_t periods) {
+  const bool on = drives_->beat(world, periods);
+  SensorFrame sensors;
+  world.robot(0).read(sensors);
+  const std::lock_guard lock(mutex_);
+  let_faults_happen(1e-9 * static_cast<double>(sensors.time_ns));
+  device_.feels(rotate_inverse(to_base_, sensors.imu.angular_velocity_rad_s),
+                rotate_inverse(to_base_, sensors.imu.acceleration_m_s2));
+  return on;
+}
+
+std::vector<PlantCount> ImuServer::link_counts() const {
+  std::vector<PlantCount> counts = drives_->link_counts();
+  const std::lock_guard lock(mutex_);
+  counts.push_back({"imu messages", device_.understood()});
+  return counts;
+}
+
+}  // namespace kadans::imu
