@@ -152,13 +152,13 @@ struct JogOptions {
 void add_jog(CLI::App& app, JogOptions& options);
 int run_jog(const JogOptions& options);
 
-// `kadans commission`: bench/commission.h.
+// `kadans commission`: commission/commission.h.
 struct CommissionOptions {
   std::string robot;
   std::string plant;  // "": the only type with wiring that the robot's configuration has
   std::string peer;   // address of the drives; "": the robot's own
   double share = 0.1;
-  std::string only;  // one step
+  std::vector<std::string> steps;  // none: all
   std::vector<std::string> joints;
   std::string answers;  // file of lines; "": the terminal, or lines of the standard input
   bool again = false;

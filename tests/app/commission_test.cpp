@@ -23,7 +23,7 @@ struct Project {
   explicit Project(const Bus& bus)
       : folder(project_copy("commission")), mine(folder / "config/jiwiy/mine.json"), right(folder / bus.robot) {
     fs::copy_file(right, mine, fs::copy_options::overwrite_existing);
-    settings = {.robot = mine.string(), .plant = bus.type};
+    settings = {.robot = mine.string(), .plant = bus.type, .steps = {"names", "direction"}};
     truth = {.type = bus.type, .robot = right.string()};
   }
   void change(const std::string& from, const std::string& to) { REQUIRE(edit(mine, from, to)); }
@@ -85,6 +85,20 @@ TEST_CASE("Swapped joints are found by what the person sees, and the configurati
     project.change("\"enable\": \"x\"", "\"enable\": \"21\"");
     const Commissioned& all = project.commissioned();
     check_good(all);
+    CHECK(all.person.was_told("joint 'tilt' is moved by what is written for 'pan': corrected"));
+    CHECK(all.person.was_told("joint 'pan' is moved by what is written for 'tilt': corrected"));
+    CHECK(project.is_right());
+  }
+  SUBCASE("motors of boards") {
+    Project project(boards);
+    project.change("\"pwm\": 0", "\"pwm\": 9");
+    project.change("\"pwm\": 1", "\"pwm\": 0");
+    project.change("\"pwm\": 9", "\"pwm\": 1");
+    project.change("\"enable\": \"20\"", "\"enable\": \"x\"");
+    project.change("\"enable\": \"21\"", "\"enable\": \"20\"");
+    project.change("\"enable\": \"x\"", "\"enable\": \"21\"");
+    const Commissioned& all = project.commissioned();
+    check_good(all);
     CHECK(all.person.was_told("motors are swapped: joint 'tilt' is moved by that of 'pan': corrected"));
     CHECK(project.is_right());
   }
@@ -133,7 +147,7 @@ TEST_CASE("Wrong signs are found by what the person sees, each by itself, and co
     project.change(", \"reversed\": true", "");
     const Commissioned& all = project.commissioned();
     check_good(all);
-    CHECK(all.person.was_told("the sign of servo of 'tilt' is wrong"));
+    CHECK(all.person.was_told("the sign of the servo of 'tilt' is wrong"));
     CHECK(read(project.mine) == read(project.right));
   }
 }
@@ -220,7 +234,7 @@ TEST_CASE("A zero is found at a jig and at a hard stop, and written so that the 
     Project project(boards);
     project.change("\"enable\": \"20\"", "\"enable\": \"20\", \"home_rad\": 0.25");
     project.all.person.says = {{"pan", "jig"}, {"tilt", "upper-stop"}};
-    project.settings.only_step = "zero";
+    project.settings.steps = {"zero"};
     const Commissioned& all = project.commissioned();
     for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);
     for (const std::string& one : all.person.heard) INFO(one);
@@ -232,7 +246,7 @@ TEST_CASE("A zero is found at a jig and at a hard stop, and written so that the 
     Project project(servos);
     project.change("\"id\": 1", "\"zero_pulse\": 2148, \"id\": 1");
     project.all.person.says = {{"pan", "jig"}, {"tilt", "upper-stop"}};
-    project.settings.only_step = "zero";
+    project.settings.steps = {"zero"};
     const Commissioned& all = project.commissioned();
     for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);
     CHECK(has(read(project.mine), "\"zero_pulse\": 204"));
@@ -245,7 +259,7 @@ TEST_CASE("Soft limits are those to which a joint is moved by hand, and no wider
   for (const Bus& bus : {boards, servos}) {
     CAPTURE(bus.type);
     Project project(bus);
-    project.settings.only_step = "limits";
+    project.settings.steps = {"limits"};
     project.settings.joints = {"pan"};
     const Commissioned& all = project.commissioned();
     for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);

@@ -78,7 +78,7 @@ CommissionReport commission(const CommissionSettings& settings, Person& person, 
   Progress progress(settings.robot, settings.plant, settings.again);
   try {
     for (const StepEntry& entry : step_entries) {
-      if (!settings.only_step.empty() && settings.only_step != entry.name) continue;
+      if (!settings.steps.empty() && std::ranges::find(settings.steps, entry.name) == settings.steps.end()) continue;
       report.ended_early = !run_step(entry, settings, person, open, progress, report);
       // What a step could not find, the later ones need.
       if (report.ended_early || !report.problems.empty()) break;

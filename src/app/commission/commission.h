@@ -21,7 +21,7 @@ struct CommissionSettings {
   std::string robot;                // its configuration
   std::string plant;                // type of plant: hm2-eth, dynamixel
   double share = 0.1;               // of each joint's greatest torque, at any moment
-  std::string only_step;            // "": all
+  std::vector<std::string> steps;   // none: all
   std::vector<std::string> joints;  // none: all that have a motor
   bool again = false;               // forgets what was done
 };

@@ -50,7 +50,11 @@ void add_commission(CLI::App& app, CommissionOptions& options) {
   command->add_option("--share", options.share, "No joint ever gets more than this share of its torque (default: 0.1)")
       ->type_name("X")
       ->check(number_within(0.001, 0.5));
-  command->add_option("--only", options.only, "Only this step")->check(CLI::IsMember(commission_steps()));
+  command->add_option("--steps", options.steps, "Only these steps, as in names,direction (default: all)")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(commission_steps()));
   command->add_flag("--again", options.again, "Forget what was done, and begin anew");
   command->add_option("--answers", options.answers, "Answers from this file, a line each, instead of the terminal")
       ->type_name("FILE");
@@ -61,7 +65,7 @@ int run_commission(const CommissionOptions& options) {
   const CommissionSettings settings{.robot = options.robot,
                                     .plant = options.plant.empty() ? wired_plant(options.robot) : options.plant,
                                     .share = options.share,
-                                    .only_step = options.only,
+                                    .steps = options.steps,
                                     .joints = options.joints,
                                     .again = options.again};
   catch_interrupts();

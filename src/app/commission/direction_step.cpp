@@ -92,7 +92,7 @@ void find_direction(CommissionStep& step, std::size_t joint, double inertia_kg_m
   if (fields.encoder_reversed == fields.motor_reversed) {
     if (encoder != motor)
       return step.problem("servo '" + name + "' turns against its own encoder: two servos may have the same id");
-    if (encoder < 0) flip(step, name, fields.encoder_reversed, "servo");
+    if (encoder < 0) flip(step, name, fields.encoder_reversed, "the servo");
   } else {
     if (encoder < 0) flip(step, name, fields.encoder_reversed, "the encoder");
     if (motor < 0) flip(step, name, fields.motor_reversed, "the motor");

@@ -131,13 +131,13 @@ bool write_names(CommissionStep& step, const std::map<std::string, Moved>& moved
                       take_fields(step, before, fields.motor, drive, its.joint) &&
                       take_fields(step, before, fields.encoder, its.seen_by, its.joint);
     if (!good) return false;
-    if (its.joint == drive || its.joint != its.seen_by)
-      sentences.push_back(its.joint == drive
-                              ? "encoders are swapped: joint '" + its.joint + "' is seen by that of '" + its.seen_by +
-                                    "'"
-                              : "joint '" + its.joint + "' is moved by what is written for '" + drive + "'");
-    if (its.joint != drive && its.joint == its.seen_by)
+    if (its.joint == drive) {
+      sentences.push_back("encoders are swapped: joint '" + its.joint + "' is seen by that of '" + its.seen_by + "'");
+    } else if (its.joint == its.seen_by) {
       sentences.push_back("motors are swapped: joint '" + its.joint + "' is moved by that of '" + drive + "'");
+    } else {
+      sentences.push_back("joint '" + its.joint + "' is moved by what is written for '" + drive + "'");
+    }
   }
   for (const std::string& one : sentences) step.session.tell(one + ": corrected");
   step.wiring.write();
