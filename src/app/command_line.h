@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commission/commission_command.h"
 #include "commands.h"
 
 namespace kadans {

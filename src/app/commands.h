@@ -152,20 +152,6 @@ struct JogOptions {
 void add_jog(CLI::App& app, JogOptions& options);
 int run_jog(const JogOptions& options);
 
-// `kadans commission`: commission/commission.h.
-struct CommissionOptions {
-  std::string robot;
-  std::string plant;  // "": the only type with wiring that the robot's configuration has
-  std::string peer;   // address of the drives; "": the robot's own
-  double share = 0.1;
-  std::vector<std::string> steps;  // none: all
-  std::vector<std::string> joints;
-  std::string answers;  // file of lines; "": the terminal, or lines of the standard input
-  bool again = false;
-};
-void add_commission(CLI::App& app, CommissionOptions& options);
-int run_commission(const CommissionOptions& options);
-
 // The bench of servos: each of its commands is one of `kadans dynamixel`.
 struct DynamixelOptions {
   std::string device;

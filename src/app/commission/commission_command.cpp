@@ -1,4 +1,5 @@
-// `kadans commission`: the command line and the terminal of it.
+#include "commission_command.h"
+
 #include <cstdio>
 #include <memory>
 
@@ -7,7 +8,6 @@
 
 #include "app/author/file_checks.h"
 #include "app/bench/drive_bench.h"
-#include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "commission.h"
