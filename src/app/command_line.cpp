@@ -48,6 +48,7 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_behavior_process(app, behavior_process);
   add_plant(app, plant);
   add_jog(app, jog);
+  add_commission(app, commission);
   add_dynamixel(app, dynamixel);
   add_jitter(app, jitter);
   add_ctl(app, ctl);

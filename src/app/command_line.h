@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commission/commission_command.h"
 #include "commands.h"
 
 namespace kadans {
@@ -32,6 +33,7 @@ struct CommandLine {
   RunOptions behavior_process;
   PlantOptions plant;
   JogOptions jog;
+  CommissionOptions commission;
   DynamixelOptions dynamixel;
   JitterOptions jitter;
   CtlOptions ctl;

@@ -166,6 +166,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("behavior-process")) return run_behavior_process(line.behavior_process);
   if (app.got_subcommand("plant")) return run_plant(line.plant);
   if (app.got_subcommand("jog")) return run_jog(line.jog);
+  if (app.got_subcommand("commission")) return run_commission(line.commission);
   if (app.got_subcommand("dynamixel")) return run_dynamixel(app, line.dynamixel);
   if (app.got_subcommand("jitter")) return run_jitter(line.jitter);
   if (app.got_subcommand("ctl")) {

@@ -1,5 +1,5 @@
 // `kadans jog` and `kadans run --read-only`, on models, servos and boards.
-#include "app/run/jog.h"
+#include "app/bench/jog.h"
 
 #include <cmath>
 #include <sstream>

@@ -52,8 +52,10 @@ class VirtualPort final : public SerialPort {
 
 class DynamixelWorld final : public OneRobotWorld {
  public:
-  DynamixelWorld(std::unique_ptr<World> model, const dynamixel::DynamixelSettings& settings, const PlantSite& site)
-      : model_(std::move(model)), servos_(settings, site, 1) {
+  // `there`: what the servos are, where that is not what the driver's configuration says.
+  DynamixelWorld(std::unique_ptr<World> model, const dynamixel::DynamixelSettings& settings, const PlantSite& site,
+                 const dynamixel::DynamixelSettings* there = nullptr)
+      : model_(std::move(model)), servos_(there == nullptr ? settings : *there, site, 1) {
     std::vector<std::unique_ptr<SerialPort>> ports;
     for (std::size_t i = 0; i < settings.ports.size(); ++i) {
       auto port = std::make_unique<VirtualPort>(servos_.bus(i), settings.ports[i].baud);

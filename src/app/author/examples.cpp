@@ -89,6 +89,9 @@ constexpr Examples all_examples[] = {
     {"jog",
      "  kadans jog config/jiwiy/robot.json pan\n"
      "  kadans jog config/jiwiy/anything_io.json pan --plant hm2-eth --share 0.05\n"},
+    {"commission",
+     "  kadans commission config/jiwiy/anything_io.json\n"
+     "  kadans commission config/jiwiy/servos.json pan --steps names,direction --share 0.05\n"},
     {"plant",
      "  kadans plant config/tulip/robot.json --listen :7100\n"
      "  kadans plant config/jiwiy/servos.json --as dynamixel --listen /tmp/bus\n"},

@@ -1,24 +1,13 @@
 #include "parameter_edit.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "config/json/fields.h"
+#include "config/json/json_edit.h"
 #include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {
-
-// Columns count characters, not bytes.
-std::size_t offset_of(const std::string& text, TextPlace place) {
-  std::size_t at = 0;
-  for (int line = 1; line < place.line; ++line) at = text.find('\n', at) + 1;
-  for (int column = 1; column < place.column; ++column) {
-    ++at;
-    while (at < text.size() && inside_character(text[at])) ++at;
-  }
-  return at;
-}
 
 const JsonMember* member(const JsonValue* value, const char* name) {
   return value == nullptr ? nullptr : value->find(name);
@@ -38,13 +27,6 @@ const JsonValue& object_in(const JsonValue& json, const std::string& name, const
 
 bool fits_any(const std::string& pattern, const std::vector<std::string>& names) {
   return std::ranges::any_of(names, [&](const std::string& name) { return matches(pattern, name); });
-}
-
-// The blanks before a key that begins its line; nothing for one that stands behind others.
-std::optional<std::string> own_indent(const std::string& text, std::size_t key) {
-  const std::size_t line = text.rfind('\n', key) + 1;
-  if (text.find_first_not_of(" \t", line) != key) return std::nullopt;
-  return text.substr(line, key - line);
 }
 
 // Behind the last number as that one stands behind what is before it: on a line of its own, or on the same.

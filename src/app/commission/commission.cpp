@@ -1,0 +1,92 @@
+#include "commission.h"
+
+#include <algorithm>
+#include <array>
+
+#include "commission_steps.h"
+#include "signal/nearest_name.h"
+
+namespace kadans {
+namespace {
+
+struct StepEntry {
+  const char* name;
+  void (*run)(CommissionStep&);
+};
+constexpr StepEntry step_entries[] = {
+    {"names", find_names}, {"direction", find_directions}, {"zero", find_zeros}, {"limits", find_limits}};
+
+// The joints that have a motor, of those that were asked for.
+std::vector<std::size_t> joints_of(const RobotConfig& robot, const std::vector<std::string>& wanted) {
+  const std::vector<std::string> names = robot.model.joint_names();
+  std::vector<std::size_t> joints;
+  for (const std::string& name : wanted) {
+    if (std::ranges::find(names, name) == names.end())
+      throw InputError(
+          {.file = robot.file, .message = "the robot has no joint '" + name + "'" + did_you_mean(name, names)});
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (robot.model.joints[i].passive()) continue;
+    if (wanted.empty() || std::ranges::find(wanted, names[i]) != wanted.end()) joints.push_back(i);
+  }
+  if (joints.empty()) throw InputError({.file = robot.file, .message = "none of these joints has a motor"});
+  return joints;
+}
+
+void refuse_couplings(const RobotConfig& robot) {
+  for (const Transmission& one : robot.model.transmissions) {
+    if (one.coupled())
+      throw InputError({.file = robot.file,
+                        .message = "its drives move joints in pairs (transmissions): such joints are not commissioned "
+                                   "by this command; `kadans jog` moves them"});
+  }
+}
+
+// Opens the drives and does one step. False: the program shall end.
+bool run_step(const StepEntry& entry, const CommissionSettings& settings, Person& person, const OpenDrives& open,
+              Progress& progress, CommissionReport& report) {
+  const Robot robot = read_robot(settings.robot);
+  refuse_couplings(robot.config);
+  Wiring wiring(wiring_fields(settings.plant, robot.config.name), settings.robot);
+  std::vector<std::size_t> joints = joints_of(robot.config, settings.joints);
+  std::erase_if(joints, [&](std::size_t j) { return progress.done(entry.name, robot.config.model.joints[j].name); });
+  if (joints.empty()) return true;
+  person.hear("== " + std::string(entry.name));
+  const OpenBench drives = open(robot);
+  if (!drives.bench) return false;
+  BenchSession session(
+      *drives.bench, person, robot.config.model,
+      {.share = settings.share, .period_s = robot.config.engine.control_period_s, .words = drives.words});
+  CommissionStep step{session, robot.config, wiring, progress, entry.name, joints, report.problems};
+  entry.run(step);
+  return true;
+}
+
+}  // namespace
+
+const std::vector<std::string>& commission_steps() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const StepEntry& entry : step_entries) all.emplace_back(entry.name);
+    return all;
+  }();
+  return names;
+}
+
+CommissionReport commission(const CommissionSettings& settings, Person& person, const OpenDrives& open) {
+  CommissionReport report;
+  Progress progress(settings.robot, settings.plant, settings.again);
+  try {
+    for (const StepEntry& entry : step_entries) {
+      if (!settings.steps.empty() && std::ranges::find(settings.steps, entry.name) == settings.steps.end()) continue;
+      report.ended_early = !run_step(entry, settings, person, open, progress, report);
+      // What a step could not find, the later ones need.
+      if (report.ended_early || !report.problems.empty()) break;
+    }
+  } catch (const PersonGone&) {
+    report.ended_early = true;
+  }
+  return report;
+}
+
+}  // namespace kadans

@@ -1,0 +1,94 @@
+#include "commission_command.h"
+
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "app/author/file_checks.h"
+#include "app/bench/drive_bench.h"
+#include "app/option_checks.h"
+#include "app/terminal.h"
+#include "commission.h"
+#include "commission_person.h"
+#include "config/scenario/based_on.h"
+#include "signal/input_file.h"
+
+namespace kadans {
+namespace {
+
+// The only type of plant with wiring that the robot's configuration describes.
+std::string wired_plant(const std::string& robot) {
+  const JsonValue json = parse_based_json(read_input_file(robot), robot).value;
+  const JsonMember* const plant = json.find("plant");
+  std::vector<std::string> types;
+  for (const char* type : {"hm2-eth", "dynamixel"}) {
+    if (plant != nullptr && plant->value.find(type) != nullptr) types.emplace_back(type);
+  }
+  if (types.size() == 1) return types.front();
+  throw InputError({.file = robot,
+                    .message = types.empty() ? "describes no drives on a bus: plant.hm2-eth (docs/hostmot2.md) or "
+                                               "plant.dynamixel (docs/dynamixel.md)"
+                                             : "describes drives on two buses: --plant says which"});
+}
+
+}  // namespace
+
+void add_commission(CLI::App& app, CommissionOptions& options) {
+  CLI::App* command = app.add_subcommand(
+      "commission", "Find out which drive is which joint, its signs and more, and write it into the configuration");
+  command->add_option("robot", options.robot, "The robot's configuration (JSON); what is found is written into it")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("joints", options.joints, "Only these joints (default: all that have a motor)")
+      ->type_name("NAME");
+  command->add_option("--plant", options.plant, "How its drives are reached (default: what the configuration has)")
+      ->type_name("TYPE");
+  command->add_option("--peer", options.peer, "Address of the drives (default: the configuration's)")
+      ->type_name("HOST:PORT");
+  command->add_option("--share", options.share, "No joint ever gets more than this share of its torque (default: 0.1)")
+      ->type_name("X")
+      ->check(number_within(0.001, 0.5));
+  command->add_option("--steps", options.steps, "Only these steps, as in names,direction (default: all)")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(commission_steps()));
+  command->add_flag("--again", options.again, "Forget what was done, and begin anew");
+  command->add_option("--answers", options.answers, "Answers from this file, a line each, instead of the terminal")
+      ->type_name("FILE");
+}
+
+int run_commission(const CommissionOptions& options) {
+  require_kind(options.robot, JsonKind::robot);
+  const CommissionSettings settings{.robot = options.robot,
+                                    .plant = options.plant.empty() ? wired_plant(options.robot) : options.plant,
+                                    .share = options.share,
+                                    .steps = options.steps,
+                                    .joints = options.joints,
+                                    .again = options.again};
+  catch_interrupts();
+  std::unique_ptr<Person> person;
+  if (options.answers.empty() && isatty(STDIN_FILENO) == 1) {
+    person = std::make_unique<TerminalPerson>();
+  } else {
+    person = std::make_unique<WrittenPerson>(options.answers);
+  }
+  const OpenDrives open = [&](const Robot& robot) -> OpenBench {
+    auto bench = std::make_unique<DriveBench>(robot, settings.plant, options.peer, "");
+    if (!bench->open()) return {};
+    const DriveWords words = bench->words();
+    return {std::move(bench), words};
+  };
+  const CommissionReport report = commission(settings, *person, open);
+  for (const std::string& problem : report.problems) print_error(problem);
+  if (report.ended_early || !report.problems.empty()) {
+    person->hear("Not done yet. The same command goes on where it was.");
+    return report.problems.empty() && interrupted() ? exit_interrupted : exit_failed;
+  }
+  person->hear("All is done.");
+  return exit_passed;
+}
+
+}  // namespace kadans

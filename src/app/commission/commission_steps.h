@@ -1,0 +1,51 @@
+// The steps of `kadans commission`. Each is a function over what all of them have: the session, the configuration's
+// wiring, and what was done before.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/assembly.h"
+#include "bench_session.h"
+#include "progress.h"
+#include "wiring.h"
+
+namespace kadans {
+
+struct CommissionStep {
+  BenchSession& session;
+  const RobotConfig& robot;
+  Wiring& wiring;
+  Progress& progress;
+  std::string_view name;            // of the step
+  std::vector<std::size_t> joints;  // for which it is not done yet, and shall be
+  std::vector<std::string>& problems;
+
+  const std::string& joint_name(std::size_t joint) const { return robot.model.joints[joint].name; }
+  double number_at(std::size_t joint, std::string_view field, double otherwise) const {
+    return wiring.number(joint_name(joint), field, otherwise);
+  }
+  void done(std::size_t joint, const std::string& found) { progress.set(name, joint_name(joint), found); }
+  // A sentence about what is wrong; the joint's step is not done.
+  void problem(const std::string& sentence) {
+    session.tell(sentence);
+    problems.push_back(sentence);
+  }
+};
+
+// Which drive is which joint: wiggles one drive after the other; the person says which joint moved.
+void find_names(CommissionStep& step);
+// In which direction motor and encoder turn: moves each joint by some degrees.
+void find_directions(CommissionStep& step);
+// Where a joint's zero is: by a jig, a hard stop, or the switch or index that its drive looks for.
+void find_zeros(CommissionStep& step);
+// How far a joint may go: it is moved by hand.
+void find_limits(CommissionStep& step);
+
+// The least inertia that each joint's drive may feel: the others move as they like. With the rotors, at the pose 0.
+std::vector<double> inertias_kg_m2(const RobotConfig& robot);
+// "counter-clockwise, seen from above": how a joint turns in its positive direction, at the pose 0.
+std::string positive_turn(const RobotModel& model, std::size_t joint);
+std::string degrees_text(double rad);  // "1.2 degrees"
+
+}  // namespace kadans

@@ -1,0 +1,273 @@
+// `kadans commission` on JIWIY, through boards and through servos, on virtual time: each mistake in the wiring is found
+// and named, and what is written is what was found.
+#include "commission_bench.h"
+
+namespace commission_test {
+
+using namespace kadans;
+using namespace kadans::program;
+using namespace kadans::commission_bench;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double five_degrees = 5 * 3.14159265358979 / 180;
+
+struct Bus {
+  const char *type, *robot;
+};
+constexpr Bus boards{"hm2-eth", "config/jiwiy/anything_io.json"}, servos{"dynamixel", "config/jiwiy/servos.json"};
+
+// A project in which the robot is wired as `robot` says, and described by mine.json.
+struct Project {
+  explicit Project(const Bus& bus)
+      : folder(project_copy("commission")), mine(folder / "config/jiwiy/mine.json"), right(folder / bus.robot) {
+    fs::copy_file(right, mine, fs::copy_options::overwrite_existing);
+    settings = {.robot = mine.string(), .plant = bus.type, .steps = {"names", "direction"}};
+    truth = {.type = bus.type, .robot = right.string()};
+  }
+  void change(const std::string& from, const std::string& to) { REQUIRE(edit(mine, from, to)); }
+  const Commissioned& commissioned() {
+    go(all, settings, truth);
+    return all;
+  }
+  // The same but for the fields that were added, which say what is the case without them.
+  bool is_right() const {
+    std::string text = read(mine);
+    for (const char* added :
+         {", \"reversed\": false", ",\n          \"reversed\": false", ",\n          \"pwm_reversed\": false"}) {
+      for (std::size_t at = text.find(added); at != std::string::npos; at = text.find(added))
+        text.erase(at, std::string_view(added).size());
+    }
+    return text == read(right);
+  }
+
+  fs::path folder, mine, right;
+  CommissionSettings settings;
+  Truth truth;
+  Commissioned all;
+};
+
+void check_safe(const Seen& seen) {
+  CHECK(seen.away_rad < five_degrees);
+  CHECK(seen.torque_share < 0.1001);
+  CHECK(seen.torque_share > 0);
+}
+
+void check_good(const Commissioned& all) {
+  for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);
+  CHECK(!all.report.ended_early);
+  check_safe(all.seen);
+}
+
+}  // namespace
+
+TEST_CASE("A robot that is wired as its configuration says is left as it is") {
+  for (const Bus& bus : {boards, servos}) {
+    CAPTURE(bus.type);
+    Project project(bus);
+    const Commissioned& all = project.commissioned();
+    check_good(all);
+    CHECK(all.person.was_told("drive 'pan' moves joint 'pan', seen by encoder 'pan'"));
+    CHECK(all.person.was_told("joint 'tilt': a positive effort turns it counter-clockwise, seen from its left"));
+    CHECK(read(project.mine) == read(project.right));
+  }
+}
+
+TEST_CASE("Swapped joints are found by what the person sees, and the configuration says it then") {
+  SUBCASE("boards") {
+    Project project(boards);
+    project.change("\"encoder\": 0, \"pwm\": 0", "\"encoder\": 9, \"pwm\": 9");
+    project.change("\"encoder\": 1, \"pwm\": 1", "\"encoder\": 0, \"pwm\": 0");
+    project.change("\"encoder\": 9, \"pwm\": 9", "\"encoder\": 1, \"pwm\": 1");
+    project.change("\"enable\": \"20\"", "\"enable\": \"x\"");
+    project.change("\"enable\": \"21\"", "\"enable\": \"20\"");
+    project.change("\"enable\": \"x\"", "\"enable\": \"21\"");
+    const Commissioned& all = project.commissioned();
+    check_good(all);
+    CHECK(all.person.was_told("joint 'tilt' is moved by what is written for 'pan': corrected"));
+    CHECK(all.person.was_told("joint 'pan' is moved by what is written for 'tilt': corrected"));
+    CHECK(project.is_right());
+  }
+  SUBCASE("motors of boards") {
+    Project project(boards);
+    project.change("\"pwm\": 0", "\"pwm\": 9");
+    project.change("\"pwm\": 1", "\"pwm\": 0");
+    project.change("\"pwm\": 9", "\"pwm\": 1");
+    project.change("\"enable\": \"20\"", "\"enable\": \"x\"");
+    project.change("\"enable\": \"21\"", "\"enable\": \"20\"");
+    project.change("\"enable\": \"x\"", "\"enable\": \"21\"");
+    const Commissioned& all = project.commissioned();
+    check_good(all);
+    CHECK(all.person.was_told("motors are swapped: joint 'tilt' is moved by that of 'pan': corrected"));
+    CHECK(project.is_right());
+  }
+  SUBCASE("encoders of boards") {
+    Project project(boards);
+    project.change("\"encoder\": 0,", "\"encoder\": 9,");
+    project.change("\"encoder\": 1,", "\"encoder\": 0,");
+    project.change("\"encoder\": 9,", "\"encoder\": 1,");
+    const Commissioned& all = project.commissioned();
+    check_good(all);
+    CHECK(all.person.was_told("encoders are swapped: joint 'pan' is seen by that of 'tilt': corrected"));
+    CHECK(project.is_right());
+  }
+  SUBCASE("servos") {
+    Project project(servos);
+    project.change("\"id\": 1", "\"id\": 9");
+    project.change("\"id\": 2", "\"id\": 1");
+    project.change("\"id\": 9", "\"id\": 2");
+    const Commissioned& all = project.commissioned();
+    check_good(all);
+    CHECK(all.person.was_told("joint 'tilt' is moved by what is written for 'pan': corrected"));
+    CHECK(project.is_right());
+  }
+}
+
+TEST_CASE("Wrong signs are found by what the person sees, each by itself, and corrected") {
+  SUBCASE("motor and encoder of a board") {
+    Project project(boards);
+    project.change(", \"reversed\": true, \"pwm_reversed\": true", "");
+    const Commissioned& all = project.commissioned();
+    check_good(all);
+    CHECK(all.person.was_told("the sign of the encoder of 'tilt' is wrong: \"reversed\": true corrects it"));
+    CHECK(all.person.was_told("the sign of the motor of 'tilt' is wrong: \"pwm_reversed\": true corrects it"));
+  }
+  SUBCASE("a motor alone, which would run away in any loop") {
+    Project project(boards);
+    project.change("\"enable\": \"20\"", "\"enable\": \"20\", \"pwm_reversed\": true");
+    const Commissioned& all = project.commissioned();
+    check_good(all);
+    CHECK(all.person.was_told("the sign of the motor of 'pan' is wrong: \"pwm_reversed\": false corrects it"));
+    CHECK(!all.person.was_told("the sign of the encoder"));
+    CHECK(has(read(project.mine), "\"enable\": \"20\", \"pwm_reversed\": false"));
+  }
+  SUBCASE("a servo") {
+    Project project(servos);
+    project.change(", \"reversed\": true", "");
+    const Commissioned& all = project.commissioned();
+    check_good(all);
+    CHECK(all.person.was_told("the sign of the servo of 'tilt' is wrong"));
+    CHECK(read(project.mine) == read(project.right));
+  }
+}
+
+TEST_CASE("A dead encoder is found, at any place of the joint, and the other joint goes on") {
+  for (const int seed : {1, 2, 3}) {
+    CAPTURE(seed);
+    Project project(boards);
+    project.truth.boards = [](hostmot2::HostMot2Settings& there) { there.drives[0].encoder = 2; };
+    project.truth.model = [&](PlantSettings& model) { model.position_rad = {0.7 * seed - 1.5, 0.2 * seed}; };
+    const Commissioned& all = project.commissioned();
+    REQUIRE(all.report.problems.size() == 1);
+    CHECK(has(all.report.problems[0], "joint 'pan' moved, and no encoder did: the encoder of 'pan' is dead"));
+    CHECK(all.person.was_told("drive 'tilt' moves joint 'tilt'"));
+    CHECK(!all.person.was_told("== direction"));
+    check_safe(all.seen);
+    CHECK(read(project.mine) == read(project.right));
+  }
+}
+
+TEST_CASE("A servo whose encoder is dead says so, and nothing is driven") {
+  Project project(servos);
+  project.truth.servos = [](dynamixel::EmulatedRobot& there) { there.servo(0).break_down(0x08); };
+  std::string why;
+  try {
+    (void)project.commissioned();
+  } catch (const InputError& error) {
+    why = error.what();
+  }
+  CHECK_MESSAGE(has(why, "encoder"), why);
+  CHECK(project.all.seen.torque_share == 0);
+}
+
+TEST_CASE("A stuck brake is found, at any place of the joint, and the other joint goes on") {
+  for (const Bus& bus : {boards, servos}) {
+    for (const int seed : {1, 2, 3}) {
+      CAPTURE(bus.type);
+      CAPTURE(seed);
+      Project project(bus);
+      project.truth.model = [&](PlantSettings& model) {
+        model.drives[0].coulomb_Nm = 20;
+        model.position_rad = {0.7 * seed - 1.5, 0.2 * seed};
+      };
+      const Commissioned& all = project.commissioned();
+      REQUIRE(all.report.problems.size() == 1);
+      CHECK_MESSAGE(has(all.report.problems[0], "drive 'pan' pushed with 0.098 Nm, and nothing moved"),
+                    all.report.problems[0]);
+      CHECK(has(all.report.problems[0], "a brake that is stuck"));
+      CHECK(has(all.report.problems[0], "its motor gets its current") == (bus.type == servos.type));
+      CHECK(all.person.was_told("drive 'tilt' moves joint 'tilt'"));
+      check_safe(all.seen);
+      CHECK(read(project.mine) == read(project.right));
+    }
+  }
+}
+
+TEST_CASE("A run that is cut off goes on where it was") {
+  for (const Bus& bus : {boards, servos}) {
+    CAPTURE(bus.type);
+    Project project(bus);
+    project.all.person.patience = 1;
+    CHECK(project.commissioned().report.ended_early);
+    CHECK(project.all.person.was_told("drive 'pan' moves joint 'pan'"));
+    CHECK(!project.all.person.was_told("drive 'tilt' moves"));
+    project.all.person.heard.clear();
+    project.all.person.patience = 2;  // names tilt, then the direction of pan
+    CHECK(project.commissioned().report.ended_early);
+    CHECK(!project.all.person.was_told("Drive 'pan' ("));
+    CHECK(project.all.person.was_told("joint 'pan': a positive effort turns it"));
+    project.all.person.heard.clear();
+    project.all.person.patience = 1000;
+    check_good(project.commissioned());
+    CHECK(!project.all.person.was_told("Drive '"));
+    CHECK(!project.all.person.was_told("joint 'pan': a positive effort"));
+    CHECK(project.all.person.was_told("joint 'tilt': a positive effort"));
+    project.all.person.heard.clear();
+    check_good(project.commissioned());
+    CHECK(project.all.person.heard.empty());
+  }
+}
+
+TEST_CASE("A zero is found at a jig and at a hard stop, and written so that the drives stand there") {
+  SUBCASE("boards") {
+    Project project(boards);
+    project.change("\"enable\": \"20\"", "\"enable\": \"20\", \"home_rad\": 0.25");
+    project.all.person.says = {{"pan", "jig"}, {"tilt", "upper-stop"}};
+    project.settings.steps = {"zero"};
+    const Commissioned& all = project.commissioned();
+    for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);
+    for (const std::string& one : all.person.heard) INFO(one);
+    CHECK(all.person.was_told("joint 'pan': its zero was wrong by 14.3 degrees: \"home_rad\": 0 corrects it"));
+    CHECK(all.person.was_told("joint 'tilt': its zero is right"));
+    CHECK(all.seen.torque_share < 0.1001);
+  }
+  SUBCASE("servos") {
+    Project project(servos);
+    project.change("\"id\": 1", "\"zero_pulse\": 2148, \"id\": 1");
+    project.all.person.says = {{"pan", "jig"}, {"tilt", "upper-stop"}};
+    project.settings.steps = {"zero"};
+    const Commissioned& all = project.commissioned();
+    for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);
+    CHECK(has(read(project.mine), "\"zero_pulse\": 204"));
+    CHECK(all.person.was_told("joint 'pan': its zero was wrong by 8.8 degrees"));
+    CHECK(all.seen.torque_share < 0.1001);
+  }
+}
+
+TEST_CASE("Soft limits are those to which a joint is moved by hand, and no wider than its URDF's") {
+  for (const Bus& bus : {boards, servos}) {
+    CAPTURE(bus.type);
+    Project project(bus);
+    project.settings.steps = {"limits"};
+    project.settings.joints = {"pan"};
+    const Commissioned& all = project.commissioned();
+    for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);
+    CHECK(has(read(project.mine), "\"safety\": { \"limits\": { \"pan\": { \"lower_rad\": -2.5"));
+    const Robot robot = read_robot(project.mine);
+    CHECK(robot.config.safety.joints[0].upper_rad > 2.5);
+    CHECK(robot.config.safety.joints[0].upper_rad < 2.6);
+  }
+}
+
+}  // namespace commission_test
