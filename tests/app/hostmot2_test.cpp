@@ -257,8 +257,8 @@ TEST_CASE("The same squat goes through every bus, and the table says how well") 
 std::string patient(const std::filesystem::path& project, const std::string& file) {
   const std::string boards = has(file, "anything_io") ? R"("plant": { "hm2-eth": { "watchdog_s": 1 } }, )" : "";
   write(project / "config/jiwiy/patient.json", R"({ "based_on": ")" + file + R"(", "name": "jiwiy", )" + boards +
-                                                   R"("safety": { "drives": { "sample_age_max_s": 10 },
-                                                     "sensors": { "silent_ticks_max": 10000 } } })");
+                                                   R"("safety": { "silent_ticks_max": 10000,
+                                                                "drives": { "sample_age_max_s": 10 } } })");
   return (project / "config/jiwiy/patient.json").string();
 }
 
