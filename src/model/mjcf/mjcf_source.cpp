@@ -10,7 +10,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t most_open = 8, most_files = 64;
+constexpr std::size_t most_open = 8, most_files = 1000;
 
 // Behind the tag's own end, and that of its element where it has no children.
 std::size_t end_of_element(std::string_view text, const XmlTag& tag) {
