@@ -81,9 +81,10 @@ std::string arm() {
 
 TEST_CASE("new robot writes robots that stand or are held, and play their behavior") {
   const auto folder = fresh_folder("new_robot");
-  for (const auto& [name, text, says] :
+  for (const auto& [of, text, says] :
        {std::tuple{"spot_four", quadruped(), "It stands on fl_calf, fr_calf, rl_calf, rr_calf"},
         std::tuple{"biped", biped(), "It stands on l_foot, r_foot"}, std::tuple{"arm", arm(), "it is bolted down"}}) {
+    const std::string name = of;
     CAPTURE(name);
     write(folder / "from.urdf", text);
     const Outcome made = run("new robot from.urdf", folder);

@@ -84,8 +84,8 @@ TEST_CASE("WalkPlan sways first, then lifts the foot that bears less") {
 }
 
 TEST_CASE("WalkPlan walks at the velocity that is meant, in any direction") {
-  for (const auto& [forward_m_s, left_m_s] :
-       {std::pair{0.0, 0.0}, {0.3, 0.0}, {-0.15, 0.0}, {0.0, 0.1}, {0.2, -0.08}}) {
+  for (const auto& [ahead, aside] : {std::pair{0.0, 0.0}, {0.3, 0.0}, {-0.15, 0.0}, {0.0, 0.1}, {0.2, -0.08}}) {
+    const double forward_m_s = ahead, left_m_s = aside;
     Pendulum robot(forward_m_s, left_m_s);
     robot.run(6);
     const GroundPoint before = robot.com;

@@ -236,7 +236,8 @@ TEST_CASE("What would be another robot is refused, with its line and what to do"
        "size=\"1\"/></body></body></worldbody></mujoco>",
        "2: several robots stand in this MJCF"},
   };
-  for (const auto& [text, message] : table) {
+  for (const auto& [given, message] : table) {
+    const std::string& text = given;  // clang 14 hands on no names of a structured binding
     CAPTURE(text);
     const std::string said = error_of(files, text);
     CHECK_MESSAGE(said.starts_with(message), said);

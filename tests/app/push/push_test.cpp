@@ -100,10 +100,11 @@ TEST_CASE("What is wrong in a push is told at its place in the project, and noth
   const fs::path project = project_with_ssh("push_wrong");
   REQUIRE(shell(project, push).exit_code == 0);
   const std::string before = read(project / squat);
-  for (const auto& [file, from, to, told] : std::initializer_list<std::array<const char*, 4>>{
+  for (const auto& [file, from, into, told] : std::initializer_list<std::array<const char*, 4>>{
            {squat, "k.params {", "k.parms {", "error: behaviors/tulip/squat.lua:5"},
            {squat, "set_gains(\"stiff\")", "set_gains(\"stif\")", "error: behaviors/tulip/squat.lua:"},
            {"config/tulip/robot.json", "\"urdf\"", "\"urfd\"", "config/tulip/robot.json:"}}) {
+    const std::string to = into;
     CAPTURE(to);
     const std::string good = read(project / file);
     REQUIRE(edit(project / file, from, to));
