@@ -1,7 +1,6 @@
 #include "packet.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace kadans::dynamixel {
 namespace {
@@ -97,29 +96,14 @@ Octets PacketWriter::finish() noexcept {
   return {bytes_.data(), size_};
 }
 
-std::span<std::uint8_t> PacketScanner::room() noexcept {
-  if (begin_ > 0) {
-    std::memmove(bytes_.data(), bytes_.data() + begin_, end_ - begin_);
-    end_ -= begin_;
-    begin_ = 0;
-  }
-  return std::span(bytes_).subspan(end_);
-}
-
-void PacketScanner::filled(std::size_t bytes) noexcept { end_ = std::min(end_ + bytes, bytes_.size()); }
-
-void PacketScanner::clear() noexcept { begin_ = end_ = 0; }
-
-void PacketScanner::drop(std::size_t bytes) noexcept { begin_ += bytes; }
-
 void PacketScanner::skip(std::size_t bytes) noexcept {
   counts_.skipped += bytes;
-  drop(bytes);
+  bytes_.drop(bytes);
 }
 
 bool PacketScanner::next(ReceivedPacket& packet) noexcept {
   for (;;) {
-    const Octets here{bytes_.data() + begin_, end_ - begin_};
+    const Octets here = bytes_.here();
     const auto found = std::search(here.begin(), here.end(), header.begin(), header.end());
     if (found == here.end()) {  // the last bytes may begin a header
       const std::size_t keep = std::min(here.size(), header.size() - 1);
@@ -146,7 +130,7 @@ bool PacketScanner::next(ReceivedPacket& packet) noexcept {
       continue;
     }
     ++counts_.packets;
-    drop(size);
+    bytes_.drop(size);
     packet = {.id = raw[4], .instruction = raw[instruction_at], .raw = raw};
     std::size_t plain = 0;
     unsigned run = 0;

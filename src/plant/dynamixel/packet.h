@@ -18,6 +18,8 @@
 #include <span>
 #include <string_view>
 
+#include "plant/serial/receive_buffer.h"
+
 namespace kadans::dynamixel {
 
 using Octets = std::span<const std::uint8_t>;
@@ -82,21 +84,19 @@ class PacketScanner {
   };
 
   // Where to put bytes from outside; then tell how many. There is always room for some after next() returned false.
-  std::span<std::uint8_t> room() noexcept;
-  void filled(std::size_t bytes) noexcept;
+  std::span<std::uint8_t> room() noexcept { return bytes_.room(); }
+  void filled(std::size_t bytes) noexcept { bytes_.filled(bytes); }
   // False: no whole packet is here.
   bool next(ReceivedPacket& packet) noexcept;
   // Forgets what is here: a new exchange begins.
-  void clear() noexcept;
+  void clear() noexcept { bytes_.clear(); }
   const Counts& counts() const noexcept { return counts_; }
 
  private:
-  void drop(std::size_t bytes) noexcept;
   void skip(std::size_t bytes) noexcept;
 
-  std::array<std::uint8_t, 2 * packet_bytes_max> bytes_;
+  ReceiveBuffer<2 * packet_bytes_max> bytes_;
   std::array<std::uint8_t, packet_bytes_max> plain_;
-  std::size_t begin_ = 0, end_ = 0;
   Counts counts_;
 };
 

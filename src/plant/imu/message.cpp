@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace kadans::imu {
 namespace {
@@ -64,23 +63,14 @@ std::size_t write_message(Message id, Octets data, std::span<std::uint8_t> into)
   return size;
 }
 
-std::span<std::uint8_t> MessageScanner::room() noexcept {
-  std::memmove(bytes_.data(), bytes_.data() + begin_, end_ - begin_);
-  end_ -= begin_;
-  begin_ = 0;
-  return std::span(bytes_).subspan(end_);
-}
-
-void MessageScanner::filled(std::size_t bytes) noexcept { end_ = std::min(end_ + bytes, bytes_.size()); }
-
 bool MessageScanner::next(ReceivedMessage& message) noexcept {
   for (;;) {
-    const Octets here{bytes_.data() + begin_, end_ - begin_};
+    const Octets here = bytes_.here();
     const bool begins = !here.empty() && here[0] == preamble && (here.size() < 2 || here[1] == alone);
     if (here.empty()) return false;
     if (!begins) {
       ++counts_.skipped;
-      ++begin_;
+      bytes_.drop(1);
       continue;
     }
     if (here.size() < head_bytes) return false;
@@ -90,11 +80,11 @@ bool MessageScanner::next(ReceivedMessage& message) noexcept {
     if (!fits || sum_of(here.subspan(1, size - 1)) != 0) {
       ++counts_.corrupt;
       ++counts_.skipped;
-      ++begin_;
+      bytes_.drop(1);
       continue;
     }
     ++counts_.messages;
-    begin_ += size;
+    bytes_.drop(size);
     message = {.id = here[2], .data = here.subspan(head_bytes, here[3])};
     return true;
   }

@@ -15,6 +15,7 @@
 #include <span>
 
 #include "kadans/signal/frames.h"
+#include "plant/serial/receive_buffer.h"
 #include "settings.h"
 
 namespace kadans::imu {
@@ -62,14 +63,13 @@ class MessageScanner {
   };
 
   // Where to put bytes from outside; then tell how many. There is always room for some after next() returned false.
-  std::span<std::uint8_t> room() noexcept;
-  void filled(std::size_t bytes) noexcept;
+  std::span<std::uint8_t> room() noexcept { return bytes_.room(); }
+  void filled(std::size_t bytes) noexcept { bytes_.filled(bytes); }
   bool next(ReceivedMessage& message) noexcept;  // false: no whole message is here
   const Counts& counts() const noexcept { return counts_; }
 
  private:
-  std::array<std::uint8_t, 1024> bytes_;
-  std::size_t begin_ = 0, end_ = 0;
+  ReceiveBuffer<1024> bytes_;
   Counts counts_;
 };
 
