@@ -18,8 +18,9 @@ struct MjcfPose {  // of a <key>
   std::vector<std::pair<std::string, double>> position;  // rad or m, by the name of the joint
 };
 
-struct MjcfRobot {
-  std::string urdf;  // the text; meshes have their whole paths; what is bolted down hangs on a link `world`
+struct RobotDescription {
+  RobotModel model;
+  std::string urdf;  // the same as text; meshes have their whole paths; what is bolted down hangs on a link `world`
   std::vector<MjcfPose> poses;
 };
 
@@ -28,10 +29,10 @@ bool is_mjcf(const std::string& text);
 
 // Throws InputError (signal/input_error.h) on any mistake, as read_urdf does; `warnings`, when given, gets oddities.
 // Files that <include> names are read beside `file`, and problems in them are told by their name and line.
-MjcfRobot read_mjcf(const std::string& file, const UrdfOptions& options = {},
-                    std::vector<InputProblem>* warnings = nullptr);
+RobotDescription read_mjcf(const std::string& file, const UrdfOptions& options = {},
+                           std::vector<InputProblem>* warnings = nullptr);
 // `file` only names the text in messages, and is where the paths of meshes and of what is included start from.
-MjcfRobot read_mjcf_text(const std::string& text, const std::string& file, const UrdfOptions& options = {},
-                         std::vector<InputProblem>* warnings = nullptr);
+RobotDescription read_mjcf_text(const std::string& text, const std::string& file, const UrdfOptions& options = {},
+                                std::vector<InputProblem>* warnings = nullptr);
 
 }  // namespace kadans

@@ -260,7 +260,7 @@ std::string FileChecks::check_script_file(const CheckedFile& checked_file) {
 std::string FileChecks::check(const CheckedFile& checked) {
   const fs::path& file = checked.file;
   const std::string extension = file.extension().string();
-  if (is_robot_description(file) || extension == ".xacro" || extension == ".xml") return check_description_of(file);
+  if (extension == ".xacro" || extension == ".xml" || is_robot_description(file)) return check_description_of(file);
   if (extension == ".lua") {
     const std::string what = check_script_file(checked);
     return what == "a module" || what == "tests" ? what : "behavior: " + what;

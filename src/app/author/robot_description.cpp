@@ -47,17 +47,10 @@ bool is_robot_description(const std::filesystem::path& file) {
 
 RobotDescription read_robot_description(const std::filesystem::path& file, const UrdfOptions& options,
                                         std::vector<InputProblem>* warnings) {
+  if (file.extension() == ".xml") return read_mjcf(file.string(), options, warnings);
   RobotDescription robot;
-  if (file.extension() == ".xml") {
-    MjcfRobot read = read_mjcf(file.string(), options, warnings);
-    robot.urdf = std::move(read.urdf), robot.poses = std::move(read.poses);
-    warnings = nullptr;  // those of the text that was made of it say nothing new
-  } else {
-    robot.urdf = file.extension() == ".xacro" ? expanded_xacro(file) : read_input_file(file.string(), urdf_max_bytes);
-  }
-  UrdfOptions as_made = options;
-  if (file.extension() == ".xml") as_made.strict = false;
-  robot.model = read_urdf_text(robot.urdf, file.string(), as_made, warnings);
+  robot.urdf = file.extension() == ".xacro" ? expanded_xacro(file) : read_input_file(file.string(), urdf_max_bytes);
+  robot.model = read_urdf_text(robot.urdf, file.string(), options, warnings);
   return robot;
 }
 

@@ -2,19 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "kadans/model/mjcf.h"
-#include "kadans/model/urdf.h"
 
 namespace kadans {
-
-struct RobotDescription {
-  std::string urdf;
-  RobotModel model;             // as which the URDF reads
-  std::vector<MjcfPose> poses;  // of an MJCF's keyframes
-};
 
 bool is_robot_description(const std::filesystem::path& file);  // by its name; .xml only where it is MJCF
 

@@ -634,20 +634,23 @@ bool is_mjcf(const std::string& text) {
   return !scan.tags.empty() && scan.tags.front().name == "mujoco";
 }
 
-MjcfRobot read_mjcf(const std::string& file, const UrdfOptions& options, std::vector<InputProblem>* warnings) {
+RobotDescription read_mjcf(const std::string& file, const UrdfOptions& options, std::vector<InputProblem>* warnings) {
   return read_mjcf_text(read_input_file(file, description_max_bytes), file, options, warnings);
 }
 
-MjcfRobot read_mjcf_text(const std::string& text, const std::string& file, const UrdfOptions& options,
-                         std::vector<InputProblem>* warnings) {
+RobotDescription read_mjcf_text(const std::string& text, const std::string& file, const UrdfOptions& options,
+                                std::vector<InputProblem>* warnings) {
   const MjcfSource source(text, file);
   try {
     UrdfDocument document(source.text(), file);
-    MjcfRobot robot;
+    RobotDescription robot;
     UrdfDescription description = MjcfReader(document, robot.poses).run();
     document.throw_if_refused();  // what follows would be consequences
     check_description(document, description, options);
+    document.throw_if_refused();
+    robot.model = merged(description, document);
     document.throw_if_refused(options.strict);
+    robot.model.file = file;
     robot.urdf = urdf_text(description);
     if (warnings != nullptr) *warnings = source.placed(document.warnings());
     return robot;

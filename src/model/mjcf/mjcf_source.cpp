@@ -12,26 +12,26 @@ namespace {
 
 constexpr std::size_t most_open = 8, most_files = 1000;
 
-// Behind the tag's own end, and that of its element where it has no children.
+// Where the '>' of a start tag is.
+std::size_t end_of_tag(std::string_view text, const XmlTag& tag) {
+  if (tag.attributes.empty()) return text.find('>', tag.at);
+  const std::size_t value_at = tag.attributes.back().value_at;
+  return text.find('>', text.find(text[value_at - 1], value_at));
+}
+
+// Behind an element without children.
 std::size_t end_of_element(std::string_view text, const XmlTag& tag) {
-  std::size_t at = tag.attributes.empty()
-                       ? tag.at
-                       : text.find(text[tag.attributes.back().value_at - 1], tag.attributes.back().value_at);
-  at = text.find('>', at);
-  if (at == std::string_view::npos) return text.size();
-  if (text[at - 1] == '/') return at + 1;
-  const std::size_t close = text.find('>', text.find("</", at));
+  const std::size_t end = end_of_tag(text, tag);
+  if (end == std::string_view::npos) return text.size();
+  if (text[end - 1] == '/') return end + 1;
+  const std::size_t close = text.find('>', text.find("</", end));
   return close == std::string_view::npos ? text.size() : close + 1;
 }
 
 // What stands between the root's tags.
 std::string_view inside_root(std::string_view text, const XmlScan& scan) {
   if (scan.tags.empty()) return {};
-  const XmlTag& root = scan.tags.front();
-  const std::size_t start = root.attributes.empty()
-                                ? root.at
-                                : text.find(text[root.attributes.back().value_at - 1], root.attributes.back().value_at);
-  const std::size_t open = text.find('>', start), close = text.rfind("</");
+  const std::size_t open = end_of_tag(text, scan.tags.front()), close = text.rfind("</");
   if (open == std::string_view::npos || close == std::string_view::npos || text[open - 1] == '/' || close < open)
     return {};
   return text.substr(open + 1, close - open - 1);

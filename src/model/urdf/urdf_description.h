@@ -89,4 +89,7 @@ void read_transmission(UrdfDocument& document, const tinyxml2::XMLElement& eleme
 // afterwards; the others are gone.
 void check_description(UrdfDocument& document, UrdfDescription& robot, const UrdfOptions& options);
 
+// The model: fixed joints disappear, what hung on them moves into the parent. The description has been checked.
+RobotModel merged(const UrdfDescription& robot, UrdfDocument& document);
+
 }  // namespace kadans

@@ -123,6 +123,8 @@ void tell_motors(const RobotModel& model, UrdfDocument& document) {
 
 }  // namespace
 
+RobotModel merged(const UrdfDescription& robot, UrdfDocument& document) { return Merger(robot, document).run(); }
+
 Pose motion_of(const Joint& joint, double position) noexcept {
   if (joint.type != JointType::prismatic) return {{0, 0, 0}, from_axis_angle(joint.axis, position)};
   const Vec3& axis = joint.axis;
@@ -144,7 +146,7 @@ RobotModel read_urdf_text(const std::string& text, const std::string& file, cons
   check_description(document, robot, options);
   if (file.ends_with(".URDF")) document.warn(0, "the file's name ends in .URDF: what looks for .urdf will not find it");
   document.throw_if_refused();
-  RobotModel model = Merger(robot, document).run();
+  RobotModel model = merged(robot, document);
   tell_motors(model, document);
   document.throw_if_refused(options.strict);
   if (warnings != nullptr) *warnings = document.warnings();
