@@ -27,6 +27,11 @@ struct Project {
     truth = {.type = bus.type, .robot = right.string()};
   }
   void change(const std::string& from, const std::string& to) { REQUIRE(edit(mine, from, to)); }
+  void swap(const std::string& one, const std::string& other) {
+    change(one, "<one>");
+    change(other, one);
+    change("<one>", other);
+  }
   const Commissioned& commissioned() {
     go(all, settings, truth);
     return all;
@@ -77,12 +82,8 @@ TEST_CASE("A robot that is wired as its configuration says is left as it is") {
 TEST_CASE("Swapped joints are found by what the person sees, and the configuration says it then") {
   SUBCASE("boards") {
     Project project(boards);
-    project.change("\"encoder\": 0, \"pwm\": 0", "\"encoder\": 9, \"pwm\": 9");
-    project.change("\"encoder\": 1, \"pwm\": 1", "\"encoder\": 0, \"pwm\": 0");
-    project.change("\"encoder\": 9, \"pwm\": 9", "\"encoder\": 1, \"pwm\": 1");
-    project.change("\"enable\": \"20\"", "\"enable\": \"x\"");
-    project.change("\"enable\": \"21\"", "\"enable\": \"20\"");
-    project.change("\"enable\": \"x\"", "\"enable\": \"21\"");
+    project.swap("\"encoder\": 0, \"pwm\": 0", "\"encoder\": 1, \"pwm\": 1");
+    project.swap("\"enable\": \"20\"", "\"enable\": \"21\"");
     const Commissioned& all = project.commissioned();
     check_good(all);
     CHECK(all.person.was_told("joint 'tilt' is moved by what is written for 'pan': corrected"));
@@ -91,12 +92,8 @@ TEST_CASE("Swapped joints are found by what the person sees, and the configurati
   }
   SUBCASE("motors of boards") {
     Project project(boards);
-    project.change("\"pwm\": 0", "\"pwm\": 9");
-    project.change("\"pwm\": 1", "\"pwm\": 0");
-    project.change("\"pwm\": 9", "\"pwm\": 1");
-    project.change("\"enable\": \"20\"", "\"enable\": \"x\"");
-    project.change("\"enable\": \"21\"", "\"enable\": \"20\"");
-    project.change("\"enable\": \"x\"", "\"enable\": \"21\"");
+    project.swap("\"pwm\": 0", "\"pwm\": 1");
+    project.swap("\"enable\": \"20\"", "\"enable\": \"21\"");
     const Commissioned& all = project.commissioned();
     check_good(all);
     CHECK(all.person.was_told("motors are swapped: joint 'tilt' is moved by that of 'pan': corrected"));
@@ -104,9 +101,7 @@ TEST_CASE("Swapped joints are found by what the person sees, and the configurati
   }
   SUBCASE("encoders of boards") {
     Project project(boards);
-    project.change("\"encoder\": 0,", "\"encoder\": 9,");
-    project.change("\"encoder\": 1,", "\"encoder\": 0,");
-    project.change("\"encoder\": 9,", "\"encoder\": 1,");
+    project.swap("\"encoder\": 0,", "\"encoder\": 1,");
     const Commissioned& all = project.commissioned();
     check_good(all);
     CHECK(all.person.was_told("encoders are swapped: joint 'pan' is seen by that of 'tilt': corrected"));
@@ -114,9 +109,7 @@ TEST_CASE("Swapped joints are found by what the person sees, and the configurati
   }
   SUBCASE("servos") {
     Project project(servos);
-    project.change("\"id\": 1", "\"id\": 9");
-    project.change("\"id\": 2", "\"id\": 1");
-    project.change("\"id\": 9", "\"id\": 2");
+    project.swap("\"id\": 1", "\"id\": 2");
     const Commissioned& all = project.commissioned();
     check_good(all);
     CHECK(all.person.was_told("joint 'tilt' is moved by what is written for 'pan': corrected"));

@@ -16,6 +16,7 @@
 #include "config/robot/robot_config.h"
 #include "kadans/signal/input_error.h"
 #include "right_texts.h"
+#include "temporary_folder.h"
 
 namespace kadans {
 namespace {
@@ -23,28 +24,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // A folder for meshes, with a cache of its own.
-class Meshes {
+class Meshes : public test::TemporaryFolder {
  public:
-  Meshes() {
-    std::string pattern = (fs::temp_directory_path() / "kadans-meshes-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-    REQUIRE(setenv("XDG_CACHE_HOME", folder_.c_str(), 1) == 0);  // NOLINT(concurrency-mt-unsafe)
-  }
-  ~Meshes() {
-    unsetenv("XDG_CACHE_HOME");  // NOLINT(concurrency-mt-unsafe)
-    fs::remove_all(folder_);
-  }
+  Meshes() { REQUIRE(setenv("XDG_CACHE_HOME", path().c_str(), 1) == 0); }  // NOLINT(concurrency-mt-unsafe)
+  ~Meshes() { unsetenv("XDG_CACHE_HOME"); }                                // NOLINT(concurrency-mt-unsafe)
   Meshes(const Meshes&) = delete;
   Meshes& operator=(const Meshes&) = delete;
 
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return (folder_ / name).string();
-  }
-  fs::path cache() const { return folder_ / "kadans" / "hulls"; }
-
- private:
-  fs::path folder_;
+  fs::path cache() const { return path() / "kadans" / "hulls"; }
 };
 
 std::vector<Vec3> sorted(std::vector<Vec3> corners) {

@@ -4,12 +4,12 @@
 #include <string>
 
 #include <doctest/doctest.h>
-#include <stdlib.h>
 
 #include "broken.h"
 #include "config/robot/robot_config.h"
 #include "kadans/signal/input_error.h"
 #include "right_texts.h"
+#include "temporary_folder.h"
 
 namespace kadans {
 namespace {
@@ -20,8 +20,6 @@ namespace fs = std::filesystem;
 class GearedTulip {
  public:
   GearedTulip() {
-    std::string pattern = (fs::temp_directory_path() / "kadans-geared-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
     std::ifstream in(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf", std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(in), {}};
     text.replace(text.rfind("</robot>"), 8,
@@ -30,16 +28,12 @@ class GearedTulip {
                  "</motorInertia></actuator></transmission><gazebo/></robot>");
     text.insert(text.find('>', text.find("<joint name=\"l_knee\"")) + 1,
                 "<safety_controller k_velocity=\"1\" soft_lower_limit=\"0.1\" soft_upper_limit=\"2\"/>");
-    std::ofstream(file("geared.urdf"), std::ios::binary) << text;
-    std::ofstream(file("geared.xacro"), std::ios::binary) << text;
+    for (const char* name : {"geared.urdf", "geared.xacro"}) folder_.write(name, text);
   }
-  ~GearedTulip() { fs::remove_all(folder_); }
-  GearedTulip(const GearedTulip&) = delete;
-  GearedTulip& operator=(const GearedTulip&) = delete;
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+  std::string file(const std::string& name) const { return folder_.file(name); }
 
  private:
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 RobotConfig read_with_urdf(const std::string& urdf, const std::string& more = "") {

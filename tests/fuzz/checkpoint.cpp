@@ -8,9 +8,9 @@
 #include <map>
 
 #include "app/sim/input_files.h"
-#include "fuzz_folder.h"
 #include "fuzz_input.h"
 #include "telemetry/mcap/mcap_format.h"
+#include "temporary_folder.h"
 
 namespace {
 
@@ -39,7 +39,7 @@ Contents contents(const fs::path& folder) {
 
 // outside/home is the project around the working directory, outside/tmp takes what is unpacked.
 struct Outside {
-  fuzz::FuzzFolder folder;
+  test::TemporaryFolder folder;
   fs::path unpacked = folder.path() / "tmp";
   Contents before;
 

@@ -9,8 +9,8 @@
 #include "config/robot/robot_config.h"
 #include "config/scenario/based_on.h"
 #include "config/scenario/scenario_config.h"
-#include "fuzz_folder.h"
 #include "fuzz_input.h"
+#include "temporary_folder.h"
 
 namespace {
 
@@ -35,7 +35,7 @@ constexpr const char* tune = R"({ "name": "better", "scenarios": ["config/scenar
 "metrics": { "tilt": { "kind": "max", "signal": "base.tilt_rad" } }, "score": "tilt", "failed_score": 1 })";
 
 struct Project {
-  fuzz::FuzzFolder folder;
+  test::TemporaryFolder folder;
   std::string file = folder.path() / "config/given.json";
 
   Project() {

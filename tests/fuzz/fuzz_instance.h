@@ -11,13 +11,13 @@
 #include <string_view>
 
 #include "engine/bench.h"
-#include "fuzz_folder.h"
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"
 #include "remote/page/live_hub.h"
 #include "script/host/script_host.h"
 #include "telemetry/record/event_log.h"
+#include "temporary_folder.h"
 
 namespace kadans::fuzz {
 
@@ -32,7 +32,7 @@ class FuzzProject {
  private:
   FuzzProject();
   static const FuzzProject& only();
-  FuzzFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 class FuzzInstance {

@@ -3,41 +3,21 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <string>
 
 #include <doctest/doctest.h>
-#include <stdlib.h>
 
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
+#include "temporary_folder.h"
 #ifdef KADANS_MUJOCO
 #include "mjcf_judge.h"
 #endif
 
 namespace kadans {
 namespace {
-
-class Files {
- public:
-  Files() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "kadans-mjcf-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~Files() { std::filesystem::remove_all(path_); }
-  Files(const Files&) = delete;
-  Files& operator=(const Files&) = delete;
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return (path_ / name).string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 // Every way to give a pose, a shape and a mass; classes in classes; a free base; scenery and an object.
 constexpr const char* walker = R"(<mujoco model="walker">
@@ -88,9 +68,9 @@ constexpr const char* walker = R"(<mujoco model="walker">
 </mujoco>
 )";
 
-RobotModel model_of(const MjcfRobot& robot) { return read_urdf_text(robot.urdf, "made.urdf"); }
+RobotModel model_of(const RobotDescription& robot) { return read_urdf_text(robot.urdf, "made.urdf"); }
 
-std::string error_of(const Files& files, const std::string& text) {
+std::string error_of(const test::TemporaryFolder& files, const std::string& text) {
   try {
     (void)read_mjcf(files.write("robot.xml", text));
   } catch (const InputError& error) {
@@ -110,9 +90,9 @@ std::string with(const std::string& inside, const std::string& beside = "") {
 }  // namespace
 
 TEST_CASE("An MJCF becomes a URDF with its links, joints, motors and shapes") {
-  const Files files;
+  const test::TemporaryFolder files;
   std::vector<InputProblem> warnings;
-  const MjcfRobot robot = read_mjcf(files.write("walker.xml", walker), {}, &warnings);
+  const RobotDescription robot = read_mjcf(files.write("walker.xml", walker), {}, &warnings);
   const RobotModel model = model_of(robot);
   CHECK(model.name == "walker");
   REQUIRE(model.joint_names() == std::vector<std::string>{"left_hip", "left_knee", "right_slide"});
@@ -161,7 +141,7 @@ TEST_CASE("An MJCF becomes a URDF with its links, joints, motors and shapes") {
 }
 
 TEST_CASE("What is bolted down hangs on a link of the name world, and several arms are one robot") {
-  const Files files;
+  const test::TemporaryFolder files;
   const std::string arms = R"(<mujoco><compiler angle="radian"/><worldbody>
     <body name="a" pos="0 1 0"><geom size="0.1"/><body name="b"><joint name="j1" range="-1 2"/><geom size="0.1" pos="1 0 0"/></body></body>
     <body name="c" pos="0 -1 0"><joint name="j2"/><geom size="0.1" pos="1 0 0"/></body>
@@ -176,7 +156,7 @@ TEST_CASE("What is bolted down hangs on a link of the name world, and several ar
 }
 
 TEST_CASE("What a file includes is read in its place, and problems are told of the file that they stand in") {
-  const Files files;
+  const test::TemporaryFolder files;
   files.write("parts.xml", "<mujocoinclude>\n<default>\n  <geom density=\"-x\"/>\n</default>\n</mujocoinclude>");
   const std::string file =
       files.write("robot.xml",
@@ -199,7 +179,7 @@ TEST_CASE("What a file includes is read in its place, and problems are told of t
 }
 
 TEST_CASE("What would be another robot is refused, with its line and what to do") {
-  const Files files;
+  const test::TemporaryFolder files;
   const std::vector<std::pair<std::string, std::string>> table{
       {"<robot/>", "1: the first element is <robot>, an MJCF's is <mujoco>"},
       {"<mujoco><worldbody><geom size=\"1\"/></worldbody></mujoco>", "1: this MJCF has no body with a joint"},
@@ -270,7 +250,7 @@ TEST_CASE("A damaged MJCF is read or refused, and what was made of it is a URDF 
 
 #ifdef KADANS_MUJOCO
 TEST_CASE("Masses and forces of an MJCF are those that libmujoco computes, in 400 states of motion") {
-  const Files files;
+  const test::TemporaryFolder files;
   const test::JudgedRobot judged = test::judge(files.write("walker.xml", walker), 400);
   REQUIRE_MESSAGE(judged.judged, judged.why);
   CHECK(judged.mass < 1e-9);

@@ -1,40 +1,17 @@
 // Files as they should not be: missing, empty, a folder, binary, huge; and meshes beside the URDF.
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include <doctest/doctest.h>
-#include <stdlib.h>
 
 #include "broken_urdf.h"
 #include "kadans/model/urdf.h"
 #include "kadans/signal/input_error.h"
+#include "temporary_folder.h"
 
 using namespace kadans;
 
 namespace {
-
-// A folder of its own for a test, gone afterwards.
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "kadans-urdf-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return (path_ / name).string();
-  }
-  std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::string file_error(const std::string& file, const UrdfOptions& options = {}) {
   try {
@@ -53,9 +30,10 @@ std::string duo_with_mesh(const std::string& holder, const std::string& file) {
 }  // namespace
 
 TEST_CASE("A file that is missing, a folder, empty or too large is refused by name") {
-  const Folder folder;
-  CHECK(file_error(folder.path() + "/none.urdf") == folder.path() + "/none.urdf: there is no such file");
-  CHECK(file_error(folder.path()) == folder.path() + ": this is a folder, not a file");
+  const test::TemporaryFolder folder;
+  CHECK(file_error(folder.path().string() + "/none.urdf") ==
+        folder.path().string() + "/none.urdf: there is no such file");
+  CHECK(file_error(folder.path().string()) == folder.path().string() + ": this is a folder, not a file");
   const std::string empty = folder.write("empty.urdf", "");
   CHECK(file_error(empty) == empty + ": the file is empty");
   const std::string huge = folder.write("huge.urdf", "<robot/>");
@@ -128,17 +106,17 @@ TEST_CASE("What is odd is told beside the model, by place, and bounded") {
 }
 
 TEST_CASE("Mesh files are found beside the URDF, and in a package's folder above it") {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   folder.write("duo/meshes/shell.stl", "solid");
   const std::string beside = folder.write("duo/urdf/a.urdf", duo_with_mesh("visual", "../meshes/shell.stl"));
   const std::string package =
       folder.write("duo/urdf/b.urdf", duo_with_mesh("visual", "package://duo/meshes/shell.stl"));
-  const std::string absolute =
-      folder.write("duo/urdf/c.urdf", duo_with_mesh("visual", "file://" + folder.path() + "/duo/meshes/shell.stl"));
+  const std::string absolute = folder.write(
+      "duo/urdf/c.urdf", duo_with_mesh("visual", "file://" + folder.path().string() + "/duo/meshes/shell.stl"));
   for (const std::string& file : {beside, package, absolute}) {
     const RobotModel model = read_urdf(file);
     const auto& mesh = std::get<Mesh>(model.links[0].visuals.at(0).shape);
-    CHECK(mesh.file == folder.path() + "/duo/meshes/shell.stl");
+    CHECK(mesh.file == folder.path().string() + "/duo/meshes/shell.stl");
     CHECK(mesh.scale == Vec3{1, 2, 3});
   }
 }
@@ -146,14 +124,14 @@ TEST_CASE("Mesh files are found beside the URDF, and in a package's folder above
 TEST_CASE(
     "A mesh collides as the hull that its reader gives, scaled; each file is read once, and a bad one is left out and "
     "told") {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   folder.write("hull.stl", "solid");
   const std::string file = folder.write("duo.urdf", duo_with_mesh("collision", "hull.stl"));
   CHECK(std::get<Mesh>(read_urdf(file).links[0].collisions.at(0).shape).corners_m.empty());
   int reads = 0;
   const MeshHull hull = [&](const std::string& mesh) {
     ++reads;
-    CHECK(mesh == folder.path() + "/hull.stl");
+    CHECK(mesh == folder.path().string() + "/hull.stl");
     return std::vector<Vec3>{{1, 1, 1}, {-1, 0, 2}};
   };
   const RobotModel model = read_urdf(file, {.mesh_hull = hull});
@@ -165,6 +143,6 @@ TEST_CASE(
   std::vector<InputProblem> warnings;
   CHECK(read_urdf(file, {.mesh_hull = none}, &warnings).links[0].collisions.empty());
   REQUIRE(warnings.size() == 1);
-  CHECK(warnings[0].text() == file + ":9:42: mesh file '" + folder.path() +
+  CHECK(warnings[0].text() == file + ":9:42: mesh file '" + folder.path().string() +
                                   "/hull.stl' cannot be read as a mesh; link 'base' collides without it");
 }

@@ -1,6 +1,5 @@
 // What URDFs say of drives and limits beyond joints, and where their meshes are: used as they mean it.
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "broken_urdf.h"
 #include "kadans/model/urdf.h"
 #include "kadans/signal/input_error.h"
+#include "temporary_folder.h"
 
 using namespace kadans;
 
@@ -22,26 +22,6 @@ const std::string elbow_limit = R"(<limit lower="0" upper="2" effort="5" velocit
 RobotModel read(const std::string& text, std::vector<InputProblem>* warnings = nullptr) {
   return read_urdf_text(text, "duo.urdf", {}, warnings);
 }
-
-class PackageFolder {
- public:
-  PackageFolder() {
-    std::string pattern = (fs::temp_directory_path() / "kadans-package-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  ~PackageFolder() { fs::remove_all(path_); }
-  PackageFolder(const PackageFolder&) = delete;
-  PackageFolder& operator=(const PackageFolder&) = delete;
-  std::string write(const std::string& name, const std::string& text) const {
-    fs::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return (path_ / name).string();
-  }
-  std::string path() const { return path_.string(); }
-
- private:
-  fs::path path_;
-};
 
 }  // namespace
 
@@ -152,16 +132,16 @@ TEST_CASE("When warnings are mistakes, they are told with them by place") {
 }
 
 TEST_CASE("A package is where it is said to be, where ROS says, or where a package.xml up the folders says") {
-  const PackageFolder place;
+  const test::TemporaryFolder place;
   const std::string mesh = place.write("elsewhere/shell/meshes/a.stl", "solid");
   const std::string urdf = place.write("robot/urdf/a.urdf", "");
   const std::string name = "package://shell/meshes/a.stl";
   CHECK_FALSE(find_urdf_file(name, urdf));
-  CHECK(find_urdf_file(name, urdf, {{"shell", place.path() + "/elsewhere/shell"}}) == mesh);
-  CHECK_FALSE(find_urdf_file(name, urdf, {{"shell", place.path()}}));
-  setenv("ROS_PACKAGE_PATH", ("/nowhere:" + place.path() + "/elsewhere").c_str(), 1);
+  CHECK(find_urdf_file(name, urdf, {{"shell", place.path().string() + "/elsewhere/shell"}}) == mesh);
+  CHECK_FALSE(find_urdf_file(name, urdf, {{"shell", place.path().string()}}));
+  setenv("ROS_PACKAGE_PATH", ("/nowhere:" + place.path().string() + "/elsewhere").c_str(), 1);
   CHECK(find_urdf_file(name, urdf) == mesh);
-  setenv("ROS_PACKAGE_PATH", place.path().c_str(), 1);  // a folder above it
+  setenv("ROS_PACKAGE_PATH", place.path().string().c_str(), 1);  // a folder above it
   CHECK(find_urdf_file(name, urdf) == mesh);
   unsetenv("ROS_PACKAGE_PATH");
   CHECK_FALSE(find_urdf_file(name, urdf));

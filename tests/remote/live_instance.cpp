@@ -60,23 +60,12 @@ Catalog& with_parameters_by_object(Catalog& catalog) {
 }  // namespace
 
 Project::Project() {
-  std::string pattern = (fs::temp_directory_path() / "kadans-remote-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw InputError({.file = pattern, .message = "cannot be made"});
-  root = pattern;
   write("config/bench/robot.json", configuration_text);
   write("behaviors/bench/nod.lua", nod);
   write("behaviors/bench/wait.lua", waits);
 }
 
-Project::~Project() {
-  std::error_code ignored;
-  fs::remove_all(root, ignored);
-}
-
-void Project::write(const std::string& file, const std::string& text) const {
-  fs::create_directories((root / file).parent_path());
-  std::ofstream(root / file, std::ios::binary) << text;
-}
+void Project::write(const std::string& file, const std::string& text) const { folder.write(file, text); }
 
 std::string Project::read(const std::string& file) const {
   std::ifstream stream(root / file, std::ios::binary);

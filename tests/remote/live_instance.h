@@ -15,6 +15,7 @@
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"
+#include "temporary_folder.h"
 
 namespace kadans::remote_test {
 
@@ -22,11 +23,9 @@ using Json = nlohmann::json;
 
 // Gone with the test. Holds a project: a configuration with comments, a behavior "nod" and one that never ends, "wait".
 struct Project {
-  std::filesystem::path root;
+  test::TemporaryFolder folder;
+  std::filesystem::path root = folder.path();
   Project();
-  ~Project();
-  Project(const Project&) = delete;
-  Project& operator=(const Project&) = delete;
   void write(const std::string& file, const std::string& text) const;
   std::string read(const std::string& file) const;
   std::filesystem::path configuration() const { return root / "config/bench/robot.json"; }
