@@ -112,37 +112,39 @@ void ControlSets::declare(Catalog& catalog) {
 
 // What objects that go on add to a joint stays. An object that took over the torque with it would give it a second
 // time.
-bool ControlSets::take_off_sums(const Member& member, ActuationFrame& last, JointStates& joints) const noexcept {
-  bool any = false;
-  if (member.composition != Composition::set) return any;
+void ControlSets::take_off_sums(const Member& member, ActuationFrame& last, JointStates& joints) const noexcept {
   each_bit(active_, [&](std::uint32_t set) {
     for (const Member& other : plans_[set]) {
-      if (other.composition != Composition::sum || (running_ >> other.object & 1U) == 0) continue;
+      if (!goes_on_as_sum(other)) continue;
       const auto& theirs = catalog_.objects[other.object].joints;
       for (const std::size_t joint : catalog_.objects[member.object].joints) {
         const double effort_Nm = proposals_[other.object]->joints[joint].effort_Nm;
         if (std::ranges::find(theirs, joint) == theirs.end() || !std::isfinite(effort_Nm)) continue;
         last.joints[joint].effort_Nm -= effort_Nm;
         joints.joints[joint].effort_Nm -= effort_Nm;
-        any = true;
       }
     }
   });
-  return any;
 }
 
 void ControlSets::start_newcomers(const ControlInput& input) noexcept {
+  bool sums = false;  // mostly there are none, and frames are large
+  each_bit(active_, [&](std::uint32_t set) {
+    sums = sums || std::ranges::any_of(plans_[set], [&](const Member& member) { return goes_on_as_sum(member); });
+  });
   each_bit(active_, [&](std::uint32_t set) {
     for (const Member& member : plans_[set]) {
       const ObjectMask bit = ObjectMask{1} << member.object;
       if ((running_ & bit) != 0) continue;
+      fresh_ |= bit;
+      if (!sums || member.composition != Composition::set) {
+        objects_[member.object]->start(input);
+        continue;
+      }
       ActuationFrame last = input.last;
       JointStates joints = input.joints;
-      if (take_off_sums(member, last, joints))
-        objects_[member.object]->start({joints, input.status, last, input.time_ns, input.dt_s});
-      else
-        objects_[member.object]->start(input);
-      fresh_ |= bit;
+      take_off_sums(member, last, joints);
+      objects_[member.object]->start({joints, input.status, last, input.time_ns, input.dt_s});
     }
   });
   running_ = partition_.objects(active_);

@@ -75,8 +75,10 @@ class ControlSets {
   };
   using Plan = std::vector<Member>;  // a set, laid out for the tick
   void make_plan(Catalog& catalog, const ControlSetInfo& set);
-  // True: it took something off.
-  bool take_off_sums(const Member& member, ActuationFrame& last, JointStates& joints) const noexcept;
+  bool goes_on_as_sum(const Member& member) const noexcept {
+    return member.composition == Composition::sum && (running_ >> member.object & 1U) != 0;
+  }
+  void take_off_sums(const Member& member, ActuationFrame& last, JointStates& joints) const noexcept;
   void declare(Catalog& catalog);
   void check_drives();
   using Writers = std::array<std::uint32_t, max_joints>;  // by joint: the objects that have a share, one bit each
