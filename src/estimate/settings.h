@@ -14,6 +14,7 @@ namespace kadans {
 struct EstimateFoot {
   std::string link;
   std::array<Vec3, sensors_per_foot> sensors_m{};  // where the sensors sit, in the link's frame: the sole's corners
+  std::string name{};                              // as behaviors know it
 };
 
 struct EstimateSettings {

@@ -148,6 +148,36 @@ TEST_CASE("Feet are the plant's and the estimator's alike, in the order of the f
   CHECK(config.estimate.feet[0].link == "l_ankle_roll_link");
 }
 
+TEST_CASE("Feet have names: two left and right unless named, others their links', each its own") {
+  using Names = std::vector<std::string>;
+  const auto with = [](const std::vector<std::pair<std::string, std::string>>& feet) {  // link, name
+    std::string list, text = right_robot;
+    for (const auto& [link, name] : feet) {
+      std::string corners;
+      for (const char* corner : {"heel_inner_m", "heel_outer_m", "toe_inner_m", "toe_outer_m"})
+        corners += std::string(", \"") + corner + "\": [0, 0, 0]";
+      list += (list.empty() ? "" : ", ") + std::string("{ \"link\": \"") + link + "\"" +
+              (name.empty() ? "" : ", \"name\": \"" + name + "\"") + corners + " }";
+    }
+    const std::size_t from = text.find("\"feet\": [") + 8, last = text.find("toe_outer_m", from);
+    const std::size_t to = text.find(']', text.find(']', last) + 1) + 1;  // behind the corner's, the list's
+    return text.replace(from, to - from, "[" + list + "]");
+  };
+  const auto names = [&](const std::vector<std::pair<std::string, std::string>>& feet) {
+    Names all;
+    for (const EstimateFoot& foot : read(with(feet)).estimate.feet) all.push_back(foot.name);
+    return all;
+  };
+  const std::string l = "l_ankle_roll_link", r = "r_ankle_roll_link", knee = "l_knee_link";
+  CHECK(names({{l, ""}}) == Names{l});
+  CHECK(names({{l, ""}, {r, ""}}) == Names{"left", "right"});
+  CHECK(names({{l, "aft"}, {r, ""}}) == Names{"aft", r});
+  CHECK(names({{l, ""}, {r, ""}, {knee, "third"}}) == Names{l, r, "third"});
+  CHECK(refusal_of(with({{l, "one"}, {r, "one"}})).find("two feet are 'one'") != std::string::npos);
+  CHECK(refusal_of(with({{l, ""}, {l, ""}})).find("two feet are 'right'") != std::string::npos);
+  CHECK(refusal_of(with({{l, "a.b"}, {r, ""}})).find("a foot's name has no dot") != std::string::npos);
+}
+
 TEST_CASE("A control object drives the motor joints that its patterns fit, each once, in the order of the model") {
   const RobotConfig config = read_with("\"joints\": [\"*\"]", "\"joints\": [\"*_knee\", \"l_*\", \"l_knee\"]");
   const std::vector<std::size_t>& joints = config.objects[0].joints;

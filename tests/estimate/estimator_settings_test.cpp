@@ -39,7 +39,7 @@ TEST_CASE("Wrong settings are refused with key, joint or foot, value and range")
        "estimate: foot 'l_ankle_roll_link': contact_on_N = 8.000000, contact_off_N = 9.000000: must be 0 < "
        "contact_off_N <= contact_on_N"},
       {[](EstimateSettings& s) { s.feet[1].link = "r_foot"; }, "estimate: foot: the robot has no link 'r_foot'"},
-      {[](EstimateSettings& s) { s.feet.resize(5, s.feet[0]); }, "estimate: 5 feet, at most 4"},
+      {[](EstimateSettings& s) { s.feet.resize(9, s.feet[0]); }, "estimate: 9 feet, at most 8"},
   };
   for (const Case& wrong : cases) {
     EstimateSettings settings = tulip_settings();

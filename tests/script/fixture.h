@@ -33,6 +33,7 @@ class Robot {
  public:
   Robot() {
     catalog.model = &model;
+    catalog.feet = {{"left", "l_sole"}, {"right", "r_sole"}};
     model.name = "tulip";
     model.links.resize(joint_names().size() + 1);
     for (const std::string& name : joint_names()) {

@@ -21,7 +21,7 @@ static_assert(crosses<SensorFrame> && crosses<JointStates> && crosses<ActuationF
 static_assert(crosses<Snapshot> && crosses<Command> && crosses<Fault>);
 
 TEST_CASE("the frames have the same layout on every machine") {
-  CHECK(sizeof(SensorFrame) == 3840);
+  CHECK(sizeof(SensorFrame) == 4000);
   CHECK(offsetof(SensorFrame, joints) == 16);
   CHECK(offsetof(SensorFrame, imu) == 3088);
   CHECK(offsetof(SensorFrame, feet) == 3152);

@@ -71,6 +71,11 @@ struct BehaviorValue {
   int line = 0, column = 0;
 };
 
+// A sole as behaviors know it: `s.feet.NAME`, and "foot.NAME.contact" in conditions. Its signals are named by its link.
+struct FootInfo {
+  std::string name, link;
+};
+
 struct Catalog {
   const RobotModel* model = nullptr;
   ParameterTable parameters;
@@ -85,6 +90,7 @@ struct Catalog {
   SwitchSettings switching;
   std::vector<UnheldLaw> unheld;  // one per joint; empty: off
   std::vector<BehaviorValue> behavior_values;
+  std::vector<FootInfo> feet;          // in the order of the frames
   std::vector<SensorChannel> sensors;  // other than joints, IMU and feet; in the order of the frames
 };
 

@@ -7,7 +7,7 @@
 namespace kadans {
 
 inline constexpr std::size_t max_joints = 64;
-inline constexpr std::size_t max_feet = 4;
+inline constexpr std::size_t max_feet = 8;
 inline constexpr std::size_t sensors_per_foot = 4;  // heel/toe x inner/outer
 inline constexpr std::size_t max_channels = 32;     // sensors other than joints, IMU and feet
 inline constexpr std::size_t max_objects = 32;      // control objects, over all control sets

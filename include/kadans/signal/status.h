@@ -165,6 +165,7 @@ static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 &&
               alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 112 && offsetof(Snapshot, joints) == 32);
 static_assert(sizeof(DriveStatus) == 12 && sizeof(PowerStatus) == 16 + 12 * max_joints);
-static_assert(sizeof(Snapshot) == 5968 + 8 + 24 * new_faults_shown);  // a new field also belongs in copy_used()
+static_assert(sizeof(Snapshot) ==
+              5848 + 32 * max_feet + 24 * new_faults_shown);  // a new field also belongs in copy_used()
 
 }  // namespace kadans

@@ -22,7 +22,9 @@ namespace fs = std::filesystem;
 class Sensors final : public SnapshotFilter {
  public:
   explicit Sensors(const Catalog& catalog)
-      : joints_(catalog.model->joint_names()), fields_(status_fields(catalog.sensors)) {}
+      : joints_(catalog.model->joint_names()), fields_(status_fields(catalog.sensors)) {
+    for (const FootInfo& sole : catalog.feet) feet_.push_back(sole.name);
+  }
 
   bool set(const std::string& name, double value) {
     if (!std::isfinite(value)) return false;
@@ -73,7 +75,7 @@ class Sensors final : public SnapshotFilter {
       case joint:
         return one_of("joints", joints_);
       case foot:
-        return one_of("feet", {"left", "right"});
+        return one_of("feet", feet_);
       case base:
         return only("base");
       case rate:
@@ -92,7 +94,7 @@ class Sensors final : public SnapshotFilter {
     return std::nullopt;
   }
 
-  std::vector<std::string> joints_;
+  std::vector<std::string> joints_, feet_;
   std::vector<StatusField> fields_;
   std::map<std::string, double> values_;
 };

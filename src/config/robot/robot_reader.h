@@ -33,6 +33,7 @@ class RobotReader {
   void collision(Fields& entry);
   void imu(Fields& f);
   void foot(Fields& f);
+  void name_feet(Fields& f);
   void start(Fields& f);
   void estimate(Fields& f);
   void sensor(Fields& entry);

@@ -213,7 +213,7 @@ int read_file(lua_State* state) {
 int open_bindings(lua_State* state) {
   auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
   open_machines(state, parts.chart, parts.bindings, parts.tables);
-  parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, parts.settings.feet, true);
+  parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, true);
   parts.tables.event = parts.snapshot_tables.event();
   return 0;
 }
@@ -607,7 +607,6 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
                                                             .limits = settings.limits,
                                                             .voice = &parts});
   parts.bindings.catalog = &parts.catalog;
-  parts.bindings.feet = &parts.settings.feet;
   parts.lua->core().bindings = &parts.bindings;
   if (!parts.lua->call(read_file, &parts, instructions, settings.limits.load_wall_ns)) {
     throw InputError(problem_of(parts.lua->error()));

@@ -50,10 +50,9 @@ class Behavior {
     std::filesystem::path file;
     std::uint64_t seed = 1;
     ScriptLimits limits{};
-    std::vector<std::string> feet{"left", "right"};  // names of the feet in the snapshot's order
-    std::vector<PlayArgument> arguments{};           // for its `args` or its parameters
-    std::string source{};                            // where the arguments were written, for messages
-    std::string chunk{};                             // name of `file` when it was first read; set by Behavior
+    std::vector<PlayArgument> arguments{};  // for its `args` or its parameters
+    std::string source{};                   // where the arguments were written, for messages
+    std::string chunk{};                    // name of `file` when it was first read; set by Behavior
   };
   // `catalog` and `log` must outlive the behavior. Throws InputError.
   Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log);

@@ -220,7 +220,8 @@ constexpr ApiEntry written[] = {
     {"s", "joints", "kadans.Joints", "By name"},
     {"s", "base", "kadans.Base", "The trunk"},
     {"s", "event", "kadans.Event", "The event of the present step; empty outside of such a step"},
-    {"s", "feet", "kadans.Feet", "left and right"},
+    {"s", "feet", "kadans.Feet",
+     "By name, as the robot's configuration has them; two without names are left and right"},
     {"s", "support", "kadans.Support", "Where the ground supports the robot"},
     {"s", "safety", "kadans.Safety", "State of the safety layer"},
     {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
@@ -394,7 +395,9 @@ std::string lua_stubs(const Catalog& catalog) {
   for (const SensorChannel& sensor : catalog.sensors)
     text +=
         "---@field " + sensor.name + " number " + sensor.doc + (sensor.unit.empty() ? "" : " In " + sensor.unit) + "\n";
-  text += "\n---@class kadans.Feet\n---@field left kadans.Foot\n---@field right kadans.Foot\n\n";
+  text += "\n---@class kadans.Feet\n";
+  for (const FootInfo& foot : catalog.feet) text += "---@field " + foot.name + " kadans.Foot\n";
+  text += "\n";
   for (const Owner& owner : owners) {
     text += "---@class " + std::string(owner.type) + "\n";
     for (const ApiEntry& entry : script_api()) {
@@ -450,7 +453,7 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("joint", s["joints"].fields.begin()->second.names());
   add("base", s["base"].names());
   add("rate", s["base"].fields["angular_velocity_rad_s"].names());
-  add("foot", s["feet"].fields["left"].names());
+  add("foot", s["feet"].fields.begin()->second.names());
   add("support", s["support"].names());
   add("safety", s["safety"].names());
   add("joystick", s["joystick"].names());

@@ -51,18 +51,8 @@ SignalName condition_signal(const Bindings& bindings, std::string_view name) noe
   constexpr std::size_t foot_at = 5;  // behind "foot."
   SignalName text{};
   std::string_view foot = name.starts_with("foot.") ? part_of(name, foot_at) : std::string_view{}, link = foot;
-  const auto known = std::ranges::find(*bindings.feet, foot);
-  if (known != bindings.feet->end()) {
-    const SignalTable& signals = bindings.catalog->signals;
-    auto before = known - bindings.feet->begin();
-    std::string_view last;
-    for (SignalId id = 0; id < signals.size(); ++id) {
-      const std::string_view other = signals.info(id).name;
-      if (!other.starts_with("foot.") || part_of(other, foot_at) == last) continue;
-      last = part_of(other, foot_at);
-      if (before-- == 0) link = last;
-    }
-  }
+  const auto known = std::ranges::find(bindings.catalog->feet, foot, &FootInfo::name);
+  if (known != bindings.catalog->feet.end()) link = known->link;
   const std::string_view rest = foot.empty() ? name : name.substr(foot_at + foot.size());
   std::snprintf(text.data(), text.size(), "%s%.*s%.*s", foot.empty() ? "" : "foot.", static_cast<int>(link.size()),
                 link.data(), static_cast<int>(rest.size()), rest.data());

@@ -40,11 +40,8 @@ struct ConditionText {
 ConditionText read_condition_text(std::string_view text) noexcept;
 bool is_truth_of_simulation(std::string_view signal) noexcept;
 
-inline const std::vector<std::string> no_feet;
-
 struct Bindings {
   const Catalog* catalog = nullptr;
-  const std::vector<std::string>* feet = &no_feet;  // their names in `s.feet`, in the snapshot's order
   std::optional<SetPartition> partition;
   SetMask all_sets = 0;                          // those that any state may run on
   std::vector<SetMask> machine_sets;             // those that the states of each machine run on

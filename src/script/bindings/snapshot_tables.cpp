@@ -126,8 +126,7 @@ void SnapshotTables::push_joints(lua_State* state, const RobotModel& model) {
   make_read_only(state, "s.joints");
 }
 
-int SnapshotTables::open(lua_State* state, const Catalog& catalog, const std::vector<std::string>& feet,
-                         bool on_demand) {
+int SnapshotTables::open(lua_State* state, const Catalog& catalog, bool on_demand) {
   on_demand_ = on_demand;
   fields_ = status_fields(catalog.sensors);
   open_shelf(state);
@@ -142,9 +141,9 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, const std::ve
   finish_part(state, base, "s.base");
   lua_setfield(state, -2, "base");
   lua_newtable(state);
-  for (std::size_t i = 0; i < std::min(feet.size(), max_feet); ++i) {
+  for (std::size_t i = 0; i < std::min(catalog.feet.size(), max_feet); ++i) {
     push_whole_part(state, Kind::foot, i, "a foot");
-    lua_setfield(state, -2, feet[i].c_str());
+    lua_setfield(state, -2, catalog.feet[i].name.c_str());
   }
   make_read_only(state, "s.feet");
   lua_setfield(state, -2, "feet");

@@ -17,10 +17,9 @@ namespace kadans {
 
 class SnapshotTables {
  public:
-  // Makes the tables and returns the registry reference of `s`. `feet` are the names of the feet in their order. With
-  // `on_demand` this object must outlive the state and must not move; without it every field is refilled each time.
-  // Raises.
-  int open(lua_State* state, const Catalog& catalog, const std::vector<std::string>& feet, bool on_demand = false);
+  // Makes the tables and returns the registry reference of `s`. With `on_demand` this object must outlive the state and
+  // must not move; without it every field is refilled each time. Raises.
+  int open(lua_State* state, const Catalog& catalog, bool on_demand = false);
   // After open(): registry reference of the content of s.event, which the chart's runner fills.
   int event() const noexcept { return event_; }
   // The snapshot must live as long as functions of this tick run. Existing fields are replaced without allocation.

@@ -161,7 +161,6 @@ CheckedScript check_script(const fs::path& root, const fs::path& file, const Cat
                                                             .name = settings.file.stem().string(),
                                                             .limits = settings.limits});
   parts.bindings.catalog = &parts.catalog;
-  parts.bindings.feet = &parts.settings.feet;
   if (catalog != nullptr) parts.lua->core().bindings = &parts.bindings;
   Looked looked{parts};
   looked.found.kind = file.string().ends_with("_test.lua") ? ScriptKind::test : ScriptKind::module;

@@ -125,7 +125,7 @@ void push_new_content(lua_State* state, Console::Parts& parts) {
   open_machines(state, parts.chart, parts.bindings, parts.tables);
   lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.machines[0].handle);
   lua_setfield(state, content, "m");
-  parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, parts.settings.feet);
+  parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog);
   lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.snapshot);
   lua_setfield(state, content, "s");
   parts.signals.push(state, "signals");

@@ -30,7 +30,6 @@ class Console {
   struct Settings {
     std::filesystem::path root;  // of the project
     PlayFolders folders;         // for :play
-    std::vector<std::string> feet{"left", "right"};
     ScriptLimits limits{.tick_instructions = 1'000'000,
                         .load_instructions = 20'000'000,
                         .tick_wall_ns = 200'000'000,

@@ -71,7 +71,6 @@ std::vector<PlayList::Entry> ScriptHost::load(const std::vector<PlayItem>& list,
                                       .file = item.file.is_absolute() ? item.file : settings_.root / item.file,
                                       .seed = settings_.seed,
                                       .limits = settings_.limits,
-                                      .feet = settings_.feet,
                                       .arguments = item.arguments,
                                       .source = item.source};
     try {

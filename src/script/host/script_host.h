@@ -38,7 +38,6 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
     std::vector<PlayItem> play;  // with absolute files, or files relative to the root
     std::uint64_t seed = 1;
     ScriptLimits limits{};
-    std::vector<std::string> feet{"left", "right"};
     std::vector<Event> events{};  // in any order
     SafePosture::Settings safe{};
     std::vector<InputEvent> inputs{};

@@ -85,8 +85,7 @@ int play(lua_State* state) {
   if (testing.played.size() >= stages_max) return luaL_error(state, "a test plays 8 behaviors at most");
   if (!make_stage(testing, file, luaL_checkstring(state, 2))) return raise(state, testing);
   Played& played = testing.played.back();
-  static const std::vector<std::string> feet{"left", "right"};
-  played.snapshot = played.tables.open(state, played.stage->catalog(), feet);
+  played.snapshot = played.tables.open(state, played.stage->catalog());
   lua_pushinteger(state, static_cast<lua_Integer>(testing.played.size() - 1));
   return 1;
 }
