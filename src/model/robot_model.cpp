@@ -32,6 +32,13 @@ bool RobotModel::on_one_path(std::size_t joint, std::size_t other) const {
   return link == carrier;
 }
 
+void RobotModel::lead_mimics(std::span<double> position_rad) const noexcept {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (const auto& mimic = joints[i].mimic)
+      position_rad[i] = mimic->multiplier * position_rad[mimic->joint] + mimic->offset;
+  }
+}
+
 std::vector<std::string> RobotModel::link_names() const {
   std::vector<std::string> names;
   for (const Link& link : links) {

@@ -113,7 +113,7 @@ TEST_CASE("An MJCF becomes a URDF with its links, joints, motors and shapes") {
   CHECK(slide.mimic->joint == 0);
   CHECK(slide.mimic->multiplier == 0.5);
   CHECK(slide.mimic->offset == 0.1);
-  CHECK(slide.effort_max_Nm == 100);  // assumed, and told
+  CHECK(slide.effort_max_Nm == 0);  // it mimics: its leader moves it
   const Link& trunk = model.links[0];
   REQUIRE(trunk.visuals.size() == 1);
   CHECK(std::get<Sphere>(trunk.visuals[0].shape).radius_m == 0.2);

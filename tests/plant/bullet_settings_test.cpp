@@ -64,10 +64,6 @@ TEST_CASE("Settings that do not fit the model are refused by name and value") {
        "friction of 'arm' = -1 must be at least 0"},
       {[](Robot& r) { r.settings.solver_iterations = 0; }, "solver_iterations = 0 must be at least 1"},
       {[](Robot& r) { r.settings.gravity_m_s2[2] = NAN; }, "gravity_m_s2 must be finite"},
-      {[](Robot& r) { r.model.joints[0].mimic = Mimic{}; },
-       "joint 'swing': mimic joints cannot be simulated: in the URDF, make it 'fixed', or leave out its <mimic> so "
-       "that it "
-       "has a motor of its own"},
   };
   check_all(table);
 }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -71,7 +72,9 @@ struct Link {
 
 enum class JointType : std::uint8_t { revolute, continuous, prismatic };
 
-struct Mimic {  // position = multiplier * position of `joint` + offset
+// position = multiplier * position of `joint` + offset. A joint that mimics has no motor of its own, whatever the URDF
+// says of its torque: what the other joint's motor gives moves both.
+struct Mimic {
   std::size_t joint = 0;
   double multiplier = 1, offset = 0;
 };
@@ -108,6 +111,8 @@ struct RobotModel {
   std::vector<std::string> drive_names() const;  // by joint; a drive that no transmission names has its joint's name
   // Whether one of the two joints carries the other, as couplings need.
   bool on_one_path(std::size_t joint, std::size_t other) const;
+  // Puts the joints that mimic where those that they mimic lead them. position_rad has one value a joint.
+  void lead_mimics(std::span<double> position_rad) const noexcept;
   std::vector<std::string> link_names() const;  // merged names too
   double mass_kg() const;
 };

@@ -3,6 +3,12 @@
 // integrators themselves, and the joints follow them.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "kadans/model/robot_model.h"
 #include "kadans/plant/modelled_drives.h"
 #include "kadans/plant/settings.h"
 #include "kadans/plant/world.h"
@@ -28,6 +34,7 @@ class IdealWorld final : public OneRobotWorld {
   void map_coupled(bool to_drives) noexcept;
 
   std::vector<Transmission> couplings_;
+  std::vector<std::pair<std::size_t, Mimic>> mimics_;  // by joint
   std::array<double, max_joints> inertia_kg_m2_{};
   std::array<double, max_joints> lower_rad_{}, upper_rad_{};
   ActuationFrame actuation_;

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <stdexcept>
+#include <utility>
 
 #include <glob.h>
 
@@ -14,6 +16,7 @@
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
 #include "estimate/estimator.h"
+#include "kadans/plant/bullet/bullet_world.h"
 #include "kadans/signal/input_error.h"
 #include "robot_description.h"
 #include "scenario/judge/checks.h"
@@ -158,10 +161,31 @@ std::string FileChecks::check_description_of(const fs::path& file) {
   std::snprintf(text, sizeof text, "robot description: %zu links, %zu joints, %zu motors, %.3f kg", model.links.size(),
                 model.joints.size(), motors, model.mass_kg());
   std::string what = text;
-  if (mimics > 0)
-    what += "; " + std::to_string(mimics) + " joints mimic others, which can be read and shown but not simulated";
+  if (mimics > 0) what += "; " + std::to_string(mimics) + " joints mimic others";
   return with_warnings(what, warnings);
 }
+
+namespace {
+
+// "; 2 pairs of links touch with all joints at 0, and pass through each other: a and b, c and d"
+std::string told_touching(const RobotConfig& robot) {
+  constexpr std::size_t shown_max = 12;
+  if (!robot.plant.self_collision) return "";
+  std::vector<std::pair<std::string, std::string>> pairs;
+  try {
+    pairs = touching_links(robot.model, robot.plant, TouchingAt::zero);
+  } catch (const std::invalid_argument&) {  // it may be driven by another plant, and Bullet's says so itself
+  }
+  if (pairs.empty()) return "";
+  std::string text = "; " + std::to_string(pairs.size()) +
+                     (pairs.size() == 1 ? " pair of links touches" : " pairs of links touch") +
+                     " with all joints at 0, and " + (pairs.size() == 1 ? "passes" : "pass") + " through each other: ";
+  for (std::size_t i = 0; i < std::min(pairs.size(), shown_max); ++i)
+    text += (i == 0 ? "" : ", ") + pairs[i].first + " and " + pairs[i].second;
+  return text + (pairs.size() > shown_max ? " ..." : "");
+}
+
+}  // namespace
 
 std::string FileChecks::check_robot(const fs::path& file) {
   if (gate_.closed && !read_plugin_files(file).empty()) {
@@ -176,7 +200,8 @@ std::string FileChecks::check_robot(const fs::path& file) {
   check_behavior_values(robot.config, system->catalog);
   return told_robot(robot.config, std::to_string(sets.size()) + " control objects, " +
                                       std::to_string(system->catalog.sets.size()) + " control sets, " +
-                                      std::to_string(system->catalog.parameters.size()) + " parameters");
+                                      std::to_string(system->catalog.parameters.size()) + " parameters" +
+                                      told_touching(robot.config));
 }
 
 std::string FileChecks::told_robot(const RobotConfig& robot, const std::string& what) const {

@@ -117,8 +117,7 @@ ComputedTorque::ComputedTorque(const ObjectSetup& setup) : model_(std::make_uniq
   const Eigen::MatrixXd& mass = model_->dynamics().mass_matrix();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      draft_.mass(i, j) =
-          mass(static_cast<Eigen::Index>(parts_[i].axis.joint), static_cast<Eigen::Index>(parts_[j].axis.joint));
+      draft_.mass(i, j) = model_->entry_of(mass, parts_[i].axis.joint, parts_[j].axis.joint);
     }
   }
   data_.publish(draft_);
@@ -162,10 +161,10 @@ void ComputedTorque::update(const Snapshot& snapshot) {
   if (!model_->update(snapshot, 0.5 * since_s)) return;
   const Dynamics& dynamics = model_->dynamics();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(parts_[i].axis.joint);
-    draft_.bias_Nm[i] = dynamics.bias()[row];
+    const std::size_t joint = parts_[i].axis.joint;
+    draft_.bias_Nm[i] = model_->effort_of(dynamics.bias(), joint);
     for (std::size_t j = 0; j <= i; ++j) {
-      draft_.mass(i, j) = dynamics.mass_matrix()(row, static_cast<Eigen::Index>(parts_[j].axis.joint));
+      draft_.mass(i, j) = model_->entry_of(dynamics.mass_matrix(), joint, parts_[j].axis.joint);
     }
   }
   draft_.time_ns = snapshot.time_ns;

@@ -115,11 +115,10 @@ void GravityCompensation::update(const Snapshot& snapshot) {
   dynamics.gravity_gradient(slope_);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const std::size_t joint = parts_[i].axis.joint;
-    const auto row = static_cast<Eigen::Index>(joint);
     draft_.position_rad[i] = model_->position_rad(joint);
-    draft_.gravity_Nm[i] = dynamics.gravity()[row];
+    draft_.gravity_Nm[i] = model_->effort_of(dynamics.gravity(), joint);
     for (std::size_t j = 0; j <= i; ++j) {
-      draft_.slope_Nm_per_rad(i, j) = slope_(row, static_cast<Eigen::Index>(parts_[j].axis.joint));
+      draft_.slope_Nm_per_rad(i, j) = model_->entry_of(slope_, joint, parts_[j].axis.joint);
     }
   }
   draft_.time_ns = snapshot.time_ns;

@@ -97,7 +97,9 @@ class Merger {
       mimic.multiplier *= leader->mimic->multiplier;
     }
     mimic.joint = *model_.find_joint(leader->name);
-    model_.joints[*model_.find_joint(given.name)].mimic = mimic;
+    Joint& joint = model_.joints[*model_.find_joint(given.name)];
+    joint.mimic = mimic;
+    joint.effort_max_Nm = 0;
   }
 
   void add_transmission(const UrdfTransmission& given) {

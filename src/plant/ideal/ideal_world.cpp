@@ -46,7 +46,9 @@ IdealWorld::IdealWorld(const RobotModel& model, const PlantSettings& settings, s
     truth_.motor_torque_max_Nm[i] = std::numeric_limits<double>::infinity();
     upper_rad_[i] = limited ? joint.upper_rad : std::numeric_limits<double>::infinity();
     truth_.position_rad[i] = settings.position_rad[i];
+    if (joint.mimic) mimics_.emplace_back(i, *joint.mimic);
   }
+  model.lead_mimics({truth_.position_rad.data(), joints});
   channels_.sample(time_ns_);
 }
 
@@ -128,6 +130,10 @@ void IdealWorld::step(std::int64_t dt_ns) {
     if (inside == truth_.position_rad[i]) continue;
     truth_.position_rad[i] = inside;
     truth_.velocity_rad_s[i] = 0;
+  }
+  for (const auto& [joint, mimic] : mimics_) {
+    truth_.position_rad[joint] = mimic.multiplier * truth_.position_rad[mimic.joint] + mimic.offset;
+    truth_.velocity_rad_s[joint] = mimic.multiplier * truth_.velocity_rad_s[mimic.joint];
   }
   drives_.step(dt_ns);
   time_ns_ += dt_ns;

@@ -27,6 +27,13 @@ Drives::Drives(const RobotModel& model, const PlantSettings& settings, btMultiBo
     JointRows& rows = add_rows({.joint = static_cast<int>(i)}, model.joints[i]);
     drives_.emplace_back(settings.drives[i], model.joints[i], rows, settings.position_rad[i]);
   }
+  for (std::size_t i = 0; i < joints; ++i) {
+    const auto& mimic = model.joints[i].mimic;
+    if (!mimic) continue;
+    const Coordinate apart{
+        .joint = static_cast<int>(i), .carrier = static_cast<int>(mimic->joint), .carrier_share = -mimic->multiplier};
+    ties_.push_back({i, *mimic, &add_rows(apart, {.type = JointType::continuous})});
+  }
   for (const Transmission& transmission : model.transmissions) {
     if (transmission.coupled()) add_coupling(model, settings, transmission);
   }
@@ -102,6 +109,10 @@ void Drives::begin_step(const ModelledDrives& electronics, double dt_s) {
     }
   }
   for (std::size_t i = 0; i < drives_.size(); ++i) body_->addJointTorque(static_cast<int>(i), torque_Nm_[i]);
+  for (const Tie& tie : ties_) {
+    const double led = tie.mimic.multiplier * body_->getJointPos(static_cast<int>(tie.mimic.joint)) + tie.mimic.offset;
+    tie.rows->set_tie(tie_erp * (led - body_->getJointPos(static_cast<int>(tie.joint))) / dt_s);
+  }
 }
 
 void Drives::end_step(double dt_s) {

@@ -1,6 +1,7 @@
 // The drives of a robot, joint by joint, and what couples them. A drive moves its own joint, or, in a coupling, two
 // joints: then its position is a sum of both joints' (kadans/model/transmission.h), its rows act along that sum, and
-// its torque is shared by the coupling's transpose. Friction of the URDF stays at the joints.
+// its torque is shared by the coupling's transpose. Friction of the URDF stays at the joints. A joint that mimics
+// another one is tied to it by a row along the difference of the two.
 #pragma once
 
 #include <array>
@@ -43,6 +44,11 @@ class Drives {
     Transmission transmission;
     std::array<Drive, 2> own;  // the joints' friction
   };
+  struct Tie {
+    std::size_t joint;
+    Mimic mimic;
+    JointRows* rows;
+  };
   JointRows& add_rows(const Coordinate& along, const Joint& joint);
   void add_coupling(const RobotModel& model, const PlantSettings& settings, const Transmission& transmission);
   void read_motion();
@@ -51,6 +57,7 @@ class Drives {
   std::vector<std::unique_ptr<JointRows>> rows_;
   std::vector<Drive> drives_;
   std::vector<Coupling> couplings_;
+  std::vector<Tie> ties_;
   std::vector<double> position_rad_, velocity_rad_s_, torque_Nm_;  // of the drives
   std::vector<double> joint_torque_Nm_;
 };

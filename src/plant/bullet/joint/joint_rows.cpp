@@ -37,6 +37,11 @@ void JointRows::set_friction(double impulse_max) {
   laws_[friction] = {.lower = -impulse_max, .upper = impulse_max, .stiff = true};
 }
 
+void JointRows::set_tie(double wanted_rad_s) {
+  active_[friction] = true;
+  laws_[friction] = {.lower = -infinite, .upper = infinite, .stiff = true, .wanted_rad_s = wanted_rad_s};
+}
+
 bool JointRows::against_limit(double dt_s) const {
   const double above = above_lower_rad(), below = below_upper_rad(), velocity = m_bodyA->getJointVel(m_linkA);
   return std::min(above, below) < -excess_rad || -velocity > above / dt_s + hard_approach_rad_s ||

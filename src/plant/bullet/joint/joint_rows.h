@@ -13,6 +13,7 @@
 //   spring k about r        p = dt k (r - q - dt v)                      a = dt k (r - q),  b = dt^2 k
 //   servo kp, kd            p = dt (kp (q_d - q - dt v) + kd (v_d - v)), limited to the drive's torque
 //   dry friction            stiff, v_wanted = 0, limited to dt times the friction torque
+//   tie of two joints       stiff, without limits: a part (tie_erp) of what they are apart is taken back each step
 //   joint limit             stiff, one-sided: v may just reach the limit at the step's end; when beyond, a small part
 //                           (limit_erp) of the excess is taken back each step, slowly, so that nothing is thrown out
 // Here they are rows of Bullet's stock solver. All rows of a joint share one Jacobian and one articulated-body pass for
@@ -28,7 +29,7 @@
 
 namespace kadans::bullet {
 
-inline constexpr double limit_erp = 0.05;
+inline constexpr double limit_erp = 0.05, tie_erp = 0.2;
 
 struct TorqueLaw;  // drive.h
 
@@ -49,6 +50,7 @@ class JointRows final : public btMultiBodyConstraint {
   void set_linear(double impulse_at_rest, double slope);
   void set_servo(double impulse_at_rest, double slope, double lower, double upper);
   void set_friction(double impulse_max);
+  void set_tie(double wanted_rad_s);
 
   // The laws of this step, for a solver of our own. begin_step decides about the joint's limit.
   void begin_step(double dt_s) { activate_limit(dt_s); }

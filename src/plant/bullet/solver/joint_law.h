@@ -4,10 +4,12 @@
 
 namespace kadans::bullet {
 
-// A joint's own coordinate q, or that of a drive that moves two joints: share q + carrier_share q_carrier.
+// A joint's own coordinate q, or a sum of two joints': share q + carrier_share q_carrier, of a drive that moves both or
+// of what ties them.
 struct Coordinate {
-  int joint = 0;     // of links in Bullet, of degrees of freedom in a Tree
-  int carrier = -1;  // a joint that carries this one; -1: the coordinate is the joint's own
+  int joint = 0;  // of links in Bullet, of degrees of freedom in a Tree
+  int carrier =
+      -1;  // the other one, which carries it if a linear law is to act on both; -1: the joint's own coordinate
   double share = 1, carrier_share = 0;
 };
 

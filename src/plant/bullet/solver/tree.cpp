@@ -152,12 +152,20 @@ void Tree::response(int link, const std::array<Wrench, 3>& wrenches, std::array<
   factor_.first_half(path.dofs[path.length - 1], y);
 }
 
-void Tree::response(const Coordinate& along, btScalar* y) const {
+void Tree::response(const Coordinate& along, btScalar* y, btScalar* scratch) const {
   const int last = shape_.path(along.joint).length - 1;
+  const Path beyond = along.carrier < 0 ? Path{} : shape_.beyond(along.carrier, along.joint);
   for (int p = 0; p < last; ++p) y[p] = 0;
   y[last] = along.share;
-  if (along.carrier >= 0) y[shape_.path(along.carrier).length - 1] = along.carrier_share;
+  if (along.carrier >= 0 && beyond.length == 0) y[shape_.path(along.carrier).length - 1] = along.carrier_share;
   factor_.first_half(along.joint, y);
+  if (beyond.length == 0) return;
+  const int length = shape_.path(along.carrier).length, common = length - beyond.length;
+  std::fill_n(scratch, length - 1, 0.0);
+  scratch[length - 1] = along.carrier_share;
+  factor_.first_half(along.carrier, scratch);
+  for (int p = 0; p < common; ++p) y[p] += scratch[p];
+  std::copy_n(scratch + common, beyond.length, y + last + 1);
 }
 
 TreeFactor::TreeFactor(const TreeShape& shape)
@@ -241,6 +249,13 @@ TreeShape::TreeShape(const btMultiBody& body) {
     }
     links_.push_back(link);
   }
+}
+
+Path TreeShape::beyond(int dof, int other) const {
+  const Path own = path(dof), others = path(other);
+  int common = 0;
+  while (common < std::min(own.length, others.length) && own.dofs[common] == others.dofs[common]) ++common;
+  return {own.dofs + common, own.length - common};
 }
 
 void TreeShape::add_row(int parent_dof) {

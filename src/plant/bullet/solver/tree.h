@@ -123,6 +123,8 @@ class TreeShape {
   // Where the row of a degree of freedom begins when all are stored one after the other.
   int row_start(int dof) const { return rows_[static_cast<std::size_t>(dof)].start; }
   int entry_count() const { return static_cast<int>(dofs_.size()); }
+  // What stands on the path of `dof` and not on that of `other`; a path's end.
+  Path beyond(int dof, int other) const;
 
  private:
   struct Link {
@@ -207,8 +209,9 @@ class Tree {
   }
   // y = G J^T along the link's path, J of three wrenches on the link; a fourth column is 0.
   void response(int link, const std::array<Wrench, 3>& wrenches, std::array<btScalar, 4>* y) const;
-  // The same for an impulse along a coordinate, on the path of its joint.
-  void response(const Coordinate& along, btScalar* y) const;
+  // The same for an impulse along a coordinate, on the path of its joint, and behind it on what the carrier's path has
+  // beyond it. Then `scratch` has room for the carrier's path.
+  void response(const Coordinate& along, btScalar* y, btScalar* scratch) const;
 
   btScalar* z() { return z_.data(); }
   const btVector3& origin_m() const { return origin_m_; }

@@ -203,11 +203,14 @@ void TreeSolver::finish_joint(Joint& joint) {
 JointRow::JointRow(Tree& tree, const Coordinate& along, const JointLaw& law, btScalar impulse, RowMemory& memory)
     : tree_(&tree),
       path_(tree.shape().path(along.joint)),
-      y_(memory.take(static_cast<std::size_t>(path_.length))),
+      beyond_(along.carrier < 0 ? Path{} : tree.shape().beyond(along.carrier, along.joint)),
+      y_(memory.take(static_cast<std::size_t>(path_.length + beyond_.length))),
       lower_(law.lower),
       upper_(law.upper) {
-  tree.response(along, y_);
-  for (int p = 0; p < path_.length; ++p) response_ += y_[p] * y_[p];
+  btScalar* const scratch =
+      beyond_.length == 0 ? nullptr : memory.take(static_cast<std::size_t>(tree.shape().path(along.carrier).length));
+  tree.response(along, y_, scratch);
+  for (int p = 0; p < path_.length + beyond_.length; ++p) response_ += y_[p] * y_[p];
   if (!(response_ > 0)) return;
   gain_ = law.stiff ? 1 / response_ : law.slope / (1 + law.slope * response_);
   leak_ = law.stiff ? 0 : 1 / (1 + law.slope * response_);
@@ -219,12 +222,14 @@ void JointRow::apply(btScalar change) {
   impulse_ += change;
   btScalar* const z = tree_->z();
   for (int p = 0; p < path_.length; ++p) z[path_.dofs[p]] += y_[p] * change;
+  for (int p = 0; p < beyond_.length; ++p) z[beyond_.dofs[p]] += y_[path_.length + p] * change;
 }
 
 btScalar JointRow::iterate() {
   const btScalar* const z = tree_->z();
   btScalar velocity = 0;
   for (int p = 0; p < path_.length; ++p) velocity += y_[p] * z[path_.dofs[p]];
+  for (int p = 0; p < beyond_.length; ++p) velocity += y_[path_.length + p] * z[beyond_.dofs[p]];
   const btScalar wanted = impulse_ + offset_ - gain_ * velocity - leak_ * impulse_;
   const btScalar change = std::clamp(wanted, lower_, upper_) - impulse_;
   if (change != 0) apply(change);

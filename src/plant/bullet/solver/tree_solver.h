@@ -49,8 +49,8 @@ class JointRow {
   void apply(btScalar change);
 
   Tree* tree_;
-  Path path_;
-  btScalar* y_;
+  Path path_, beyond_;  // of the joint, and what the other joint of the coordinate has beyond it
+  btScalar* y_;         // along both
   btScalar lower_, upper_;
   btScalar offset_ = 0, gain_ = 0, leak_ = 0, response_ = 0;  // p += offset - gain v - leak p
   btScalar impulse_ = 0;
