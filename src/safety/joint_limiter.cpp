@@ -7,6 +7,8 @@ namespace kadans {
 namespace {
 
 constexpr double rate_default_per_s = 1000;  // of the torque limit
+// A joint that rests at a stop pushes into it by rounding: of the torque limit, what a stop may take without a fault.
+constexpr double resting_share = 1e-3;
 
 }  // namespace
 
@@ -108,7 +110,9 @@ FaultMask JointLimiter::who_cut(const Input& in, double asked_Nm) const noexcept
                   bit_if(powered_Nm < most_Nm && cuts({-powered_Nm, powered_Nm}), FaultCode::power_limit) |
                   bit_if(cuts({in.last_Nm - step_Nm, in.last_Nm + step_Nm}), FaultCode::effort_rate_limit);
   const Interval stops = soft_stops(in.state.position_rad, whole);
-  if ((stops.low > whole.low || stops.high < whole.high) && cuts(stops)) cut |= bit(FaultCode::soft_stop);
+  const double rest_Nm = resting_share * effort_max_Nm_;
+  if ((stops.low > whole.low || stops.high < whole.high) && cuts({stops.low - rest_Nm, stops.high + rest_Nm}))
+    cut |= bit(FaultCode::soft_stop);
   const Interval speed = soft_speed(in.state.velocity_rad_s, whole);
   if ((speed.low > whole.low || speed.high < whole.high) && cuts(speed)) cut |= bit(FaultCode::soft_speed);
   return cut;

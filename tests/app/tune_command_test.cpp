@@ -96,8 +96,8 @@ TEST_CASE("A configuration that is there is not overwritten unasked, a wrong pla
   CHECK(kept.exit_code == 2);
   CHECK(has(kept.err, "--overwrite"));
   CHECK(read(folder / "config/tulip/robot.json") == before);
-  REQUIRE(edit(folder / "config/tuning/plan.json", "\"max\": 5", "\"max\": 5000"));
-  CHECK(has(run(plan, folder).err, "can be 0..500, not 0.05..5000"));
+  REQUIRE(edit(folder / "config/tuning/plan.json", "\"max\": 5", "\"max\": 50000"));
+  CHECK(has(run(plan, folder).err, "can be 0..5000, not 0.05..50000"));
   REQUIRE(edit(folder / "config/tuning/plan.json", "l_knee.kd_Nms", "l_kne.kd_Nms"));
   const Outcome wrong = run("check config/tuning/plan.json", folder);
   CHECK(wrong.exit_code == 2);

@@ -146,7 +146,7 @@ inline constexpr Broken broken_robots[] = {
     {"\"*.kp_Nm_per_rad\": 100", "\"*.kp\": 100",
      "48:25: unknown parameter '*.kp' of control object 'posture', did you mean '*.kp_Nm_per_rad'?"},
     {"\"l_knee.kp_Nm_per_rad\": 200", "\"l_knee.kp_Nm_per_rad\": -200",
-     "48:73: posture.l_knee.kp_Nm_per_rad is -200, must be 0..5000 Nm/rad: Torque per position error."},
+     "48:73: posture.l_knee.kp_Nm_per_rad is -200, must be 0..50000 Nm/rad: Torque per position error."},
     {"\"soft\": { \"*.kp_Nm_per_rad\": 20 }", "\"soft\": { \"*.kp_Nm_rad\": 20 }",
      "49:32: unknown parameter '*.kp_Nm_rad' of control object 'posture', did you mean '*.kp_Nm_per_rad'?"},
     {"\"posture\": { \"objects\": [\"posture\"] }", "\"posture\": { \"objects\": [\"postur\"] }",

@@ -68,6 +68,21 @@ TEST_CASE("A transmission of the configuration goes before the URDF's of the sam
   CHECK(config.model.transmissions[0].drive_per_joint(0, 0) == -3);
 }
 
+TEST_CASE("A configuration may name an SRDF, whose pairs of links pass through each other") {
+  const test::TemporaryFolder folder;
+  const std::string srdf = folder.write("tulip.srdf",
+                                        "<robot name=\"tulip\"><disable_collisions link1=\"torso\" "
+                                        "link2=\"l_ankle_roll_link\" reason=\"Never\"/></robot>");
+  const auto read_with = [&](const std::string& file) {
+    const std::string text = replaced(right_robot, "\"solver_iterations\": 10",
+                                      ("\"srdf\": \"" + file + "\", \"solver_iterations\": 10").c_str());
+    return read_robot_config_text(text, KADANS_SOURCE_DIR "/config/t.json", std::vector<std::string>{"joint_pid"});
+  };
+  const std::pair<std::string, std::string> pair{"torso", "l_ankle_roll_link"};
+  CHECK(read_with(srdf).plant.passing == std::vector{pair});
+  CHECK_THROWS_WITH_AS((void)read_with("models/none.srdf"), doctest::Contains("none.srdf"), InputError);
+}
+
 TEST_CASE("A configuration that names xacro is told to name what it expands to") {
   const GearedTulip tulip;
   CHECK_THROWS_WITH_AS((void)read_with_urdf(tulip.file("geared.xacro")),

@@ -45,8 +45,8 @@ TEST_CASE("A joint that is wrong or odd is told with its place, what is wrong an
 )",
        R"(    <limit effort="5" velocity="3"/>
 )",
-       "warning: duo.urdf:21:5: joint 'shoulder' cannot move: its lower and its upper limit are 0, as URDF has it "
-       "where both are left out"},
+       "warning: duo.urdf:21:5: joint 'shoulder' has a <limit> without 'lower' and 'upper': it turns without end "
+       "stops"},
       {"lower above upper", R"(lower="-1" upper="1.5")", R"(lower="1" upper="-1.5")",
        "duo.urdf:21:5: joint 'shoulder' has its lower limit 1 above its upper -1.5"},
       {"upper left out below lower", R"(lower="-1" upper="1.5")", R"(lower="1")",

@@ -153,3 +153,27 @@ TEST_CASE("A package is where it is said to be, where ROS says, or where a packa
   CHECK(find_urdf_file("package:///shell/meshes/a.stl", urdf) == own);
   CHECK_FALSE(find_urdf_file("package://other/meshes/a.stl", urdf));
 }
+
+TEST_CASE(
+    "An SRDF says which links need not collide; links that are not there are told, mistakes refused with their place") {
+  const test::TemporaryFolder folder;
+  const RobotModel model = read(duo_with("", ""));
+  const auto read_pairs = [&](const std::string& body, std::vector<InputProblem>* warnings = nullptr) {
+    return read_srdf(folder.write("duo.srdf", "<robot name=\"duo\">\n" + body + "\n</robot>\n"), model, warnings);
+  };
+  std::vector<InputProblem> warnings;
+  const auto pairs = read_pairs(
+      "<group name=\"arm\"><chain base_link=\"base\" tip_link=\"fore_arm\"/></group>\n"
+      "<disable_collisions link1=\"base\" link2=\"fore_arm\" reason=\"Never\"/>\n"
+      "<disable_collisions link1=\"base\" link2=\"camera\" reason=\"Adjacent\"/>",
+      &warnings);
+  CHECK(pairs == std::vector<LinkPair>{{"base", "fore_arm"}});
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0].line == 4);
+  CHECK(warnings[0].message == "the robot has no link 'camera': this pair is not used");
+  CHECK_THROWS_WITH_AS((void)read_pairs("<disable_collisions link1=\"base\"/>"),
+                       doctest::Contains("duo.srdf:2:2: <disable_collisions> needs"), InputError);
+  CHECK_THROWS_WITH_AS((void)read_srdf(folder.write("list.srdf", "<links/>"), model),
+                       doctest::Contains("list.srdf:1:2: the root element is <links>, an SRDF's is <robot>"),
+                       InputError);
+}

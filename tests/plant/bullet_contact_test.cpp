@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include <doctest/doctest.h>
 
@@ -113,10 +114,15 @@ TEST_CASE("A box that stands under a swaying load does not creep") {
   CHECK(std::hypot(plant.truth().base.position_m[0], plant.truth().base.position_m[1]) < 1e-4);
 }
 
-TEST_CASE("An arm that swings in stops at the torso, and swings through when self-collision is off") {
-  for (const bool self_collision : {true, false}) {
+TEST_CASE("An arm that swings in stops at the torso, and swings through when self-collision is off, or theirs") {
+  enum class Case : std::uint8_t { stops, off, passes };
+  for (const Case of : {Case::stops, Case::off, Case::passes}) {
     Robot robot = torso_with_arm(0.03);
-    robot.settings.self_collision = self_collision;
+    robot.settings.self_collision = of != Case::off;
+    if (of == Case::passes)
+      robot.settings.passing.emplace_back(robot.model.links.back().name, robot.model.links.front().name);
+    for (const TouchingAt at : {TouchingAt::zero, TouchingAt::start})
+      CHECK(touching_links(robot.model, robot.settings, at).empty());
     BulletWorld plant(robot.model, robot.settings, 1);
     ActuationFrame inwards;
     inwards.joint_count = 2;
@@ -127,7 +133,7 @@ TEST_CASE("An arm that swings in stops at the torso, and swings through when sel
       plant.step(ms);
       furthest_rad = std::min(furthest_rad, plant.truth().position_rad[0] + plant.truth().position_rad[1]);
     }
-    if (self_collision) {
+    if (of == Case::stops) {
       CHECK(furthest_rad < -0.02);
       CHECK(furthest_rad > -0.15);  // 3 cm at the hand
     } else {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -90,7 +91,36 @@ TEST_CASE("A state that is not finite stops the run and names where") {
   Robot robot = pendulum(1, 0.1, 0.02);
   BulletWorld plant(robot.model, robot.settings, 1);
   plant.push(1, {1e308, 0, 0}, {0, 0, -100});
-  CHECK_THROWS_WITH_AS(run(plant, 3), "the model's state is not finite: joint 'swing'", std::runtime_error);
+  CHECK_THROWS_WITH_AS(
+      run(plant, 3),
+      "the model diverges at 0.000 s: joint 'swing' moves at nan rad/s; no drive shakes it: it was pushed "
+      "by more than it can bear, or the world holds it where it cannot be",
+      std::runtime_error);
+}
+
+TEST_CASE("A model that diverges ends the run early, and tells a gain beyond the delay from an inertia too small") {
+  Robot robot = pendulum(1, 0.1, 0.02);
+  robot.settings.drives = {{.torque_max_Nm = 1e9}};
+  BulletWorld plant(robot.model, robot.settings, 1);
+  double asked_Nm = 0.1, fastest = 0;
+  const auto shaken = [&] {
+    for (int i = 0; i < 1000; ++i) {
+      plant.write(effort(asked_Nm));
+      plant.step(ms);
+      const double velocity = plant.truth().velocity_rad_s[0];
+      fastest = std::max(fastest, std::abs(velocity));
+      asked_Nm = -60 * velocity;  // three times the inertia in a step
+    }
+  };
+  CHECK_THROWS_WITH(shaken(),
+                    doctest::Contains("its gain is too high for its delay and for its inertia of 0.02 kg m2"));
+  CHECK(fastest <= 1000);
+
+  Robot light = pendulum(1e-6, 0.01, 2e-9);
+  light.settings.drives = {{.torque_max_Nm = 5}};
+  BulletWorld thrown(light.model, light.settings, 1);
+  thrown.write(effort(5));
+  CHECK_THROWS_WITH(run(thrown, 3), doctest::Contains("the inertia of 'swing' with what it carries is 2e-09 kg m2"));
 }
 
 TEST_CASE("A step of no time changes nothing") {

@@ -24,8 +24,8 @@ ContactWorld::Options options(ContactSolver solver) {
 // A cube of 2 kg that belongs to a robot, and upon it one of 1 kg that is none of Bullet's multibodies.
 struct LooseCube {
   explicit LooseCube(ContactSolver solver)
-      : mask(make_pair_mask(robot.model, robot.settings)),
-        body(robot.model, robot.settings),
+      : body(robot.model, robot.settings),
+        mask(make_pair_mask(robot.model, robot.settings, body)),
         world(options(solver), mask) {
     body.place(robot.settings);
     body.add_to(world);
@@ -40,8 +40,8 @@ struct LooseCube {
   }
 
   Robot robot = box(2, {0.2, 0.2, 0.2});
-  PairMask mask;
   Body body;
+  PairMask mask;
   btBoxShape shape{btVector3(0.05, 0.05, 0.05)};
   btCompoundShape compound{false};
   std::unique_ptr<btRigidBody> loose;

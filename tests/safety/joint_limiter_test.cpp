@@ -95,6 +95,17 @@ TEST_CASE("Towards a soft stop torque fades to none at the limit, away from it t
   }
 }
 
+TEST_CASE("A joint that rests at its limit, and is pushed into it by rounding alone, is no fault") {
+  for (const double asked_Nm : {-2e-21, -0.02, -1.0}) {  // of 25
+    CAPTURE(asked_Nm);
+    Bench bench;
+    bench.place(-1e-9);
+    bench.ask(asked_Nm);
+    CHECK(bench.check().effort_Nm >= 0);
+    CHECK(bench.count(FaultCode::soft_stop) == (asked_Nm < -0.1 ? 1 : 0));
+  }
+}
+
 TEST_CASE("Beyond a limit a spring pulls back") {
   Bench bench;
   bench.place(2.03);

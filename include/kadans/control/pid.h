@@ -17,9 +17,9 @@ namespace kadans {
 class Pid {
  public:
   struct Config {
-    double kp_Nm_per_rad = 0;    // 0..5000
+    double kp_Nm_per_rad = 0;    // 0..50000
     double ki_Nm_per_rads = 0;   // 0..50000
-    double kd_Nms_per_rad = 0;   // 0..500
+    double kd_Nms_per_rad = 0;   // 0..5000
     double kd_cutoff_Hz = 0;     // 0..1000; 0: no filter of its own
     double velocity_weight = 1;  // b, 0..1
     double integral_max_Nm = 0;  // >= 0

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kadans/model/robot_model.h"
@@ -34,6 +35,14 @@ RobotModel read_urdf(const std::string& file, const UrdfOptions& options = {},
 // `file` only names the text in messages, and is where the paths of meshes start from.
 RobotModel read_urdf_text(const std::string& text, const std::string& file, const UrdfOptions& options = {},
                           std::vector<InputProblem>* warnings = nullptr);
+
+// Names of two links that need not collide with each other.
+using LinkPair = std::pair<std::string, std::string>;
+
+// The <disable_collisions> of an SRDF; all else in it is not used. Pairs with links that the robot does not have are
+// left out, with a warning. Throws InputError.
+std::vector<LinkPair> read_srdf(const std::string& file, const RobotModel& model,
+                                std::vector<InputProblem>* warnings = nullptr);
 
 // A file as a URDF names it. A relative name starts from the URDF's folder. In package://NAME/..., NAME is one of
 // `packages`, or a package below a folder of ROS_PACKAGE_PATH or AMENT_PREFIX_PATH, or one that has this name, or a

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kadans/model/robot_model.h"
@@ -75,6 +76,7 @@ struct PlantSettings {
   int solver_iterations = 10;
   bool fixed_base = false;  // the base link is bolted to the world
   bool self_collision = true;
+  std::vector<std::pair<std::string, std::string>> passing;  // links that pass through each other, beside neighbours
   WorldSettings world;
   // Where the robot starts. With stand_on_ground the base's z is chosen so that the lowest collision point touches the
   // ground or the fixed object of the world under it (a fixed base stays where it is put).

@@ -281,12 +281,30 @@ void RobotReader::foot(Fields& f) {
   f.numbers("toe_outer_m", foot.sensors_m[3], sensor_position_m, "pressure sensor, in the link's frame",
             Need::required);
   f.number("noise_N", foot.noise_N, {0, 1e3, "N"}, "standard deviation of the noise of each sensor");
+  std::string name;
+  f.string("name", name,
+           "its name in behaviors, s.feet.NAME (default: of two without names left and right, else the link's)");
+  if (name.find('.') != std::string::npos)
+    problems_.add(f.place("name"), f.path("name") + ": a foot's name has no dot");
   if (!have_model_) return;
   if (!foot.link.empty() && !config_.model.find_link(foot.link)) {
     problems_.add_unknown(f.place("link"), "link", foot.link, config_.model.link_names());
   }
-  config_.estimate.feet.push_back({foot.link, foot.sensors_m});
+  config_.estimate.feet.push_back({foot.link, foot.sensors_m, name});
   config_.plant.feet.push_back(std::move(foot));
+}
+
+void RobotReader::name_feet(Fields& f) {
+  std::vector<EstimateFoot>& feet = config_.estimate.feet;
+  const bool pair = feet.size() == 2 && feet[0].name.empty() && feet[1].name.empty();
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    EstimateFoot& foot = feet[i];
+    if (foot.name.empty()) foot.name = !pair ? foot.link : i == 0 ? "left" : "right";
+    for (std::size_t other = 0; other < i; ++other) {
+      if (feet[other].name == foot.name || feet[other].link == foot.link)
+        problems_.add(f.place("feet"), f.path("feet") + ": two feet are '" + foot.name + "'");
+    }
+  }
 }
 
 void RobotReader::plant(Fields& f) {
@@ -308,6 +326,7 @@ void RobotReader::plant(Fields& f) {
     config_.estimate.imu_divisor = static_cast<std::uint32_t>(std::max(1.0, std::ceil(1 / readings - 1e-9)));
   }
   f.list("feet", {0, max_feet}, "soles with four pressure sensors", [&](Fields& e) { foot(e); });
+  name_feet(f);
   f.map("surfaces", "friction of the links' surfaces by link pattern", [&](Fields& entry) { surface(entry); });
   f.map("collisions", "how links collide, by link pattern", [&](Fields& entry) { collision(entry); });
   f.number("ground_friction", plant.ground_friction, {0, 10},
@@ -318,6 +337,18 @@ void RobotReader::plant(Fields& f) {
   f.integer("solver_iterations", plant.solver_iterations, {1, 1000}, "iterations of the contact solver in a step");
   f.boolean("fixed_base", plant.fixed_base, "the base link is bolted to the world");
   f.boolean("self_collision", plant.self_collision, "the robot's links collide with each other");
+  std::string srdf;
+  if (f.string("srdf", srdf, "an SRDF of the robot: the pairs of its <disable_collisions> pass through each other") &&
+      have_model_) {
+    const std::filesystem::path file = resolve_file(srdf, f.place("srdf"), "srdf", problems_);
+    try {
+      std::vector<InputProblem> warnings;
+      if (!file.empty()) plant.passing = read_srdf(file.string(), config_.model, &warnings);
+      config_.urdf_warnings.insert(config_.urdf_warnings.end(), warnings.begin(), warnings.end());
+    } catch (const InputError& error) {
+      problems_.add(error);
+    }
+  }
   for (const auto& type : config_.plant_types) {
     if (!type->has_fields()) continue;
     f.object(type->name(), type->doc(), [&](Fields& e) {

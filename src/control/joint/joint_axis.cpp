@@ -52,9 +52,9 @@ void AxisTables::pid(Pid& pid) {
   Pid::Config& c = pid.config();
   const Pid::State& s = pid.state();
   const double most = axis_.effort_max_Nm;
-  tunable("kp_Nm_per_rad", "Nm/rad", 0, 5000, 0, &c.kp_Nm_per_rad, "Torque per position error.");
+  tunable("kp_Nm_per_rad", "Nm/rad", 0, 50000, 0, &c.kp_Nm_per_rad, "Torque per position error.");
   tunable("ki_Nm_per_rads", "Nm/(rad s)", 0, 50000, 0, &c.ki_Nm_per_rads, "Growth of torque per position error.");
-  tunable("kd_Nms_per_rad", "Nm s/rad", 0, 500, 0, &c.kd_Nms_per_rad, "Torque per velocity error.");
+  tunable("kd_Nms_per_rad", "Nm s/rad", 0, 5000, 0, &c.kd_Nms_per_rad, "Torque per velocity error.");
   tunable("kd_cutoff_Hz", "Hz", 0, 1000, 0, &c.kd_cutoff_Hz, "Low pass on the measured velocity; 0 is none.");
   tunable("velocity_weight", "", 0, 1, 1, &c.velocity_weight, "Share of the reference's velocity that kd sees.");
   tunable("integral_max_Nm", "Nm", 0, most, most, &c.integral_max_Nm, "Bound of the integral.");

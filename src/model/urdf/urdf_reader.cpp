@@ -434,10 +434,15 @@ class UrdfReader {
     if (lower > upper)
       document_.refuse(
           e.at(), what + " has its lower limit " + e.text("lower", "0") + " above its upper " + e.text("upper", "0"));
+    if (!given && to.joint.type == JointType::revolute) {  // URDF has 0 there; nobody means a motor that cannot move
+      document_.warn(e.at(), what + " has a <limit> without 'lower' and 'upper': it turns without end stops",
+                     "no lower, no upper");
+      to.joint.type = JointType::continuous;
+      to.joint.lower_rad = -infinite, to.joint.upper_rad = infinite;
+      return;
+    }
     if (lower == upper)
-      document_.warn(e.at(),
-                     what + " cannot move: its lower and its upper limit are " + e.text("lower", "0") +
-                         (given ? "" : ", as URDF has it where both are left out"),
+      document_.warn(e.at(), what + " cannot move: its lower and its upper limit are " + e.text("lower", "0"),
                      "cannot move");
     if (std::abs(lower) >= no_limit || std::abs(upper) >= no_limit)
       document_.warn(e.at(), what + " has a limit of 1e6 or more: it is taken as no end stop", "no end stop");

@@ -252,25 +252,37 @@ void Body::push(std::size_t link, const btVector3& force_N, const btVector3& poi
   }
 }
 
-PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings) {
-  PairMask mask(model.links.size());
-  if (!settings.self_collision) {
-    mask.forbid_all();
-    return mask;
+LinkPairs touching_pairs(Body& body, const std::vector<double>& position_rad, PairMask& mask) {
+  PlantSettings clear_of_ground;
+  clear_of_ground.stand_on_ground = false;
+  clear_of_ground.base.position_m = {0, 0, 100};
+  clear_of_ground.position_rad = position_rad;
+  LinkPairs pairs;
+  for (const Overlap& overlap : overlaps_at(body, clear_of_ground, mask)) {
+    if (overlap.other) pairs.emplace_back(overlap.link, *overlap.other);
   }
+  return pairs;
+}
+
+PairMask known_pair_mask(const RobotModel& model, const PlantSettings& settings) {
+  PairMask mask(model.links.size());
+  if (!settings.self_collision) mask.forbid_all();
   for (std::size_t i = 0; i < model.joints.size(); ++i) mask.forbid(model.joints[i].parent, i + 1);
-  Body body(model, settings);
-  PlantSettings zero_pose;
-  zero_pose.stand_on_ground = false;
-  zero_pose.base.position_m = {0, 0, 100};  // clear of the ground
-  for (const Overlap& overlap : overlaps_at(body, zero_pose, mask)) {
-    if (overlap.other) mask.forbid(overlap.link, *overlap.other);
+  for (const auto& [first, second] : settings.passing) {
+    const auto a = model.find_link(first), b = model.find_link(second);
+    if (a && b) mask.forbid(*a, *b);
   }
   return mask;
 }
 
-void check_start(const RobotModel& model, const PlantSettings& settings, PairMask& mask) {
-  Body body(model, settings);
+PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings, Body& body) {
+  PairMask mask = known_pair_mask(model, settings);
+  if (!settings.self_collision) return mask;
+  for (const auto& [a, b] : touching_pairs(body, std::vector<double>(model.joints.size()), mask)) mask.forbid(a, b);
+  return mask;
+}
+
+void check_start(const RobotModel& model, const PlantSettings& settings, Body& body, PairMask& mask) {
   Overlap worst{.depth_m = start_depth_max_m};
   for (const Overlap& overlap : overlaps_at(body, settings, mask)) {
     if (overlap.depth_m > worst.depth_m) worst = overlap;

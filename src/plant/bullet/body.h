@@ -58,14 +58,21 @@ class Body {
   btAlignedObjectArray<btVector3> scratch_origins_;
 };
 
-// Forbids parents with their children, and all other pairs that touch while all joints are at 0.
-PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings);
+using LinkPairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+// Pairs that may collide and do, with the joints there. Leaves the body placed there.
+LinkPairs touching_pairs(Body& body, const std::vector<double>& position_rad, PairMask& mask);
+
+// Forbids parents with their children, and those of settings.passing.
+PairMask known_pair_mask(const RobotModel& model, const PlantSettings& settings);
+// Forbids all other pairs that touch while all joints are at 0, too. Leaves the body placed.
+PairMask make_pair_mask(const RobotModel& model, const PlantSettings& settings, Body& body);
 
 // What begins deep in something is thrown out of it in the first steps, at any speed.
 inline constexpr double start_depth_max_m = 0.005;
 
 // Throws std::invalid_argument when the robot starts deeper than that in the ground or in itself, with the pair, the
-// depth and what may be done.
-void check_start(const RobotModel& model, const PlantSettings& settings, PairMask& mask);
+// depth and what may be done. Leaves the body placed.
+void check_start(const RobotModel& model, const PlantSettings& settings, Body& body, PairMask& mask);
 
 }  // namespace kadans::bullet

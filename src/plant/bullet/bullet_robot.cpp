@@ -17,23 +17,21 @@ ContactWorld::Options world_options(const PlantSettings& settings, FrictionLaw f
           friction};
 }
 
-bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
-
 }  // namespace
 
 BulletRobot::BulletRobot(const WorldSite& site, const PlantSettings& settings, FrictionLaw friction,
                          WorldObjects& objects, bool first)
     : settings_(settings),
-      joint_names_(site.model.joint_names()),
       objects_(objects),
-      mask_(make_pair_mask(site.model, settings)),
       body_(site.model, settings),
+      mask_(make_pair_mask(site.model, settings, body_)),
       drives_(site.model, settings, body_.multibody()),
+      divergence_(site.model, settings),
       electronics_(settings.drives, site.model.joints.size()),
       sensors_(site.model, settings, site.seed),
       truth_(body_, site.model.joints.size()),
       world_(world_options(settings, friction), mask_) {
-  check_start(site.model, settings_, mask_);
+  check_start(site.model, settings_, body_, mask_);
   body_.place(settings_);
   body_.add_to(world_);
   if (first) objects.add_to(world_);
@@ -88,8 +86,8 @@ void BulletRobot::begin_step(std::int64_t dt_ns) {
 }
 
 void BulletRobot::end_step(double dt_s) {
-  check_finite();
   drives_.end_step(dt_s);
+  divergence_.look(body_.multibody(), drives_, dt_s, time_ns_);
 }
 
 void BulletRobot::sample(std::int64_t dt_ns) {
@@ -106,18 +104,6 @@ void BulletRobot::read_state(double dt_s) {
                               truth_.base_point_velocity_m_s(to_bullet(settings_.imu.pose.position_m)),
                               body_.link_frame(0).getBasis()};
   sensors_.sample(time_ns_, dt_s, drives_, body_.multibody(), imu, feet_);
-}
-
-void BulletRobot::check_finite() const {
-  const btMultiBody& multibody = body_.multibody();
-  if (!finite(multibody.getBasePos()) || !finite(multibody.getBaseVel()) || !finite(multibody.getBaseOmega())) {
-    throw std::runtime_error("the model's state is not finite: base");
-  }
-  for (std::size_t i = 0; i < joint_names_.size(); ++i) {
-    const int joint = static_cast<int>(i);
-    if (std::isfinite(multibody.getJointPos(joint)) && std::isfinite(multibody.getJointVel(joint))) continue;
-    throw std::runtime_error("the model's state is not finite: joint '" + joint_names_[i] + "'");
-  }
 }
 
 void BulletRobot::hash_body(StateHash& hash) const noexcept {

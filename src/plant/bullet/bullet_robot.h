@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "body.h"
+#include "divergence.h"
 #include "kadans/plant/modelled_drives.h"
 #include "plant/bullet/joint/drives.h"
 #include "sensors.h"
@@ -25,7 +26,7 @@ class BulletRobot final : public WorldRobot {
 
   // A step: begin, then that of the contact world, end, and sample once the objects have moved, too.
   void begin_step(std::int64_t dt_ns);
-  void end_step(double dt_s);  // throws std::runtime_error for a state that is not finite
+  void end_step(double dt_s);  // throws std::runtime_error when the model diverges
   void sample(std::int64_t dt_ns);
   ContactWorld& world() noexcept { return world_; }
 
@@ -37,14 +38,13 @@ class BulletRobot final : public WorldRobot {
   void take(const ActuationFrame& actuation) noexcept;
   void ask_drives() noexcept;
   void read_state(double dt_s);
-  void check_finite() const;
 
   const PlantSettings& settings_;
-  std::vector<std::string> joint_names_;
   const WorldObjects& objects_;
-  PairMask mask_;
   Body body_;
+  PairMask mask_;
   Drives drives_;
+  Divergence divergence_;
   ModelledDrives electronics_;
   ActuationFrame asked_;  // of the drives
   std::vector<FootLoad> feet_;

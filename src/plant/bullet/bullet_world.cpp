@@ -29,6 +29,7 @@ std::vector<PlantSettings> settings_of(std::span<const WorldSite> robots) {
     own.world = first.world;
     own.world.payloads = robot.settings.world.payloads;
     check_settings(robot.model, own);
+    robot.model.lead_mimics(own.position_rad);
   }
   return all;
 }
@@ -89,6 +90,20 @@ class BulletWorld::Inside {
   std::unique_ptr<RobotContacts> contacts_;  // of several robots
   std::int64_t time_ns_ = 0;
 };
+
+std::vector<std::pair<std::string, std::string>> touching_links(const RobotModel& model, const PlantSettings& settings,
+                                                                TouchingAt at) {
+  check_settings(model, settings);
+  bullet::Body body(model, settings);
+  const bool zero = at == TouchingAt::zero;
+  bullet::PairMask mask =
+      zero ? bullet::known_pair_mask(model, settings) : bullet::make_pair_mask(model, settings, body);
+  const std::vector<double> zeros(model.joints.size());
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const auto& [a, b] : bullet::touching_pairs(body, zero ? zeros : settings.position_rad, mask))
+    names.emplace_back(model.links[a].name, model.links[b].name);
+  return names;
+}
 
 BulletWorld::BulletWorld(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
     : BulletWorld(model, settings, seed, FrictionLaw::cone) {}

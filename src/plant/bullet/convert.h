@@ -1,6 +1,8 @@
 // Between our plain vectors and Bullet's.
 #pragma once
 
+#include <cmath>
+
 #include <LinearMath/btTransform.h>
 
 #include "kadans/model/robot_model.h"
@@ -25,5 +27,7 @@ inline Quat from_bullet(const btQuaternion& q) { return {q.w(), q.x(), q.y(), q.
 inline Pose from_bullet(const btTransform& transform) {
   return {from_bullet(transform.getOrigin()), from_bullet(transform.getRotation())};
 }
+
+inline bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
 }  // namespace kadans::bullet

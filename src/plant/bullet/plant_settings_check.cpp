@@ -166,7 +166,8 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
   require_count("drives", settings.drives.size(), joints);
   require_count("encoders", settings.encoders.size(), joints);
   require_count("position_rad", settings.position_rad.size(), joints);
-  if (settings.feet.size() > max_feet) refuse("feet", static_cast<double>(settings.feet.size()), "at most 4");
+  if (settings.feet.size() > max_feet)
+    refuse("feet", static_cast<double>(settings.feet.size()), "at most " + std::to_string(max_feet));
   if (settings.solver_iterations < 1) refuse("solver_iterations", settings.solver_iterations, "at least 1");
   require_at_least_zero("ground_friction", settings.ground_friction);
   for (const double g : settings.gravity_m_s2) {
@@ -179,10 +180,6 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
     require_at_least_zero("encoder of joint '" + name + "': noise_rad", settings.encoders[i].noise_rad);
     if (!std::isfinite(settings.position_rad[i]))
       refuse("position_rad of '" + name + "'", settings.position_rad[i], "finite");
-    if (model.joints[i].mimic)
-      throw std::invalid_argument("joint '" + name +
-                                  "': mimic joints cannot be simulated: in the URDF, make it 'fixed', or "
-                                  "leave out its <mimic> so that it has a motor of its own");
   }
   for (const Transmission& transmission : model.transmissions) check_coupling(settings.drives, transmission);
   for (const FootSettings& foot : settings.feet) require_link(model, "foot", foot.link);

@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "kadans/plant/settings.h"
 #include "kadans/plant/world.h"
@@ -14,6 +17,13 @@ namespace kadans {
 namespace bullet {
 enum class FrictionLaw : std::uint8_t;  // src/plant/bullet/solver/contact_row.h
 }
+
+// Pairs of links that touch: while all joints are at 0, which lets them pass through each other in any pose, or beside
+// these where the robot starts. Neighbours, and those of settings.passing, are not among them. Throws as BulletWorld
+// does.
+enum class TouchingAt : std::uint8_t { zero, start };
+std::vector<std::pair<std::string, std::string>> touching_links(const RobotModel& model, const PlantSettings& settings,
+                                                                TouchingAt at);
 
 class BulletWorld final : public World, public WorldRobot {
  public:
