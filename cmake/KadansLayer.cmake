@@ -4,13 +4,14 @@ set(KADANS_STANDARD_HEADERS <algorithm> <array> <charconv> <cmath> <cstdint> <cs
     <limits> <map> <memory> <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <system_error> <unordered_map>
     <utility> <variant> <vector>)
 
-# kadans_layer(NAME [SOURCES file...] [LINKS target...] [PRIVATE_LINKS target...] [PRECOMPILE header...])
+# kadans_layer(NAME [SMALL] [SOURCES file...] [LINKS target...] [PRIVATE_LINKS target...] [PRECOMPILE header...])
 # A static library kadans_NAME, known as kadans::NAME; "/" in a name becomes "_" (plant/bullet -> kadans_plant_bullet).
 # SOURCES are, unless given, all files of its folder and of those below that have no CMakeLists.txt, but no main.cpp and
 # none that another layer of the folder has. So a new file needs no entry anywhere.
+# SMALL: compiled for size, not for speed.
 # PRECOMPILE names headers that nearly all of its files include, beside the standard ones.
 function(kadans_layer name)
-  cmake_parse_arguments(arg "" "" "SOURCES;LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(arg "SMALL" "" "SOURCES;LINKS;PRIVATE_LINKS;PRECOMPILE" ${ARGN})
   string(REPLACE "/" "_" target "kadans_${name}")
   string(REPLACE "/" "_" export "${name}")
   if(NOT arg_SOURCES)
@@ -31,10 +32,16 @@ function(kadans_layer name)
                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC kadans_flags ${arg_LINKS}
                                   PRIVATE ${arg_PRIVATE_LINKS} $<BUILD_INTERFACE:kadans_warnings>)
+  if(arg_SMALL)
+    target_compile_options(${target} PRIVATE ${KADANS_SMALL})
+    set(precompiled kadans_precompiled_small)
+  else()
+    set(precompiled kadans_precompiled)
+  endif()
   if(arg_PRECOMPILE)
     target_precompile_headers(${target} PRIVATE ${KADANS_STANDARD_HEADERS} ${arg_PRECOMPILE})
   else()
-    target_precompile_headers(${target} REUSE_FROM kadans_precompiled)
+    target_precompile_headers(${target} REUSE_FROM ${precompiled})
   endif()
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${export})
   set_property(GLOBAL APPEND PROPERTY KADANS_LAYERS ${target})
