@@ -183,7 +183,7 @@ struct NewFile {
 // there already.
 void write_new_files(const std::vector<std::filesystem::path>& fresh, const std::vector<NewFile>& files);
 struct NewRobotOptions {
-  std::string urdf, name;
+  std::string urdf, srdf, name;
   std::string folder = ".";  // the project
   bool no_run = false;
 };

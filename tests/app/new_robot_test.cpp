@@ -100,6 +100,34 @@ TEST_CASE("new robot writes robots that stand or are held, and play their behavi
   }
 }
 
+TEST_CASE("Behaviors know the feet of a robot with four legs by name, and what each bears") {
+  const auto folder = fresh_folder("new_robot_feet");
+  write(folder / "from.urdf", quadruped());
+  REQUIRE(run("new robot from.urdf --name four --no-run", folder).exit_code == 0);
+  write(folder / "behaviors/four/weighs.lua", R"(local k = require "kadans"
+local names = { "front_left", "front_right", "rear_left", "rear_right" }
+return k.behavior "weighs" {
+  initial = "stands",
+  k.state "stands" {
+    run = function(m, s)
+      m:wait(2)
+      local all_N = 0
+      for _, name in ipairs(names) do
+        assert(s.feet[name].contact, name)
+        all_N = all_N + s.feet[name].force_N
+      end
+      assert(math.abs(all_N - 141.3) < 4, all_N)  -- 14.4 kg
+    end,
+    { on = "run.done", to = "done" },
+  },
+  k.final "done" { outcome = "done" },
+}
+)");
+  CHECK(run("check config behaviors", folder).exit_code == 0);
+  const Outcome weighed = run("sim config/scenarios/four_hold.json --play weighs --no-record --duration 3", folder);
+  CHECK_MESSAGE(weighed.exit_code == 0, (weighed.out + weighed.err));
+}
+
 TEST_CASE("new robot takes the meshes with it, each under a name of its own, and points the URDF to them") {
   const auto folder = fresh_folder("new_robot_meshes");
   for (const char* part : {"a", "b"}) std::filesystem::create_directories(folder / part);

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -17,9 +18,11 @@
 #include "config/json/foreign_json.h"
 #include "config/robot/mesh_hull.h"
 #include "kadans/model/urdf.h"
+#include "kadans/plant/bullet/bullet_world.h"
 #include "kadans/signal/input_error.h"
 #include "realtime/machine/child_process.h"
 #include "robot_description.h"
+#include "signal/input_file.h"
 #include "signal/shell_word.h"
 #include "stance.h"
 
@@ -155,21 +158,109 @@ Json poses_json(const RobotDescription& robot, const StandingPose& stance) {
   return poses;
 }
 
+// An SRDF with the pairs of links that touch in the poses and not at 0, where their hulls are larger than they are; ""
+// without such.
+std::string touching_srdf(const RobotModel& model, const std::string& name, const StandingPose& stance) {
+  PlantSettings settings;
+  settings.drives.resize(model.joints.size());
+  settings.encoders.resize(model.joints.size());
+  std::set<std::pair<std::string, std::string>> pairs;
+  for (const std::vector<double>* position : {&stance.stand, &stance.low}) {
+    settings.position_rad = *position;
+    for (auto& pair : touching_links(model, settings, TouchingAt::start)) pairs.insert(std::move(pair));
+  }
+  if (pairs.empty()) return "";
+  std::string text = "<robot name=\"" + name + "\">\n";
+  for (const auto& [first, second] : pairs)
+    text += "  <disable_collisions link1=\"" + first + "\" link2=\"" + second +
+            "\" reason=\"Touching in stand or low\"/>\n";
+  return text + "</robot>\n";
+}
+
+Json feet_json(const RobotModel& model, const StandingPose& stance) {
+  constexpr const char* corners[] = {"heel_inner_m", "heel_outer_m", "toe_inner_m", "toe_outer_m"};
+  Json feet = Json::array();
+  for (const StandingFoot& foot : stance.feet) {
+    Json& written =
+        feet.emplace_back(Json{{"name", foot.name}, {"link", model.links[foot.link].name}, {"noise_N", 0.5}});
+    for (std::size_t i = 0; i < std::size(corners); ++i) {
+      for (const double at_m : foot.corners_m[i]) written[corners[i]].push_back(rounded(at_m));
+    }
+  }
+  return feet;
+}
+
+// Two legs balance by their ankles, and by the trunk where these do not suffice. Gains by the robot's m g h, as TULip's
+// are.
+Json balance_json(const RobotModel& model, const StandingPose& stance) {
+  constexpr double edge_m = 0.01, most_Nm_per_rad = 2000, most_Nms_per_rad = 200;
+  const StandingFoot &left = stance.feet[0], &right = stance.feet[1];
+  Json joints = Json::array();
+  for (const StandingFoot* foot : {&left, &right}) {
+    for (const std::size_t joint : foot->bearing) joints.push_back(model.joints[joint].name);
+  }
+  const double mgh = 9.81 * model.mass_kg() * stance.com_m;
+  const double toe_m = std::min(left.toe_m, right.toe_m), heel_m = std::min(left.heel_m, right.heel_m);
+  return {{"name", "balance"},
+          {"doc", "E: scaled by the robot's weight and height."},
+          {"type", "stance"},
+          {"joints", joints},
+          {"options", {{"left_foot", model.links[left.link].name}, {"right_foot", model.links[right.link].name}}},
+          {"parameters",
+           {{"share", 1},
+            {"pull_x", 6},
+            {"pull_y", 2},
+            {"toe_m", rounded(std::max(0.0, toe_m - edge_m))},
+            {"heel_m", rounded(std::max(0.0, heel_m - edge_m))},
+            {"side_m", 0.02},
+            {"sole_m", rounded(std::max(0.0, std::max(left.below_m, right.below_m)))},
+            {"upright_Nm_per_rad", figures(std::min(most_Nm_per_rad, 2 * mgh))},
+            {"upright_Nms_per_rad", figures(std::min(most_Nms_per_rad, 0.2 * mgh))},
+            {"level_Nm_per_rad", figures(std::min(most_Nm_per_rad, mgh))},
+            {"level_Nms_per_rad", figures(std::min(most_Nms_per_rad, 0.1 * mgh))},
+            {"height_m", 0},
+            {"smooth_s", 0.004}}}};
+}
+
+// The motors of what hangs from the base: all of a robot that is held, else those that are in no leg.
+Json hanging_joints(const RobotModel& model, const StandingPose& stance, const Json& motors) {
+  std::set<std::string> legs;
+  for (const StandingFoot& foot : stance.held ? std::vector<StandingFoot>() : stance.feet) {
+    for (std::size_t link = foot.link; link > 0; link = model.joints[link - 1].parent)
+      legs.insert(model.joints[link - 1].name);
+  }
+  Json hanging = Json::array();
+  for (const auto& joint : motors) {
+    if (!legs.contains(joint.get<std::string>())) hanging.push_back(joint);
+  }
+  return hanging;
+}
+
+bool balances(const StandingPose& stance, std::size_t joint) {
+  return !stance.held && stance.feet.size() == 2 && std::ranges::any_of(stance.feet, [joint](const StandingFoot& foot) {
+    return std::ranges::find(foot.bearing, joint) != foot.bearing.end();
+  });
+}
+
 Json robot_json(const RobotDescription& robot, const std::string& name, const StandingPose& stance,
                 const std::vector<JointHold>& holds) {
   const RobotModel& model = robot.model;
-  const bool bolted = stance.feet.empty();
+  const bool bolted = stance.held;
   Json drives = {{"doc",
                   "E: estimates, to be replaced by what the maker says. A rotor that the motor's whole torque brings "
                   "to 2500 rad/s2, unless the URDF has it."}};
   Json parameters = Json::object(), motors = Json::array();
+  const std::vector<std::string> drive_names = model.drive_names();
   for (std::size_t i = 0; i < holds.size(); ++i) {
     const std::string& joint = model.joints[i].name;
     if (!(holds[i].stiffness_Nm_per_rad > 0)) continue;
     motors.push_back(joint);
-    drives[joint] = {{"rotor_inertia_kg_m2", figures(holds[i].rotor_inertia_kg_m2)}};
+    drives[drive_names[i]] = {{"rotor_inertia_kg_m2", figures(holds[i].rotor_inertia_kg_m2)}};
     parameters[joint + ".kp_Nm_per_rad"] = figures(holds[i].stiffness_Nm_per_rad);
     parameters[joint + ".kd_Nms_per_rad"] = figures(holds[i].damping_Nms_per_rad);
+    // What a weak ankle can give is the balance's, which takes up to nine tenths; both together stay within its limit.
+    if (holds[i].weak && balances(stance, i))
+      parameters[joint + ".effort_max_Nm"] = figures(0.1 * model.joints[i].effort_max_Nm);
   }
   Json objects = Json::array();
   objects.push_back({{"name", "posture"},
@@ -180,40 +271,53 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
                      {"joints", motors},
                      {"parameters", parameters}});
   Json hold = {{"doc", "Holds its joints."}, {"objects", {"posture"}}};
+  const auto sum_up = [&](const Json& object, const char* doc) {
+    objects.push_back(object);
+    hold["doc"] = doc;
+    hold["objects"].push_back(object["name"]);
+    hold["sum"].push_back(object["name"]);
+  };
+  if (const Json hanging = hanging_joints(model, stance, motors); !hanging.empty())
+    sum_up({{"name", "weight"}, {"type", "gravity_compensation"}, {"joints", hanging}},
+           "Holds its joints, and carries the weight of what hangs.");
+  if (!bolted && stance.feet.size() == 2)
+    sum_up(balance_json(model, stance), "Holds its joints, and keeps its centre of mass over its soles.");
+  Json plant = {{"drives", drives}, {"fixed_base", bolted}, {"self_collision", true}};
+  Json safety = Json::object();
   if (bolted) {
-    objects.push_back({{"name", "weight"}, {"type", "gravity_compensation"}, {"joints", motors}});
-    hold = {{"doc", "Holds its joints, and carries their weight."},
-            {"objects", {"posture", "weight"}},
-            {"sum", {"weight"}}};
+    safety = {{"sensors", {{"imu", false}}}};
+  } else {
+    plant["imu"] = {{"doc", "E."}, {"gyro_noise_rad_s", 0.005}, {"accelerometer_noise_m_s2", 0.05}};
+    if (stance.feet.size() <= max_feet) plant["feet"] = feet_json(model, stance);
   }
   Json start = {{"pose", "stand"}};
-  if (bolted) start = {{"pose", "stand"}, {"stand_on_ground", false}, {"position_m", {0, 0, 1}}};
+  if (bolted) start = {{"pose", "stand"}, {"stand_on_ground", false}, {"position_m", {0, 0, rounded(stance.height_m)}}};
   return {{"name", name},
           {"doc", "Written by kadans new robot. E marks an estimate."},
           {"urdf", "models/" + name + "/" + name + ".urdf"},
           {"engine", {{"control_period_s", 0.001}, {"behavior_period_s", 0.01}}},
           {"poses", poses_json(robot, stance)},
           {"safe", {{"pose", "stand"}, {"after_s", 0.5}, {"time_s", 2}}},
-          {"plant", {{"drives", drives}, {"fixed_base", bolted}, {"self_collision", true}}},
+          {"plant", plant},
           {"start", start},
-          {"safety", {{"sensors", {{"imu", false}}}}},
+          {"safety", safety},
           {"control", {{"objects", objects}, {"sets", {{"hold", hold}}}}}};
 }
 
 Json scenario_json(const std::string& name, const StandingPose& stance) {
   Json checks = Json::array();
-  if (!stance.feet.empty()) {
+  if (!stance.held) {
     checks.push_back({{"name", "stays up, lowest height in m"},
                       {"kind", "always"},
                       {"signal", "plant.base.height_m"},
-                      {"min", rounded(0.7 * stance.height_m, 1e-3)}});
+                      {"min", rounded(stance.height_m - std::max(0.3 * stance.height_m, 0.02), 1e-3)}});
     checks.push_back({{"name", "upright, rad"}, {"kind", "always"}, {"signal", "plant.base.tilt_rad"}, {"max", 0.3}});
   }
   checks.push_back({{"name", "torques within limits"}, {"kind", "always"}, {"that", "plant.limits.torque_share <= 1"}});
   checks.push_back({{"name", "at rest at the end"}, {"kind", "at_end"}, {"that", "plant.limits.speed_share <= 0.1"}});
   checks.push_back({{"name", "no faults"}, {"kind", "always"}, {"signal", "safety.faults"}, {"max", 0}});
   return {{"name", name + "_hold"},
-          {"doc", stance.feet.empty() ? "Held for ten seconds." : "Stands for ten seconds."},
+          {"doc", stance.held ? "Held for ten seconds." : "Stands for ten seconds."},
           {"robot", "config/" + name + "/robot.json"},
           {"duration_s", 10},
           {"checks", checks}};
@@ -223,9 +327,14 @@ void tell(const RobotModel& model, const StandingPose& stance, const std::vector
   std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
   if (stance.feet.empty()) {
     std::fprintf(stderr, "No two links at its ends are the lowest of all: it is bolted down (plant.fixed_base).\n");
+  } else if (stance.held) {
+    std::fprintf(stderr,
+                 "Its soles are %.0f mm wide together: it does not stand without stepping, so it is bolted down "
+                 "(plant.fixed_base).\n",
+                 1000 * stance.width_m);
   } else {
     std::string feet;
-    for (const std::size_t foot : stance.feet) feet += (feet.empty() ? "" : ", ") + model.links[foot].name;
+    for (const StandingFoot& foot : stance.feet) feet += (feet.empty() ? "" : ", ") + model.links[foot.link].name;
     std::fprintf(stderr, "It stands on %s, its base %.3g m high.\n", feet.c_str(), stance.height_m);
   }
   for (std::size_t i = 0; i < holds.size(); ++i) {
@@ -241,6 +350,8 @@ void tell(const RobotModel& model, const StandingPose& stance, const std::vector
 void add_new_robot(CLI::App& made, NewRobotOptions& options) {
   CLI::App* robot = made.add_subcommand("robot", "Write the files of a robot from its URDF or MJCF, and see it stand");
   robot->add_option("urdf", options.urdf, "URDF, xacro or MJCF of the robot")->required()->type_name("FILE");
+  robot->add_option("--srdf", options.srdf, "SRDF of the robot: its pairs of links pass through each other")
+      ->type_name("FILE");
   robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: that of the file)")
       ->type_name("NAME");
   robot->add_option("--in", options.folder, "Project to which its files are added (default: this folder)")
@@ -258,22 +369,27 @@ int run_new_robot(const NewRobotOptions& options) {
   const fs::path models = project / "models" / name, config = project / "config" / name,
                  behaviors = project / "behaviors" / name,
                  scenario = project / "config" / "scenarios" / (name + "_hold.json");
+  if (!options.srdf.empty()) (void)read_srdf(options.srdf, model);
   const StandingPose stance = find_stance(model);
   const std::vector<JointHold> holds = hold_joints(model, stance);
   if (std::ranges::none_of(holds, [](const JointHold& hold) { return hold.stiffness_Nm_per_rad > 0; }))
     throw InputError(
         {.file = options.urdf, .message = "no joint of it has a motor: <limit effort=...> says which torque it has"});
 
+  Json robot = robot_json(description, name, stance, holds);
+  const std::string srdf = options.srdf.empty() ? touching_srdf(model, name, stance) : read_input_file(options.srdf);
+  if (!srdf.empty()) robot["plant"]["srdf"] = "models/" + name + "/" + name + ".srdf";
   std::map<std::string, std::string> meshes;
   const std::string own = with_own_meshes(description.urdf, options.urdf, meshes);
   std::string test(sway_test_template);
   test.replace(test.find("@name@"), 6, name);
-  write_new_files({models, config, behaviors, scenario},
-                  {{models / (name + ".urdf"), own},
-                   {config / "robot.json", json_text(robot_json(description, name, stance, holds), 2) + "\n"},
-                   {scenario, json_text(scenario_json(name, stance), 2) + "\n"},
-                   {behaviors / "sway.lua", std::string(sway_template)},
-                   {behaviors / "sway_test.lua", test}});
+  std::vector<NewFile> files{{models / (name + ".urdf"), own},
+                             {config / "robot.json", json_text(robot, 2) + "\n"},
+                             {scenario, json_text(scenario_json(name, stance), 2) + "\n"},
+                             {behaviors / "sway.lua", std::string(sway_template)},
+                             {behaviors / "sway_test.lua", test}};
+  if (!srdf.empty()) files.push_back({models / (name + ".srdf"), srdf});
+  write_new_files({models, config, behaviors, scenario}, files);
   for (const auto& [from, to] : meshes) {
     std::error_code error;
     fs::create_directories(models / "meshes", error);

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -57,7 +58,10 @@ class Body {
     }
   }
 
-  void place(const std::vector<double>& position) { dynamics_.update(position, at_rest_, {}); }
+  void place(std::vector<double> position) {
+    model_.lead_mimics(position);
+    dynamics_.update(position, at_rest_, {});
+  }
   const Dynamics& dynamics() const { return dynamics_; }
   const Pose& link(std::size_t index) const { return dynamics_.link(index); }
   Vector3d point(std::size_t link, const Vec3& in_link_m) const {
@@ -70,18 +74,67 @@ class Body {
     for (const Vec3& tip : tips_[link]) lowest = std::min(lowest, point(link, tip).z());
     return lowest;
   }
-  // The middle of what stands on the ground, in the link's frame.
-  Vec3 sole(std::size_t link) const {
-    constexpr double near_m = 0.01;
-    const double low = lowest(link);
-    Vector3d sum = Vector3d::Zero();
-    double count = 0;
+  // Around the points of a link that are lowest when it is turned by `turn` about its frame, in the world's axes.
+  Eigen::AlignedBox3d resting(std::size_t link, const Quat& turn) const {
+    constexpr double near_m = 0.003;
+    const Pose& pose = dynamics_.link(link);
+    const auto turned = [&](const Vec3& tip) -> Vector3d {
+      return eigen(rotate(turn, rotate(pose.orientation, tip))) + eigen(pose.position_m);
+    };
+    double low = std::numeric_limits<double>::infinity();
+    for (const Vec3& tip : tips_[link]) low = std::min(low, turned(tip).z());
+    Eigen::AlignedBox3d around;
     for (const Vec3& tip : tips_[link]) {
-      if (point(link, tip).z() > low + near_m) continue;
-      sum += eigen(tip);
-      ++count;
+      const Vector3d at = turned(tip);
+      if (at.z() <= low + near_m) around.extend(at);
     }
-    return vec3(sum / count);
+    return around;
+  }
+  // The turn about the robot's x and y that lays the link on its largest side, of those that are not far.
+  Quat to_sole(std::size_t link) const {
+    constexpr int most_deg = 25;
+    constexpr double deg = std::numbers::pi / 180, clearly = 1.2;
+    const auto area = [&](const Quat& turn) {
+      const Vector3d size = resting(link, turn).sizes();
+      return size.x() * size.y();
+    };
+    Quat best{1, 0, 0, 0};
+    double best_m2 = clearly * area(best);
+    for (int distance = 1; distance <= most_deg; ++distance) {  // the nearest first
+      for (int roll = -distance; roll <= distance; ++roll) {
+        const int step = std::abs(roll) == distance ? 1 : 2 * distance;
+        for (int pitch = -distance; pitch <= distance; pitch += step) {
+          const Quat turn = from_roll_pitch_yaw(roll * deg, pitch * deg, 0);
+          const double m2 = area(turn);
+          if (m2 <= best_m2) continue;
+          best = turn;
+          best_m2 = 1.01 * m2;
+        }
+      }
+    }
+    return best;
+  }
+  // The middle of what stands on the ground once the link is turned so, in the link's frame.
+  Vec3 sole(std::size_t link, const Quat& turn = {1, 0, 0, 0}) const {
+    const Eigen::AlignedBox3d around = resting(link, turn);
+    const Pose& pose = dynamics_.link(link);
+    const Vector3d middle(around.center().x(), around.center().y(), around.min().z());
+    return rotate_inverse(pose.orientation, rotate_inverse(turn, vec3(middle - eigen(pose.position_m))));
+  }
+  // The rectangle around what stands on the ground, along the robot's x and y; a ball has one of 2 cm.
+  std::array<Vec3, 4> sole_corners(std::size_t link) const {
+    constexpr double least_m = 0.01;
+    const double low = lowest(link);
+    const Eigen::AlignedBox3d around = resting(link, Quat{1, 0, 0, 0});
+    const Vector3d middle = around.center();
+    const double half_x = std::max(around.sizes().x() / 2, least_m), half_y = std::max(around.sizes().y() / 2, least_m);
+    const double outward = middle.y() < 0 ? -1 : 1;
+    const Pose& pose = dynamics_.link(link);
+    const auto corner = [&](double forward, double out) {
+      const Vector3d at(middle.x() + forward * half_x, middle.y() + out * outward * half_y, low);
+      return rotate_inverse(pose.orientation, vec3(at - eigen(pose.position_m)));
+    };
+    return {corner(-1, -1), corner(-1, 1), corner(1, -1), corner(1, 1)};
   }
   Vector3d axis(std::size_t joint) const {
     return eigen(rotate(link(joint + 1).orientation, model_.joints[joint].axis));
@@ -96,7 +149,7 @@ class Body {
   std::vector<std::vector<Vec3>> tips_;
 };
 
-bool moves(const Joint& joint) { return !joint.passive() && !joint.mimic; }
+bool moves(const Joint& joint) { return !joint.passive(); }
 
 struct Leg {
   std::size_t foot;                 // link
@@ -122,18 +175,87 @@ class StanceSearch {
         const double aside = within(i, position_[i] + 0.3, 0.1);
         stance.low[i] = aside > position_[i] + 0.1 ? aside : within(i, position_[i] - 0.3, 0.1);
       }
+      lift(stance);
       return stance;
     }
-    for (const Leg& leg : legs_) stance.feet.push_back(leg.foot);
     bend();
     stance.stand = solve(0);
     body_.place(stance.stand);
-    for (const Leg& leg : legs_) stance.height_m = std::max(stance.height_m, -body_.lowest(leg.foot));
+    for (const Leg& leg : legs_) {
+      stance.height_m = std::max(stance.height_m, -body_.lowest(leg.foot));
+      StandingFoot& foot = stance.feet.emplace_back();
+      foot.link = leg.foot;
+      foot.name = model_.links[leg.foot].name;
+      foot.corners_m = body_.sole_corners(leg.foot);
+      for (const std::size_t joint : leg.joints) {
+        if (moves(model_.joints[joint]) && std::abs(body_.axis(joint).z()) < 0.7) foot.bearing.push_back(joint);
+      }
+      const Vector3d frame = body_.point(leg.foot, {});
+      foot.toe_m = body_.point(leg.foot, foot.corners_m[2]).x() - frame.x();
+      foot.heel_m = frame.x() - body_.point(leg.foot, foot.corners_m[0]).x();
+      foot.below_m = frame.z() - body_.point(leg.foot, foot.corners_m[0]).z();
+      stance.com_m += (body_.com().z() - frame.z()) / static_cast<double>(legs_.size());
+    }
+    stance.width_m = width_m(stance.feet);
+    stance.held = stance.width_m < narrowest_m;
+    name_sides(stance.feet);
     stance.low = solve(0.12 * length());
+    if (stance.held) lift(stance);
     return stance;
   }
 
  private:
+  // Of all soles together on the ground, across the direction in which they are narrowest.
+  double width_m(const std::vector<StandingFoot>& feet) const {
+    constexpr int directions = 90;
+    double narrowest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < directions; ++i) {
+      const double angle = i * std::numbers::pi / directions;
+      const Vector3d across(std::cos(angle), std::sin(angle), 0);
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (const StandingFoot& foot : feet) {
+        for (const Vec3& corner : foot.corners_m) {
+          const double at = across.dot(body_.point(foot.link, corner));
+          low = std::min(low, at);
+          high = std::max(high, at);
+        }
+      }
+      narrowest = std::min(narrowest, high - low);
+    }
+    return narrowest;
+  }
+
+  // As high as keeps all its links off the ground.
+  void lift(StandingPose& stance) {
+    constexpr double least_m = 1, clear_m = 0.2;
+    stance.height_m = least_m;
+    for (const std::vector<double>* position : {&stance.stand, &stance.low}) {
+      body_.place(*position);
+      for (std::size_t i = 0; i < model_.links.size(); ++i) {
+        if (!body_.tips_of(i).empty()) stance.height_m = std::max(stance.height_m, clear_m - body_.lowest(i));
+      }
+    }
+  }
+
+  // left and right, or front_left to rear_right, where each side has one; the left one, and the front, comes first.
+  void name_sides(std::vector<StandingFoot>& feet) const {
+    if (feet.size() != 2 && feet.size() != 4) return;
+    double middle_m = 0;
+    for (const Leg& leg : legs_) middle_m += body_.point(leg.foot, leg.sole).x() / static_cast<double>(legs_.size());
+    std::map<std::string, StandingFoot> named;
+    for (std::size_t i = 0; i < feet.size(); ++i) {
+      const Vector3d at = body_.point(legs_[i].foot, legs_[i].sole);
+      const std::string side = at.y() > 0 ? "left" : "right", end = at.x() > middle_m ? "front_" : "rear_";
+      named[feet.size() == 2 ? side : end + side] = feet[i];
+    }
+    if (named.size() != feet.size()) return;
+    feet.clear();
+    for (auto& [name, foot] : named) {
+      feet.push_back(std::move(foot));
+      feet.back().name = name;
+    }
+  }
+
   double within(std::size_t i, double wanted, double margin_share) const {
     const Joint& joint = model_.joints[i];
     const bool bounded = std::isfinite(joint.lower_rad) && std::isfinite(joint.upper_rad);
@@ -164,8 +286,9 @@ class StanceSearch {
       Leg leg{.foot = i};
       for (std::size_t link = i; link > 0; link = model_.joints[link - 1].parent) leg.joints.push_back(link - 1);
       std::ranges::reverse(leg.joints);
-      leg.sole = body_.sole(i);
-      leg.level = body_.link(i).orientation;
+      const Quat turn = leg.joints.size() >= level_joints ? body_.to_sole(i) : Quat{1, 0, 0, 0};
+      leg.sole = body_.sole(i, turn);
+      leg.level = multiply(turn, body_.link(i).orientation);
       legs_.push_back(leg);
     }
   }
@@ -254,6 +377,7 @@ class StanceSearch {
   }
 
   static constexpr std::size_t level_joints = 5;
+  static constexpr double narrowest_m = 0.06;
 
   const RobotModel& model_;
   Body body_;
@@ -281,25 +405,58 @@ std::vector<Carried> carried(const RobotModel& model, const Body& body) {
   return all;
 }
 
+// The mass matrix of the joints in `stand`, without rotors: of a robot that is not held the base gives way, too.
+Eigen::MatrixXd mass_of_joints(const RobotModel& model, const StandingPose& stance) {
+  Dynamics dynamics(model, {.base = stance.held ? Dynamics::Base::fixed : Dynamics::Base::floating});
+  dynamics.update(stance.stand, std::vector<double>(model.joints.size()), {});
+  const auto base = static_cast<Eigen::Index>(dynamics.base_size());
+  const Eigen::MatrixXd& mass = dynamics.mass_matrix();
+  if (base == 0) return mass;
+  const Eigen::MatrixXd shared = mass.bottomLeftCorner(mass.rows() - base, base);
+  const Eigen::MatrixXd own = mass.bottomRightCorner(mass.rows() - base, mass.cols() - base);
+  return own - shared * mass.topLeftCorner(base, base).ldlt().solve(shared.transpose());
+}
+
+// Lowers gains until no movement of the joints together is faster than `most`: the largest eigenvalue of
+// mass^-1 diag(gains). Each gain is lowered by its share in the fastest movement.
+void slow_down(const Eigen::MatrixXd& mass, double most, Eigen::VectorXd& gains) {
+  if (gains.size() == 0) return;
+  for (int round = 0; round < 300; ++round) {
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(Eigen::MatrixXd(gains.asDiagonal()), mass);
+    const double fastest = modes.eigenvalues().tail<1>()[0];
+    if (fastest <= most) return;
+    const Eigen::ArrayXd way = modes.eigenvectors().rightCols<1>().array().square() * gains.array();
+    gains.array() *= 1 - 0.5 * (1 - most / fastest) * way / way.maxCoeff();
+  }
+}
+
 }  // namespace
 
-StandingPose find_stance(const RobotModel& model) { return StanceSearch(model).run(); }
+StandingPose find_stance(const RobotModel& model) {
+  StandingPose stance = StanceSearch(model).run();
+  model.lead_mimics(stance.stand);
+  model.lead_mimics(stance.low);
+  return stance;
+}
 
 std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance) {
   // A rotor that its motor's whole torque brings to 2500 rad/s2 is typical of drives of legs and arms; E.
-  constexpr double rotor_per_Nm = 1.0 / 2500;
+  constexpr double rotor_per_Nm = 1.0 / 2500, implausible_Nm = 5000;
   // At 1 kHz with two ticks of delay and a velocity filtered at 100 Hz stiffness / inertia of 28000 is the edge of
   // stability, damping / inertia of 270: half of that.
   constexpr double stiffest = 14000, most_damped = 135;
+  constexpr double most_stiffness = 50000, most_damping = 5000;         // that joint_pid takes
   constexpr double own_bandwidth = 225, sag_rad = 0.04, over_load = 3;  // (15 rad/s)^2
   Body body(model);
   body.place(stance.stand);
+  Eigen::MatrixXd mass = mass_of_joints(model, stance);
+  Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(mass.rows()), damping = stiffness;
   const std::vector<Carried> all = carried(model, body);
   // What each foot carries.
   const double weight_N = g_m_s2 * model.mass_kg() / std::max(1.0, static_cast<double>(stance.feet.size()));
   std::map<std::size_t, std::size_t> foot_of;  // by joint of a leg
-  for (const std::size_t foot : stance.feet) {
-    for (std::size_t link = foot; link > 0; link = model.joints[link - 1].parent) foot_of[link - 1] = foot;
+  for (const StandingFoot& foot : stance.held ? std::vector<StandingFoot>() : stance.feet) {
+    for (std::size_t link = foot.link; link > 0; link = model.joints[link - 1].parent) foot_of[link - 1] = foot.link;
   }
   std::vector<JointHold> holds(model.joints.size());
   for (std::size_t i = 0; i < holds.size(); ++i) {
@@ -308,11 +465,13 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
     JointHold& hold = holds[i];
     const Carried& hung = all[i + 1];
     const bool slides = joint.type == JointType::prismatic;
-    hold.rotor_inertia_kg_m2 =
-        joint.rotor_inertia_kg_m2 > 0 ? joint.rotor_inertia_kg_m2 : std::max(1e-4, rotor_per_Nm * joint.effort_max_Nm);
-    if (!std::isfinite(hold.rotor_inertia_kg_m2) || joint.effort_max_Nm > 1e5) hold.rotor_inertia_kg_m2 = 0.01;
     const auto at_joint = static_cast<Eigen::Index>(i);
-    const double inertia = body.dynamics().mass_matrix()(at_joint, at_joint) + hold.rotor_inertia_kg_m2;
+    // A torque that no motor of the size has says nothing of its rotor.
+    const double by_torque =
+        joint.effort_max_Nm < implausible_Nm ? rotor_per_Nm * joint.effort_max_Nm : mass(at_joint, at_joint);
+    hold.rotor_inertia_kg_m2 =
+        joint.rotor_inertia_kg_m2 > 0 ? joint.rotor_inertia_kg_m2 : std::clamp(by_torque, 1e-4, 10.0);
+    const double inertia = mass(at_joint, at_joint) += hold.rotor_inertia_kg_m2;
     const Vector3d at = body.place_of(i);
     hold.load_Nm_per_rad = slides ? 0 : g_m_s2 * (hung.moment - hung.mass_kg * at).norm();
     double wanted = std::max(over_load * hold.load_Nm_per_rad, own_bandwidth * inertia);
@@ -326,11 +485,17 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
       hold.load_Nm_per_rad = std::max(hold.load_Nm_per_rad, standing);
       wanted = std::max({wanted, over_load * standing, torque_Nm / sag_rad});
     }
-    hold.stiffness_Nm_per_rad = std::min(wanted, stiffest * inertia);
-    hold.weak = hold.stiffness_Nm_per_rad < 1.2 * hold.load_Nm_per_rad;
-    const double critical = 1.4 * std::sqrt(hold.stiffness_Nm_per_rad * inertia);
-    const double damping = leg ? std::max(critical, 0.03 * hold.stiffness_Nm_per_rad) : critical;
-    hold.damping_Nms_per_rad = std::min(damping, most_damped * inertia);
+    stiffness[at_joint] = std::min({wanted, stiffest * inertia, most_stiffness});
+    const double critical = 1.4 * std::sqrt(stiffness[at_joint] * inertia);
+    damping[at_joint] = std::min(leg ? std::max(critical, 0.03 * stiffness[at_joint]) : critical, most_damping);
+  }
+  slow_down(mass, stiffest, stiffness);
+  slow_down(mass, most_damped, damping);
+  for (std::size_t i = 0; i < holds.size(); ++i) {
+    const auto at_joint = static_cast<Eigen::Index>(i);
+    holds[i].stiffness_Nm_per_rad = stiffness[at_joint];
+    holds[i].damping_Nms_per_rad = damping[at_joint];
+    holds[i].weak = moves(model.joints[i]) && stiffness[at_joint] < 1.2 * holds[i].load_Nm_per_rad;
   }
   return holds;
 }

@@ -2,18 +2,33 @@
 // robot` writes. All from the URDF: kinematics, masses, shapes, limits of torque.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "kadans/model/robot_model.h"
 
 namespace kadans {
 
+struct StandingFoot {
+  std::size_t link = 0;
+  std::string name;                 // left, right; front_left ...; else the link's
+  std::array<Vec3, 4> corners_m{};  // of the sole, in the link's frame: heel inner, heel outer, toe inner, toe outer
+  // What balances it: the joints of its leg that turn about axes that lie, and the sole about the link's frame, along
+  // the robot's axes.
+  std::vector<std::size_t> bearing;
+  double toe_m = 0, heel_m = 0, below_m = 0;
+};
+
 struct StandingPose {
-  std::vector<std::size_t> feet;  // links that carry it; none: it is bolted to the world
-  std::vector<double> stand;      // positions of the joints, rad (m of a slider)
-  std::vector<double> low;        // lower, or for a robot that is bolted down a little aside
-  double height_m = 0;            // of the base's frame over the ground, in `stand`
+  std::vector<StandingFoot> feet;  // what carries it
+  double width_m = 0;              // of all soles together, where they are narrowest
+  bool held = true;                // bolted to the world: without feet, or on less than 6 cm, which takes steps
+  std::vector<double> stand;       // positions of the joints, rad (m of a slider)
+  std::vector<double> low;         // lower, or for a robot that is bolted down a little aside
+  double height_m = 0;             // of the base's frame over the ground, in `stand`; clear of it when held
+  double com_m = 0;                // of the centre of mass over the feet's frames, in `stand`
 };
 
 // A robot with at least two links at its ends that are the lowest of all, and a base that is well above them, stands on
