@@ -73,7 +73,8 @@ void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
   s.meant.offset = {s.meant.step.x_m / (grown_x - 1) + c.shift_x_m,
                     s.meant.step.y_m / (grown_y - 1) - sign * c.width_m / (grown_y + 1)};
   const double meant_y_m = sign * c.width_m + s.meant.step.y_m;
-  const double earliest_s = std::max(c.step_min_s, s.time_s), latest_s = std::max(c.step_max_s, s.time_s);
+  const double least_s = s.kick.kicks() ? c.kick.strike_s + c.kick.after_s : c.step_min_s;
+  const double earliest_s = std::max(least_s, s.time_s), latest_s = std::max(c.step_max_s, earliest_s);
   double least = 1e9, best_s = c.step_s;
   GroundPoint best;
   for (int i = 0; i < times_tried; ++i) {
@@ -108,6 +109,11 @@ void WalkPlan::lead_foot(const Config& c) noexcept {
   State& s = state_;
   const double share = s.time_s / s.step_s, way = swing_way(share / c.place_share);
   const double sink_m = c.sink_m_s * std::max(s.time_s - s.step_s, 0.0);
+  if (s.kick.kicks()) {
+    s.feet.at_m = s.kick.at(c.kick, s.feet.from_m, s.feet.foothold, s.time_s, s.step_s);
+    s.feet.at_m[2] -= std::min(sink_m, 0.06);
+    return;
+  }
   s.feet.at_m = {s.feet.from_m[0] + way * (s.feet.foothold.x_m - s.feet.from_m[0]),
                  s.feet.from_m[1] + way * (s.feet.foothold.y_m - s.feet.from_m[1]),
                  s.feet.from_m[2] * (1 - way) + c.lift_m * swing_lift(share) - std::min(sink_m, 0.06)};
@@ -136,6 +142,8 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   leave(sight);
   from_com_m_ = {sight.over[s.stance].com_m[0], sight.over[s.stance].com_m[1]};
   ++s.steps;
+  s.kicks += s.kick.kicks();
+  s.kick.end();
   s.time_s = 0;
   s.step_s = c.step_s;
   s.meant.turn_rad = s.meant.velocity.turn_rad_s * c.step_s;
@@ -160,12 +168,22 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
     leave(sight);
     return true;
   }
+  if (s.time_s < 1.5 * dt_s && KickSwing::reaches(c.kick, wanted.kick, side_of(1 - s.stance)))
+    s.kick.begin(c.kick, wanted.kick);
   choose(c, sight);
   lead_foot(c);
-  const bool touches = s.time_s > c.early_share * s.step_s && sight.force_N[1 - s.stance] > c.touch_N;
+  const double early_s =
+      s.kick.kicks() ? c.kick.strike_s + 0.5 * c.kick.after_s : c.early_share * s.step_s;
+  const bool touches = s.time_s > early_s && sight.force_N[1 - s.stance] > c.touch_N;
   if (!touches && s.time_s < s.step_s + late_s) return false;
   land(c, wanted, sight);
   return true;
+}
+
+double WalkPlan::other_yaw_rad(const Config& c) const noexcept {
+  const State& s = state_;
+  const double turn_rad = s.meant.turn_rad * swing_way(s.time_s / s.step_s);
+  return s.kick.kicks() ? turn_rad + s.kick.yaw_rad(c.kick, s.time_s, s.step_s) : turn_rad;
 }
 
 void WalkPlan::turned(double by_rad) noexcept {

@@ -24,6 +24,7 @@
 
 #include "control/balance/dcm_measure.h"
 #include "control/balance/step_plan.h"
+#include "kick_swing.h"
 
 namespace kadans {
 
@@ -52,6 +53,7 @@ class WalkPlan {
     double sway_s = 0.4;          // longest such time
     double speed_max_m_s2 = 0.5;  // how fast the meant velocity changes
     Sole sole{.heel_m = 0.06, .toe_m = 0.10, .half_width_m = 0.03};
+    KickSwing::Config kick;
   };
   struct Velocity {
     double forward_m_s = 0, left_m_s = 0, turn_rad_s = 0;
@@ -59,6 +61,7 @@ class WalkPlan {
   struct Wanted {
     Velocity velocity;
     bool go = false;
+    Kick kick;
   };
   struct Sight {
     std::array<DcmMeasure::OverFoot, 2> over{};
@@ -87,6 +90,8 @@ class WalkPlan {
     Meant meant;
     GroundPoint dcm;  // over the stance foot
     double in_sole_x_m = 0;
+    KickSwing kick;             // of this step
+    std::uint32_t kicks = 0;    // that were made
   };
 
   void reset() noexcept { state_ = {}; }
@@ -97,6 +102,9 @@ class WalkPlan {
   GroundPoint goal(const Config& config, const Sight& sight) const noexcept;
   bool advance(const Config& config, const Wanted& wanted, const Sight& sight, double dt_s) noexcept;
   void turned(double by_rad) noexcept;
+
+  // Where the other foot shall point, of the heading.
+  double other_yaw_rad(const Config& config) const noexcept;
 
   const State& state() const noexcept { return state_; }
   void pass_state(auto& bytes) noexcept { bytes(state_, from_com_m_, step_time_s_); }
