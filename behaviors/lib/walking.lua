@@ -59,6 +59,32 @@ function walk.here(m, place)
   m.walk:set("heading_rad", place.heading_rad or 0)
 end
 
+-- What the kick can do: a ball that the foot meets at f m/s slides, then rolls at 0.6 f.
+local kick = { near_m = 0.3, far_m = 4.5, rad = 0.55, rolls = 0.6, foot_max_m_s = 2.8 }
+
+-- Kicks the ball at { x_m =, y_m = }, in the frame of walk.at, toward rad, so that it rolls far_m on a ground that slows
+-- it by roll_m_s2 (0.28). The object kicks within a step, as soon as its steps bring a foot to the ball. To be called
+-- again when the ball is seen better. True, or nil and a sentence.
+function walk.kick(m, ball, rad, far_m, roll_m_s2)
+  local turned = math.atan2(math.sin(rad - walk.at(m).heading_rad), math.cos(rad - walk.at(m).heading_rad))
+  if not (math.abs(turned) <= kick.rad) then
+    return nil, string.format("it does not kick %.2f rad to the side, at most %.2f", turned, kick.rad)
+  end
+  if not (far_m >= kick.near_m and far_m <= kick.far_m) then
+    return nil, string.format("it does not kick a ball %g m far, but %g to %g", far_m, kick.near_m, kick.far_m)
+  end
+  m.walk:set("kick_x_m", ball.x_m)
+  m.walk:set("kick_y_m", ball.y_m)
+  m.walk:set("kick_rad", math.atan2(math.sin(rad), math.cos(rad)))
+  if m.walk:setpoint("kick_m_s") > 0 then return true end
+  m.walk:set("kick_m_s", math.min(kick.foot_max_m_s, math.sqrt(2 * (roll_m_s2 or 0.28) * far_m) / kick.rolls))
+  return true
+end
+
+-- Whether it still is to kick; not in the tick of walk.kick. walk.keep takes the kick back.
+function walk.kicks(m) return m.walk:setpoint("kick_m_s") > 0 end
+function walk.keep(m) m.walk:set("kick_m_s", 0) end
+
 local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
 local function within(value, most) return math.max(-most, math.min(most, value)) end
 

@@ -1,13 +1,17 @@
--- Kicks a ball that lies where it is told, within its steps, and stands.
+-- Kicks a ball that lies where it is told, within its steps, and comes to stand.
 local k = require "kadans"
 local walk = require "walking"
 
 local P = k.params {
-  settle_s   = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
-  ball_x_m   = { 0.3, min = 0, max = 3, unit = "m", doc = "the ball, before the robot" },
-  ball_y_m   = { 0.09, min = -1, max = 1, unit = "m", doc = "to the left" },
-  kick_rad   = { 0, min = -0.6, max = 0.6, unit = "rad", doc = "where it shall go, to the left" },
-  foot_m_s   = { 1.2, min = 0.1, max = 3, unit = "m/s", doc = "speed of the foot" },
+  settle_s    = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
+  ball_x_m    = { 0.3, min = 0, max = 3, unit = "m", doc = "the ball, ahead of the robot" },
+  ball_y_m    = { 0.09, min = -1, max = 1, unit = "m", doc = "to the left; this chooses the foot" },
+  rad         = { 0, min = -0.55, max = 0.55, unit = "rad", doc = "where it shall go, to the left" },
+  far_m       = { 3, min = 0.3, max = 4.5, unit = "m", doc = "how far it shall roll" },
+  roll_m_s2   = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
+  forward_m_s = { 0, min = 0, max = 0.4, unit = "m/s", doc = "velocity until then" },
+  within_s    = { 10, min = 1, max = 100, unit = "s", doc = "longest time until the kick" },
+  steps_s     = { 0.6, min = 0, max = 10, unit = "s", doc = "time in place after it, before it stands" },
 }
 
 return k.behavior "kick" {
@@ -23,17 +27,19 @@ return k.behavior "kick" {
     { on = "run.done", to = "kick" },
   },
   k.state "kick" {
-    enter = function(m)
+    run = function(m)
       walk.here(m, {})
-      m.walk:set("kick_x_m", P.ball_x_m)
-      m.walk:set("kick_y_m", P.ball_y_m)
-      m.walk:set("kick_rad", P.kick_rad)
-      m.walk:set("kick_m_s", P.foot_m_s)
+      m:wait(0.02)
+      local kicks, why = walk.kick(m, { x_m = P.ball_x_m, y_m = P.ball_y_m }, P.rad, P.far_m, P.roll_m_s2)
+      if not kicks then k.log.error("no kick: %s", why) end
+      walk.go(m, { forward_m_s = P.forward_m_s })
+      m:wait(0.02)
+      while walk.kicks(m) do m:wait(0.01) end
       walk.go(m, {})
+      m:wait(P.steps_s)
     end,
-    during = function(m) m.vars.kicked = m.time_s > 0.1 and m.walk:setpoint("kick_m_s") == 0 end,
-    { when = function(_, m) return m.vars.kicked end, to = "stop" },
-    { after = 5, to = "stop" },
+    { on = "run.done", to = "stop" },
+    { after = P.within_s, to = "stop", action = walk.keep, why = "no ball" },
   },
   k.state "stop" {
     enter = walk.stop,

@@ -11,6 +11,7 @@ namespace kadans {
 namespace {
 
 constexpr double walk_rate_max_rad_s = 7;
+constexpr double kick_rate_max_rad_s = 15;
 constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
 enum Channel : std::uint32_t {
   forward_channel,
@@ -121,6 +122,11 @@ void DcmWalk::declare_kick(Declaration& d) {
   d.parameter({"kick.tip_m", "m", 0, 0.5, c.tip_m, "How far the tip of a foot is before its frame."}, &c.tip_m);
   d.parameter({"kick.strike_s", "s", 0.05, 1, c.strike_s, "From lift-off to the strike."}, &c.strike_s);
   d.parameter({"kick.after_s", "s", 0.02, 1, c.after_s, "Least time from there to the landing."}, &c.after_s);
+  d.parameter({"kick.step_s", "s", 0.1, 2, c.step_s, "Time of the step that kicks."}, &c.step_s);
+  d.parameter({"kick.follow_m", "m", 0, 0.5, c.follow_m, "How far the foot goes on beyond the strike, forward."},
+              &c.follow_m);
+  d.parameter({"kick.lead_s", "s", 0, 0.1, c.lead_s, "How far the reference is ahead, for the lag of the leg."},
+              &c.lead_s);
   d.parameter({"kick.height_m", "m", 0, 0.2, c.height_m, "Of the sole at the strike."}, &c.height_m);
   d.parameter({"kick.near_m", "m", -0.5, 0.5, c.near_m, "Where the foot may be at the strike, at least."}, &c.near_m);
   d.parameter({"kick.far_m", "m", -0.5, 0.5, c.far_m, "Likewise, at most."}, &c.far_m);
@@ -248,13 +254,14 @@ void DcmWalk::reckon(const ControlInput& input, bool new_stance) noexcept {
 
 // The ball as the plan has it: from the foot that stands, in the heading frame.
 void DcmWalk::see_ball() noexcept {
+  wanted_.kick = {};
+  if (!(ball_.m_s > 0)) return;
   const Odometry& o = odometry_;
   const double frame_rad = o.heading_rad - over_feet_.yaw_rad();
   const double c = std::cos(frame_rad), n = std::sin(frame_rad);
   const double x_m = ball_.ball.x_m - o.foot_x_m, y_m = ball_.ball.y_m - o.foot_y_m;
-  wanted_.kick = {{c * x_m + n * y_m, c * y_m - n * x_m},
-                  std::remainder(ball_.rad - frame_rad, 2 * std::numbers::pi),
-                  ball_.m_s};
+  wanted_.kick = {
+      {c * x_m + n * y_m, c * y_m - n * x_m}, std::remainder(ball_.rad - frame_rad, 2 * std::numbers::pi), ball_.m_s};
 }
 
 void DcmWalk::let_go(ActuationFrame& actuation) noexcept {
@@ -396,7 +403,7 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   LegInverse::Angles swing_rad = swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m),
                                                       plan_.other_yaw_rad(plan_config_) - over_feet_.yaw_rad());
   swing_rad[ankle_pitch] -= input.status.base.pitch_rad + slope_.x_m;
-  swing.aim(swing_rad, walk_rate_max_rad_s, input.dt_s);
+  swing.aim(swing_rad, s.kick.kicks() ? kick_rate_max_rad_s : walk_rate_max_rad_s, input.dt_s);
   const Efforts swing_Nm = swing.spring(c.gains, 1, input);
   turn(swing_Nm, input);
   const Efforts left_Nm = bearing(b, 1 - loaded, 0, input);
@@ -452,8 +459,8 @@ void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexce
 
 void DcmWalk::pass_state(StateBytes& bytes) noexcept {
   for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm);
-  bytes(over_feet_, plan_, wanted_, ball_, odometry_, slope_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_,
-        com_height_m_);
+  bytes(over_feet_, plan_, wanted_, ball_, odometry_, slope_, given_up_, turn_Nm_, ankle_Nm_, phase_number_,
+        stance_number_, com_height_m_);
 }
 
 std::unique_ptr<ControlObject> make_dcm_walk(const ObjectSetup& setup) { return std::make_unique<DcmWalk>(setup); }

@@ -110,7 +110,7 @@ class DcmWalk final : public ControlObject {
     double zero_rad = 0;                       // yaw of the base at a heading of 0
   };
   Odometry odometry_;
-  Kick ball_;  // to be kicked, in the frame of the odometry
+  Kick ball_;          // to be kicked, in the frame of the odometry
   GroundPoint slope_;  // of the ground in the heading frame, per metre, by the attitude of the foot that stands
   bool given_up_ = false;
   std::array<double, 2> turn_Nm_{};   // moment of the ground on the robot about its centre of mass: roll, pitch

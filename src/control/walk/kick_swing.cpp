@@ -6,11 +6,6 @@
 namespace kadans {
 namespace {
 
-GroundPoint strike_of(const KickSwing::Config& c, const Kick& kick) noexcept {
-  const double behind_m = c.ball_radius_m + c.tip_m;
-  return {kick.ball.x_m - behind_m * std::cos(kick.rad), kick.ball.y_m - behind_m * std::sin(kick.rad)};
-}
-
 // Along one axis, from one place to another in time_s, with these velocities there.
 double way(double from_m, double to_m, double from_m_s, double to_m_s, double share, double time_s) noexcept {
   const double d = to_m - from_m;
@@ -22,10 +17,16 @@ double way(double from_m, double to_m, double from_m_s, double to_m_s, double sh
 
 }  // namespace
 
+GroundPoint KickSwing::strike_of(const Config& c, const Kick& asked) noexcept {
+  const double behind_m = c.ball_radius_m + c.tip_m;
+  return {asked.ball.x_m - behind_m * std::cos(asked.rad), asked.ball.y_m - behind_m * std::sin(asked.rad)};
+}
+
 bool KickSwing::reaches(const Config& c, const Kick& asked, double side) noexcept {
+  if (!(asked.m_s > 0)) return false;
   const GroundPoint at = strike_of(c, asked);
   const double aside_m = side * at.y_m;
-  return asked.m_s > 0 && at.x_m >= c.near_m && at.x_m <= c.far_m && aside_m >= c.inside_m &&
+  return std::abs(asked.rad) <= c.rad_max && at.x_m >= c.near_m && at.x_m <= c.far_m && aside_m >= c.inside_m &&
          aside_m <= c.outside_m;
 }
 

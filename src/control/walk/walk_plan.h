@@ -77,7 +77,8 @@ class WalkPlan {
   struct Meant {
     Velocity velocity;         // now
     GroundPoint trim_m_s;      // added to it
-    GroundPoint step, offset;  // of the next landing; the offset is b
+    GroundPoint step, offset;  // of the next landing: where the other foot goes; the offset is b
+    double begun_x_m = 0;      // the offset that was meant at the last landing, forward
     double turn_rad = 0;       // by which the heading turns at the next landing
   };
   struct State {
@@ -90,8 +91,9 @@ class WalkPlan {
     Meant meant;
     GroundPoint dcm;  // over the stance foot
     double in_sole_x_m = 0;
-    KickSwing kick;             // of this step
-    std::uint32_t kicks = 0;    // that were made
+    KickSwing kick;           // of this step
+    bool prepares = false;    // the next step shall kick
+    std::uint32_t kicks = 0;  // that were made
   };
 
   void reset() noexcept { state_ = {}; }
@@ -112,6 +114,7 @@ class WalkPlan {
  private:
   void follow_wanted(const Config& config, const Wanted& wanted, double dt_s) noexcept;
   void look(const Config& config, const Sight& sight, double dt_s) noexcept;
+  void mean(const Config& config, const Sight& sight, const Kick& kick) noexcept;
   void choose(const Config& config, const Sight& sight) noexcept;
   void lead_foot(const Config& config) noexcept;
   void leave(const Sight& sight) noexcept;

@@ -1,0 +1,109 @@
+-- Goes to the ball that it sees, around it, and kicks it toward a place; again, when it is still on this side.
+local k = require "kadans"
+local ball = require "ball"
+local walk = require "walking"
+
+local P = k.params {
+  settle_s    = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
+  target_x_m  = { 4, min = -20, max = 20, unit = "m", doc = "where the ball shall go, counted from where it sets out" },
+  target_y_m  = { 0, min = -20, max = 20, unit = "m", doc = "to the left" },
+  beyond_m    = { 1, min = 0, max = 4, unit = "m", doc = "how far beyond it the kick would roll" },
+  roll_m_s2   = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
+  lost_s      = { 2, min = 0.1, max = 20, unit = "s", doc = "a ball not seen for so long is looked for" },
+}
+
+local behind_m, beside_m = 0.31, 0.09  -- where it stands to kick, from the ball
+local around_m = 0.6                   -- radius of the way around the ball
+
+local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
+local function within(value, most) return math.max(-most, math.min(most, value)) end
+
+-- Walks toward a place, facing it; `slow` near it.
+local function toward(m, at, x_m, y_m)
+  local turn_rad = angle(math.atan2(y_m - at.y_m, x_m - at.x_m) - at.heading_rad)
+  walk.go(m, walk.slowed { forward_m_s = 0.35 * math.max(0, math.cos(turn_rad)) ^ 3, turn_rad_s = within(1.5 * turn_rad, 0.6) })
+end
+
+-- Walks to a place near, with this heading.
+local function beside(m, at, x_m, y_m, heading_rad)
+  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
+  local ahead_m, left_m = c * (x_m - at.x_m) + n * (y_m - at.y_m), c * (y_m - at.y_m) - n * (x_m - at.x_m)
+  walk.go(m, walk.slowed {
+    forward_m_s = math.max(-0.15, math.min(0.25, 0.9 * ahead_m)),
+    left_m_s = within(1.2 * left_m, 0.12),
+    turn_rad_s = within(1.5 * angle(heading_rad - at.heading_rad), 0.5),
+  })
+end
+
+local function approach(m, b)
+  local at = walk.at(m)
+  local rad = math.atan2(P.target_y_m - b.y_m, P.target_x_m - b.x_m)
+  local ux, uy = math.cos(rad), math.sin(rad)
+  local behind = -(ux * (at.x_m - b.x_m) + uy * (at.y_m - b.y_m))  -- how far the robot is behind the ball
+  local left = ux * (at.y_m - b.y_m) - uy * (at.x_m - b.x_m)       -- and to the left of its way
+  m.vars.side = left > 0.04 and 1 or left < -0.04 and -1 or m.vars.side or 1
+  local x_m = b.x_m - behind_m * ux - m.vars.side * beside_m * uy
+  local y_m = b.y_m - behind_m * uy + m.vars.side * beside_m * ux
+  local off_m = math.sqrt((x_m - at.x_m) ^ 2 + (y_m - at.y_m) ^ 2)
+  if behind > 0.15 and math.abs(left) < 0.15 + 0.7 * (behind - 0.15) then
+    if off_m > 0.5 then
+      toward(m, at, x_m, y_m)
+    else
+      beside(m, at, x_m, y_m, rad)
+      if off_m < 0.2 and math.abs(angle(rad - at.heading_rad)) < 0.3 then
+        local far_m = math.sqrt((P.target_x_m - b.x_m) ^ 2 + (P.target_y_m - b.y_m) ^ 2) + P.beyond_m
+        walk.kick(m, b, rad, math.min(far_m, 4.5), P.roll_m_s2)
+      end
+    end
+    return
+  end
+  walk.keep(m)
+  local from_rad = math.atan2(left, behind)  -- about the ball, 0 behind it
+  local to_rad = from_rad - within(from_rad, 0.8)
+  local c, n = math.cos(to_rad), math.sin(to_rad)
+  toward(m, at, b.x_m - around_m * (c * ux + n * uy), b.y_m - around_m * (c * uy - n * ux))
+end
+
+local function look(m, s)
+  m.vars.known = m.vars.known or {}
+  local b = ball.watch(m, s, m.vars.known)
+  m.vars.sees = b ~= nil and s.time_s - b.seen_s < P.lost_s
+  return b
+end
+
+return k.behavior "go_to_ball" {
+  controls = "walking",
+  initial  = "set_out",
+
+  k.state "set_out" {
+    run = function(m)
+      m.posture:set_gains("stiff")
+      m.posture:move("set_out", { time_s = P.settle_s })
+      m:wait(P.settle_s)
+      walk.here(m, {})
+      m:wait(0.02)
+    end,
+    { on = "run.done", to = "search" },
+  },
+  k.state "search" {
+    enter = function(m) walk.go(m, { turn_rad_s = 0.6 }) end,
+    during = look,
+    { when = function(_, m) return m.vars.sees end, to = "approach" },
+  },
+  k.state "approach" {
+    enter = function(m) m.vars.armed, m.vars.kicked = false, false end,
+    during = function(m, s)
+      local b = look(m, s)
+      m.vars.kicked = m.vars.armed and not walk.kicks(m)
+      m.vars.armed = walk.kicks(m)
+      if not m.vars.kicked then approach(m, b) end
+    end,
+    { when = function(_, m) return m.vars.kicked end, to = "watch" },
+    { when = function(_, m) return not m.vars.sees end, to = "search", why = "lost" },
+  },
+  k.state "watch" {
+    enter = function(m) walk.go(m, {}) end,
+    during = look,
+    { after = 2, to = "approach" },
+  },
+}
