@@ -54,7 +54,7 @@ describe("walking", function()
     expect(walk.kick(m, { x_m = 0.3, y_m = 0.1 }, 0.2, 3, 0.28)).to_equal(true)
     expect(points.kick_x_m).to_equal(0.3)
     expect(points.kick_rad).to_be_near(0.2, 1e-9)
-    expect((0.6 * points.kick_m_s) ^ 2 / (2 * 0.28)).to_be_near(3, 1e-9)
+    expect((0.71 * points.kick_m_s) ^ 2 / (2 * 0.28)).to_be_near(3, 1e-9)
     expect(walk.kicks(m)).to_equal(true)
     points.heading_rad = 1
     local kicks, why = walk.kick(m, { x_m = 0.5, y_m = 0.1 }, 0.2, 3)

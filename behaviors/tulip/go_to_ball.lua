@@ -1,6 +1,7 @@
 -- Goes to the ball that it sees, around it, and kicks it toward a place; again, when it is still on this side.
 local k = require "kadans"
 local ball = require "ball"
+local floor = require "floor"
 local walk = require "walking"
 
 local P = k.params {
@@ -9,30 +10,19 @@ local P = k.params {
   target_y_m  = { 0, min = -20, max = 20, unit = "m", doc = "to the left" },
   beyond_m    = { 1, min = 0, max = 4, unit = "m", doc = "how far beyond it the kick would roll" },
   roll_m_s2   = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
+  watch_s     = { 2.5, min = 0.5, max = 20, unit = "s", doc = "how long it watches the ball that it kicked" },
   lost_s      = { 2, min = 0.1, max = 20, unit = "s", doc = "a ball not seen for so long is looked for" },
 }
 
-local behind_m, beside_m = 0.31, 0.09  -- where it stands to kick, from the ball
-local around_m = 0.6                   -- radius of the way around the ball
+local around_m = 0.6  -- radius of the way around the ball
 
 local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
 local function within(value, most) return math.max(-most, math.min(most, value)) end
 
--- Walks toward a place, facing it; `slow` near it.
+-- Walks toward a place, facing it.
 local function toward(m, at, x_m, y_m)
   local turn_rad = angle(math.atan2(y_m - at.y_m, x_m - at.x_m) - at.heading_rad)
   walk.go(m, walk.slowed { forward_m_s = 0.35 * math.max(0, math.cos(turn_rad)) ^ 3, turn_rad_s = within(1.5 * turn_rad, 0.6) })
-end
-
--- Walks to a place near, with this heading.
-local function beside(m, at, x_m, y_m, heading_rad)
-  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
-  local ahead_m, left_m = c * (x_m - at.x_m) + n * (y_m - at.y_m), c * (y_m - at.y_m) - n * (x_m - at.x_m)
-  walk.go(m, walk.slowed {
-    forward_m_s = math.max(-0.15, math.min(0.25, 0.9 * ahead_m)),
-    left_m_s = within(1.2 * left_m, 0.12),
-    turn_rad_s = within(1.5 * angle(heading_rad - at.heading_rad), 0.5),
-  })
 end
 
 local function approach(m, b)
@@ -41,15 +31,14 @@ local function approach(m, b)
   local ux, uy = math.cos(rad), math.sin(rad)
   local behind = -(ux * (at.x_m - b.x_m) + uy * (at.y_m - b.y_m))  -- how far the robot is behind the ball
   local left = ux * (at.y_m - b.y_m) - uy * (at.x_m - b.x_m)       -- and to the left of its way
-  m.vars.side = left > 0.04 and 1 or left < -0.04 and -1 or m.vars.side or 1
-  local x_m = b.x_m - behind_m * ux - m.vars.side * beside_m * uy
-  local y_m = b.y_m - behind_m * uy + m.vars.side * beside_m * ux
-  local off_m = math.sqrt((x_m - at.x_m) ^ 2 + (y_m - at.y_m) ^ 2)
+  if math.abs(left) > 0.04 then m.vars.side = left > 0 and -1 or 1 end  -- on its left: the ball is before the right foot
+  local place = walk.to_kick(b, rad, m.vars.side, rad)
+  local off_m = math.sqrt((place.x_m - at.x_m) ^ 2 + (place.y_m - at.y_m) ^ 2)
   if behind > 0.15 and math.abs(left) < 0.15 + 0.7 * (behind - 0.15) then
     if off_m > 0.5 then
-      toward(m, at, x_m, y_m)
+      toward(m, at, place.x_m, place.y_m)
     else
-      beside(m, at, x_m, y_m, rad)
+      walk.beside(m, place)
       if off_m < 0.2 and math.abs(angle(rad - at.heading_rad)) < 0.3 then
         local far_m = math.sqrt((P.target_x_m - b.x_m) ^ 2 + (P.target_y_m - b.y_m) ^ 2) + P.beyond_m
         walk.kick(m, b, rad, math.min(far_m, 4.5), P.roll_m_s2)
@@ -65,29 +54,38 @@ local function approach(m, b)
 end
 
 local function look(m, s)
-  m.vars.known = m.vars.known or {}
   local b = ball.watch(m, s, m.vars.known)
   m.vars.sees = b ~= nil and s.time_s - b.seen_s < P.lost_s
+  m.vars.there = b ~= nil and P.target_x_m * (b.x_m - P.target_x_m) + P.target_y_m * (b.y_m - P.target_y_m) > 0
   return b
 end
+
+-- Turns to where the ball was last.
+local function search(m)
+  local at, b = walk.at(m), m.vars.known
+  local turn_rad = b.x_m and angle(math.atan2(b.y_m - at.y_m, b.x_m - at.x_m) - at.heading_rad) or 1
+  walk.go(m, { turn_rad_s = turn_rad > 0 and 0.6 or -0.6 })
+end
+
+local function lies(s) return floor.lies(s.base) end
 
 return k.behavior "go_to_ball" {
   controls = "walking",
   initial  = "set_out",
+  vars     = { known = {}, side = 1, sees = false, there = false, armed = false, kicked = false, stands = false },
 
   k.state "set_out" {
     run = function(m)
       m.posture:set_gains("stiff")
       m.posture:move("set_out", { time_s = P.settle_s })
       m:wait(P.settle_s)
-      walk.here(m, {})
-      m:wait(0.02)
     end,
     { on = "run.done", to = "search" },
   },
   k.state "search" {
-    enter = function(m) walk.go(m, { turn_rad_s = 0.6 }) end,
+    enter = search,
     during = look,
+    { when = lies, to = "fallen", why = "lies" },
     { when = function(_, m) return m.vars.sees end, to = "approach" },
   },
   k.state "approach" {
@@ -98,12 +96,30 @@ return k.behavior "go_to_ball" {
       m.vars.armed = walk.kicks(m)
       if not m.vars.kicked then approach(m, b) end
     end,
+    exit = walk.keep,
+    { when = lies, to = "fallen", why = "lies" },
     { when = function(_, m) return m.vars.kicked end, to = "watch" },
     { when = function(_, m) return not m.vars.sees end, to = "search", why = "lost" },
   },
   k.state "watch" {
     enter = function(m) walk.go(m, {}) end,
     during = look,
-    { after = 2, to = "approach" },
+    { when = lies, to = "fallen", why = "lies" },
+    { when = function(_, m) return m.vars.there end, to = "stop", why = "the ball is there" },
+    { after = P.watch_s, to = "search" },
   },
+  k.state "stop" {
+    enter = walk.stop,
+    during = function(m) m.vars.stands = walk.stands(m) end,
+    { when = lies, to = "failed", why = "lies" },
+    { when = function(_, m) return m.vars.stands end, to = "done" },
+  },
+  k.state "fallen" {
+    enter = walk.stop,
+    k.call "get_up",
+    { on = "done", to = "set_out" },
+    { on = "failed", to = "failed" },
+  },
+  k.final "done" { outcome = "done" },
+  k.final "failed" { outcome = "failed" },
 }

@@ -32,7 +32,7 @@ TEST_CASE("KickSwing meets the ball with the tip of the foot, in the direction a
     const double x_m_s = (here_m[0] - before_m[0]) / moment_s, y_m_s = (here_m[1] - before_m[1]) / moment_s;
     CHECK(std::hypot(x_m_s, y_m_s) == doctest::Approx(straight.m_s).epsilon(0.01));
     CHECK(std::atan2(y_m_s, x_m_s) == doctest::Approx(rad).epsilon(0.01).scale(1));
-    CHECK(swing.yaw_rad(config, config.strike_s, config.step_s) == doctest::Approx(rad));
+    CHECK(swing.yaw_rad(config, config.strike_s) == doctest::Approx(rad));
   }
 }
 

@@ -49,9 +49,10 @@ Vec3 KickSwing::at(const Config& c, const Vec3& from_m, const GroundPoint& footh
           way(strike.y_m, foothold.y_m, y_m_s, 0, share, after_s), c.height_m * (1 - swing_way(share))};
 }
 
-double KickSwing::yaw_rad(const Config& c, double time_s, double step_s) const noexcept {
-  if (time_s < c.strike_s) return kick.rad * swing_way(time_s / (0.8 * c.strike_s));
-  return kick.rad * (1 - swing_way((time_s - c.strike_s) / std::max(step_s - c.strike_s, 0.01)));
+double KickSwing::yaw_rad(const Config& c, double time_s) const noexcept {
+  constexpr double still_share = 0.8, still_s = 0.05, back_s = 0.12;  // a foot that turns would spin the ball
+  if (time_s < c.strike_s + still_s) return kick.rad * swing_way(time_s / (still_share * c.strike_s));
+  return kick.rad * (1 - swing_way((time_s - c.strike_s - still_s) / back_s));
 }
 
 }  // namespace kadans

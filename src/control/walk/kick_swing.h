@@ -23,14 +23,14 @@ struct Kick {
 struct KickSwing {
   struct Config {
     double ball_radius_m = 0.095, tip_m = 0.14;  // of the foot, before its frame
-    double strike_s = 0.19, after_s = 0.1;     // from lift-off to the strike; least time from there to the landing
-    double step_s = 0.33;                      // time of the whole step
-    double follow_m = 0.06;                    // how far the foot goes on beyond the strike, forward
-    double lead_s = 0.025;                     // how far the reference is ahead, for the lag of the leg
-    double height_m = 0.045;                   // of the sole at the strike
-    double near_m = -0.04, far_m = 0.15;       // where the foot may be at the strike, forward
-    double rad_max = 0.6;                      // how far to a side it may go
-    double inside_m = 0.13, outside_m = 0.26;  // and to its side
+    double strike_s = 0.19, after_s = 0.1;       // from lift-off to the strike; least time from there to the landing
+    double step_s = 0.32;                        // time of the whole step
+    double follow_m = 0.03;                      // how far the foot goes on beyond the strike, forward
+    double lead_s = 0.025;                       // how far the reference is ahead, for the lag of the leg
+    double height_m = 0.045;                     // of the sole at the strike
+    double near_m = -0.04, far_m = 0.15;         // where the foot may be at the strike, forward
+    double rad_max = 0.6;                        // how far to a side it may go
+    double inside_m = 0.13, outside_m = 0.26;    // and to its side
   };
 
   // Where the foot is at the strike.
@@ -46,7 +46,7 @@ struct KickSwing {
   Vec3 at(const Config& config, const Vec3& from_m, const GroundPoint& foothold, double time_s,
           double step_s) const noexcept;
   // Where it points, of the heading.
-  double yaw_rad(const Config& config, double time_s, double step_s) const noexcept;
+  double yaw_rad(const Config& config, double time_s) const noexcept;
 
   Kick kick;
   GroundPoint strike;  // where the foot is then

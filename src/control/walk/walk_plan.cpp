@@ -205,7 +205,7 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
 double WalkPlan::other_yaw_rad(const Config& c) const noexcept {
   const State& s = state_;
   const double turn_rad = s.meant.turn_rad * swing_way(s.time_s / s.step_s);
-  return s.kick.kicks() ? turn_rad + s.kick.yaw_rad(c.kick, s.time_s + c.kick.lead_s, s.step_s) : turn_rad;
+  return s.kick.kicks() ? turn_rad + s.kick.yaw_rad(c.kick, s.time_s + c.kick.lead_s) : turn_rad;
 }
 
 void WalkPlan::turned(double by_rad) noexcept {
