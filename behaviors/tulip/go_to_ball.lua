@@ -68,6 +68,7 @@ local function search(m)
 end
 
 local function lies(s) return floor.lies(s.base) end
+local function there(_, m) return m.vars.there end
 
 return k.behavior "go_to_ball" {
   controls = "walking",
@@ -86,6 +87,7 @@ return k.behavior "go_to_ball" {
     enter = search,
     during = look,
     { when = lies, to = "fallen", why = "lies" },
+    { when = there, to = "stop", why = "the ball is there" },
     { when = function(_, m) return m.vars.sees end, to = "approach" },
   },
   k.state "approach" {
@@ -98,6 +100,7 @@ return k.behavior "go_to_ball" {
     end,
     exit = walk.keep,
     { when = lies, to = "fallen", why = "lies" },
+    { when = there, to = "stop", why = "the ball is there" },
     { when = function(_, m) return m.vars.kicked end, to = "watch" },
     { when = function(_, m) return not m.vars.sees end, to = "search", why = "lost" },
   },
@@ -105,7 +108,7 @@ return k.behavior "go_to_ball" {
     enter = function(m) walk.go(m, {}) end,
     during = look,
     { when = lies, to = "fallen", why = "lies" },
-    { when = function(_, m) return m.vars.there end, to = "stop", why = "the ball is there" },
+    { when = there, to = "stop", why = "the ball is there" },
     { after = P.watch_s, to = "search" },
   },
   k.state "stop" {

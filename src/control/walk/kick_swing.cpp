@@ -50,7 +50,7 @@ Vec3 KickSwing::at(const Config& c, const Vec3& from_m, const GroundPoint& footh
 }
 
 double KickSwing::yaw_rad(const Config& c, double time_s) const noexcept {
-  constexpr double still_share = 0.8, still_s = 0.05, back_s = 0.12;  // a foot that turns would spin the ball
+  constexpr double still_share = 0.8, still_s = 0.05, back_s = 0.2;  // a foot that turns would spin the ball
   if (time_s < c.strike_s + still_s) return kick.rad * swing_way(time_s / (still_share * c.strike_s));
   return kick.rad * (1 - swing_way((time_s - c.strike_s - still_s) / back_s));
 }
