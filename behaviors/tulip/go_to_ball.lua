@@ -8,13 +8,14 @@ local P = k.params {
   settle_s    = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
   target_x_m  = { 4, min = -20, max = 20, unit = "m", doc = "where the ball shall go, counted from where it sets out" },
   target_y_m  = { 0, min = -20, max = 20, unit = "m", doc = "to the left" },
-  beyond_m    = { 1, min = 0, max = 4, unit = "m", doc = "how far beyond it the kick would roll" },
+  beyond_m    = { 1.5, min = 0, max = 4, unit = "m", doc = "how far beyond it the kick would roll" },
   roll_m_s2   = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
   watch_s     = { 2.5, min = 0.5, max = 20, unit = "s", doc = "how long it watches the ball that it kicked" },
   lost_s      = { 2, min = 0.1, max = 20, unit = "s", doc = "a ball not seen for so long is looked for" },
 }
 
 local around_m = 0.6  -- radius of the way around the ball
+local there_m = 0.3   -- a ball that is so far beyond the target is there: what is seen is noisy
 
 local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
 local function within(value, most) return math.max(-most, math.min(most, value)) end
@@ -53,10 +54,16 @@ local function approach(m, b)
   toward(m, at, b.x_m - around_m * (c * ux + n * uy), b.y_m - around_m * (c * uy - n * ux))
 end
 
+-- How far the ball is beyond the target.
+local function beyond(b)
+  local x_m, y_m = P.target_x_m, P.target_y_m
+  return (x_m * (b.x_m - x_m) + y_m * (b.y_m - y_m)) / math.sqrt(x_m ^ 2 + y_m ^ 2)
+end
+
 local function look(m, s)
   local b = ball.watch(m, s, m.vars.known)
   m.vars.sees = b ~= nil and s.time_s - b.seen_s < P.lost_s
-  m.vars.there = b ~= nil and P.target_x_m * (b.x_m - P.target_x_m) + P.target_y_m * (b.y_m - P.target_y_m) > 0
+  m.vars.there = b ~= nil and beyond(b) > there_m
   return b
 end
 
