@@ -59,6 +59,34 @@ function walk.here(m, place)
   m.walk:set("heading_rad", place.heading_rad or 0)
 end
 
+-- What the kick can do: a ball that the foot meets at f m/s slides, then rolls at 0.71 f.
+-- The tip of the foot is foot_m behind the ball's middle, its frame before_m before the base's and beside_m beside it.
+local kick = { near_m = 0.3, far_m = 4.5, rad = 0.55, rolls = 0.71, foot_max_m_s = 2.8 }
+kick.foot_m, kick.before_m, kick.beside_m = 0.235, 0.07, 0.09
+
+-- Kicks the ball at { x_m =, y_m = }, in the frame of walk.at, toward rad, so that it rolls far_m on a ground that slows
+-- it by roll_m_s2 (0.28). The object kicks within a step, as soon as its steps bring a foot to the ball. To be called
+-- again when the ball is seen better. True, or nil and a sentence.
+function walk.kick(m, ball, rad, far_m, roll_m_s2)
+  local turned = math.atan2(math.sin(rad - walk.at(m).heading_rad), math.cos(rad - walk.at(m).heading_rad))
+  if not (math.abs(turned) <= kick.rad) then
+    return nil, string.format("it does not kick %.2f rad to the side, at most %.2f", turned, kick.rad)
+  end
+  if not (far_m >= kick.near_m and far_m <= kick.far_m) then
+    return nil, string.format("it does not kick a ball %g m far, but %g to %g", far_m, kick.near_m, kick.far_m)
+  end
+  m.walk:set("kick_x_m", ball.x_m)
+  m.walk:set("kick_y_m", ball.y_m)
+  m.walk:set("kick_rad", math.atan2(math.sin(rad), math.cos(rad)))
+  if m.walk:setpoint("kick_m_s") > 0 then return true end
+  m.walk:set("kick_m_s", math.min(kick.foot_max_m_s, math.sqrt(2 * (roll_m_s2 or 0.28) * far_m) / kick.rolls))
+  return true
+end
+
+-- Whether it still is to kick; not in the tick of walk.kick. walk.keep takes the kick back.
+function walk.kicks(m) return m.walk:setpoint("kick_m_s") > 0 end
+function walk.keep(m) m.walk:set("kick_m_s", 0) end
+
 local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
 local function within(value, most) return math.max(-most, math.min(most, value)) end
 
@@ -81,6 +109,29 @@ function walk.to(m, goal, near)
     turn_rad_s = within(1.2 * turn_rad, 0.4),
   })
   return false
+end
+
+-- Where it stands best to kick this ball toward rad, with the left foot (side 1) or the right one (-1), when it faces
+-- heading_rad.
+function walk.to_kick(ball, rad, side, heading_rad)
+  local c, n = math.cos(heading_rad), math.sin(heading_rad)
+  local x_m = ball.x_m - kick.foot_m * math.cos(rad) - kick.before_m * c + side * kick.beside_m * n
+  local y_m = ball.y_m - kick.foot_m * math.sin(rad) - kick.before_m * n - side * kick.beside_m * c
+  return { x_m = x_m, y_m = y_m, heading_rad = heading_rad }
+end
+
+-- In each tick: a step of the way to a place that is near, without turning away from the heading there. Returns how far
+-- it is.
+function walk.beside(m, place)
+  local at = walk.at(m)
+  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
+  local x_m, y_m = place.x_m - at.x_m, place.y_m - at.y_m
+  walk.go(m, walk.slowed {
+    forward_m_s = math.max(-0.15, math.min(0.25, 0.9 * (c * x_m + n * y_m))),
+    left_m_s = within(1.2 * (c * y_m - n * x_m), 0.12),
+    turn_rad_s = within(1.5 * angle(place.heading_rad - at.heading_rad), 0.5),
+  })
+  return math.sqrt(x_m ^ 2 + y_m ^ 2)
 end
 
 return walk

@@ -48,6 +48,26 @@ describe("walking", function()
     expect(walk.slowed({ forward_m_s = -0.4 }).forward_m_s).to_be_near(-0.2, 1e-6)
   end)
 
+  it("kicks as hard as the way asks for, and says what it does not do and then changes nothing", function()
+    local m, points = robot()
+    points.kick_m_s = 0
+    expect(walk.kick(m, { x_m = 0.3, y_m = 0.1 }, 0.2, 3, 0.28)).to_equal(true)
+    expect(points.kick_x_m).to_equal(0.3)
+    expect(points.kick_rad).to_be_near(0.2, 1e-9)
+    expect((0.71 * points.kick_m_s) ^ 2 / (2 * 0.28)).to_be_near(3, 1e-9)
+    expect(walk.kicks(m)).to_equal(true)
+    points.heading_rad = 1
+    local kicks, why = walk.kick(m, { x_m = 0.5, y_m = 0.1 }, 0.2, 3)
+    expect(kicks).to_equal(nil)
+    expect(why).to_contain "-0.80 rad to the side"
+    kicks, why = walk.kick(m, { x_m = 0.5, y_m = 0.1 }, 1, 9)
+    expect(kicks).to_equal(nil)
+    expect(why).to_contain "a ball 9 m far"
+    expect(points.kick_x_m).to_equal(0.3)
+    walk.keep(m)
+    expect(walk.kicks(m)).to_equal(false)
+  end)
+
   it("walks to a place behind and to the left, and turns there as it shall", function()
     local m, points = robot()
     local dt_s, there = 0.01, false

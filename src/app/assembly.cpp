@@ -99,6 +99,14 @@ void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
 
 }  // namespace
 
+PlantVariant plant_variant(const ScenarioConfig& scenario, const RobotConfig& robot) {
+  PlantVariant variant{.model = robot.model, .plant = robot.plant};
+  variant.plant.world = world_for(scenario.world, robot.model, scenario.file);
+  variant.sees = !scenario.sight.ball.name.empty();
+  variant.sight = scenario.sight.settings;
+  return variant;
+}
+
 std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept) {
@@ -137,6 +145,7 @@ Assembly::Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, Ru
       robot_(read_robot(scenario.robot, scenario.plugins)) {
   control_system_ = make_control_system(robot_);
   robot_.config.engine.joystick = has_joystick(scenario, robot_.config);
+  robot_.config.engine.sight = !scenario.sight.ball.name.empty();
   try {
     vary();
   } catch (const std::invalid_argument& error) {
@@ -204,6 +213,7 @@ void Assembly::complete() {
   if (host_) faulty_host_ = make_faulty_host(scenario_, *host_);
   disturbances_ = std::make_unique<Disturbances>(scenario_, robot_.config.model);
   make_joystick_player();
+  make_sight();
   make_behaviors();
 }
 
@@ -223,9 +233,7 @@ void Assembly::show_others() {
 // draws.
 void Assembly::vary() {
   const RobotConfig& config = robot_.config;
-  variant_.model = config.model;
-  variant_.plant = config.plant;
-  variant_.plant.world = world_for(scenario_.world, config.model, scenario_.file);
+  variant_ = plant_variant(scenario_, config);
   if (!scenario_.start_pose.name.empty()) start_in_pose();
   Problems problems(scenario_.file);
   Quantities quantities(variant_, control_system_->catalog, number_ > 0);
@@ -358,6 +366,13 @@ void Assembly::make_joystick_player() {
   }
 }
 
+void Assembly::make_sight() {
+  if (!variant_.sees) return;
+  const auto& objects = variant_.plant.world.objects;
+  const auto ball = std::ranges::find(objects, scenario_.sight.ball.name, &WorldObject::name);
+  sight_ = std::make_unique<SimulatedSight>(variant_.sight, static_cast<std::size_t>(ball - objects.begin()), seed_);
+}
+
 BehaviorHost& Assembly::played() noexcept {
   if (faulty_host_) return *faulty_host_;
   return outside_ != nullptr ? static_cast<BehaviorHost&>(*outside_) : *host_;
@@ -392,6 +407,7 @@ RunParts Assembly::parts_in(Lockstep& lockstep) {
                  .log = log_,
                  .disturbances = disturbances_.get(),
                  .joystick = joystick_.get(),
+                 .sight = sight_.get(),
                  .upkeep_first = static_cast<SignalId>(upkeep_first_),
                  .upkeep_count = upkeep_count_,
                  .name = number_ == 0 ? "" : scenario_.name,

@@ -62,6 +62,9 @@ imu::SerialImuSettings serial_imu_at(const RobotConfig& robot, const PlantType& 
 std::unique_ptr<Plant> make_bus(const RobotConfig& robot, const PlantType& type, const std::string& peer,
                                 const std::string& imu);
 
+// The plant as the files have it: no start pose, nothing set or drawn.
+PlantVariant plant_variant(const ScenarioConfig& scenario, const RobotConfig& robot);
+
 class Assembly {
  public:
   // Reads the robot and the behaviors that the scenario names. Throws InputError with all mistakes. `log`, `link` and
@@ -122,6 +125,7 @@ class Assembly {
   WorldRobot& world_robot() noexcept;
   const TruthSource* truth_source() noexcept;
   void make_joystick_player();
+  void make_sight();
   void make_behaviors();
   BehaviorHost& played() noexcept;
 
@@ -159,6 +163,7 @@ class Assembly {
   std::unique_ptr<Lockstep> lockstep_;
   std::unique_ptr<Disturbances> disturbances_;
   std::unique_ptr<JoystickSource> joystick_;
+  std::unique_ptr<SimulatedSight> sight_;
 };
 
 }  // namespace kadans

@@ -16,6 +16,7 @@ struct EngineSettings {
   std::uint32_t commands_per_tick_max = max_transaction;
   double command_age_max_s = 0.1;  // older transactions are refused
   bool joystick = false;           // the joystick is recorded
+  bool sight = false;              // what perception sees is recorded
 
   std::int64_t control_period_ns() const noexcept { return std::llround(control_period_s * 1e9); }
   std::int64_t behavior_time_max_ns() const noexcept {

@@ -14,6 +14,7 @@
 #include "scenario/disturb/planned_faults.h"
 #include "scenario/judge/checks.h"
 #include "scenario/judge/truth_signals.h"
+#include "simulated_sight.h"
 
 namespace kadans {
 
@@ -61,6 +62,7 @@ struct RunParts {
   RunLog& log;
   Disturbances* disturbances = nullptr;
   JoystickSource* joystick = nullptr;
+  SimulatedSight* sight = nullptr;
   // Signals about the interpreter's own needs (memory, instructions, pauses). They are not part of the state hash,
   // because memory depends on the machine.
   SignalId upkeep_first = 0;
@@ -69,7 +71,7 @@ struct RunParts {
   const FaultyPlant* faulty = nullptr;  // of a further robot; nullptr: its plant has no faults
   std::vector<RunParts> others{};       // of the world's further robots; their signals are among the first robot's
 
-  // What comes before a step: the truth of each robot as signals, disturbances, the joystick.
+  // What comes before a step: the truth of each robot as signals, disturbances, the joystick, perception.
   void begin_step() const;
 };
 

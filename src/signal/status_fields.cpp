@@ -101,6 +101,14 @@ constexpr StatusField fields[] = {
     {joystick, flag, "connected", "", "Whether a joystick is connected",
      [](Snapshot& s, std::size_t) -> Place { return s.joystick.connected; }},
 
+    {ball, number, "x_m", "m", "Where it was seen, ahead of the trunk; NaN until it is seen",
+     [](Snapshot& s, std::size_t) -> Place { return s.ball.x_m; }},
+    {ball, number, "y_m", "m", "Left of the trunk", [](Snapshot& s, std::size_t) -> Place { return s.ball.y_m; }},
+    {ball, number, "age_s", "s", "Time since the picture in which it was seen; NaN until it is seen",
+     [](Snapshot& s, std::size_t) -> Place { return s.ball.age_s; }},
+    {ball, number, "confidence", "", "How certain it was, 0..1; 0 until it is seen",
+     [](Snapshot& s, std::size_t) -> Place { return s.ball.confidence; }},
+
     {root, number, "time_s", "s", "Time on the engine's clock", nullptr},
     {root, number, "tick", "", "Number of the control engine's tick",
      [](Snapshot& s, std::size_t) -> Place { return s.tick; }},

@@ -34,7 +34,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 67> breakages = {{
+constexpr std::array<Breakage, 70> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -103,6 +103,9 @@ constexpr std::array<Breakage, 67> breakages = {{
     {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},
     {"touched_feet", "behaviors/hanging/touched.lua", "c:use(\"held\")", "c:use(\"loose\")",
      "held in the tick of a contact, loose in the tick after the last one"},
+    {"kick", "behaviors/lib/walking.lua", "rolls = 0.71", "rolls = 1.1", "the ball goes, m"},
+    {"kick", "behaviors/tulip/kick.lua", "P.rad, P.far_m", "P.rad + 0.4, P.far_m", "the ball goes straight, m"},
+    {"go_to_ball", "behaviors/lib/ball.lua", "c * seen.x_m - n * seen.y_m", "c * seen.x_m + n * seen.y_m", "a goal"},
     {"walk", robot, "\"lift_m\": 0.03279", "\"lift_m\": 0", "goes forward, m"},
     {"walk", "", "for_s=6", "for_s=60", "stands still at the end"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},

@@ -45,6 +45,48 @@ Robot torso_with_arm(double gap_m) {
 
 }  // namespace
 
+TEST_CASE("On soft ground a box sinks by its weight over the stiffness of its four corners, and comes to rest") {
+  for (const double stiffness_N_per_m : {2000.0, 1e6}) {
+    Robot robot = box(4, {0.22, 0.1, 0.03});
+    robot.settings.ground_stiffness_N_per_m = stiffness_N_per_m;
+    robot.settings.ground_damping_Ns_per_m = 30;
+    BulletWorld plant(robot.model, robot.settings, 1);
+    run(plant, 2000);
+    CHECK(0.015 - plant.truth().base.position_m[2] == doctest::Approx(4 * g / (4 * stiffness_N_per_m)).epsilon(1e-3));
+    CHECK(std::abs(plant.truth().base_velocity_m_s[2]) < 1e-5);
+    CHECK(plant.truth().foot_force_N[0][2] == doctest::Approx(4 * g).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("Soft ground without damping swings a box at its own frequency, and gains no energy") {
+  Robot robot = box(4, {0.22, 0.1, 0.03});
+  robot.settings.ground_stiffness_N_per_m = 1000;
+  BulletWorld plant(robot.model, robot.settings, 1);
+  double lowest_m = 1;
+  int lowest_tick = 0;
+  for (int tick = 0; tick < 150; ++tick) {
+    plant.step(1'000'000);
+    if (plant.truth().base.position_m[2] >= lowest_m) continue;
+    lowest_m = plant.truth().base.position_m[2];
+    lowest_tick = tick;
+  }
+  CHECK(0.001 * lowest_tick == doctest::Approx(M_PI / std::sqrt(4 * 1000 / 4.0)).epsilon(0.05));  // half a period
+  CHECK(0.015 - lowest_m < 2 * 4 * g / (4 * 1000) + 1e-4);
+  CHECK(0.015 - lowest_m > 1.8 * 4 * g / (4 * 1000));
+}
+
+TEST_CASE("A ground that gives speed back lets a box hop, a hard one without does not") {
+  for (const double restitution : {0.0, 0.6}) {
+    Robot robot = box(4, {0.22, 0.1, 0.03});
+    robot.settings.ground_restitution = restitution;
+    robot.settings.stand_on_ground = false;
+    robot.settings.base.position_m = {0, 0, 0.215};
+    BulletWorld plant(robot.model, robot.settings, 1);
+    run(plant, 203);  // it has just landed at 1.98 m/s
+    CHECK(plant.truth().base_velocity_m_s[2] == doctest::Approx(restitution * 1.98).epsilon(0.05).scale(1));
+  }
+}
+
 TEST_CASE("A box rests at its own height and its foot sensors carry m g") {
   Robot robot = box(4, {0.22, 0.1, 0.03});
   BulletWorld plant(robot.model, robot.settings, 1);

@@ -210,6 +210,23 @@ TEST_CASE("Rolling friction slows a ball by 5/7 g times lever arm over radius, a
   CHECK(std::abs(plant.truth().objects[0].pose.position_m[0] - rest_m) < 1e-6);
 }
 
+TEST_CASE("A ball that rolls askew to the world's axes is slowed as much, and goes straight on") {
+  Robot robot = foot();
+  WorldBall shape{.radius_m = 0.1, .mass_kg = 0.45, .rolling_friction_m = 0.005};
+  const double heading_rad = 0.4;
+  shape.velocity_m_s = {std::cos(heading_rad), std::sin(heading_rad), 0};
+  robot.settings.world.objects = {object("ball", shape, {1, 1, 0.1})};
+  BulletWorld plant(robot.model, robot.settings, 1);
+  run(plant, 300);
+  const Vec3 before = plant.truth().objects[0].velocity_m_s;
+  run(plant, 500);
+  const Vec3& after = plant.truth().objects[0].velocity_m_s;
+  CHECK(length(before) - length(after) == doctest::Approx(0.5 * 5.0 / 7 * g * 0.005 / 0.1).epsilon(0.01));
+  run(plant, 3000);
+  const Vec3& rest_m = plant.truth().objects[0].pose.position_m;
+  CHECK(std::atan2(rest_m[1] - 1, rest_m[0] - 1) == doctest::Approx(heading_rad).epsilon(0.002));
+}
+
 TEST_CASE("A ball bounces with its restitution") {
   Robot robot = foot();
   robot.settings.world.objects = {object("ball", WorldBall{0.1, 0.45, 0, 0.8}, {1, 1, 1.1})};

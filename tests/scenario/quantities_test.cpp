@@ -69,6 +69,26 @@ TEST_CASE("Quantities change the plant and the control objects' parameters, by n
   CHECK(robot.done[1].name == "joint.l_knee.torque_scale");
 }
 
+TEST_CASE("Quantities change the ground, and where a ball lies and how it rolls") {
+  Robot robot;
+  robot.variant.plant.world.objects.push_back({.name = "ball", .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4}});
+  robot.variant.sees = true;
+  robot.set("ground.stiffness_N_per_m", 5000);
+  robot.set("ground.damping_Ns_per_m", 40);
+  robot.set("ground.restitution", 0.2);
+  robot.set("world.ball.x_m", 1.5);
+  robot.set("world.ball.rolling_friction_m", 0.004);
+  robot.set("sight.latency_s", 0.2);
+  CHECK(robot.refusal().empty());
+  CHECK(robot.variant.plant.ground_stiffness_N_per_m == 5000);
+  CHECK(robot.variant.plant.ground_damping_Ns_per_m == 40);
+  CHECK(robot.variant.plant.ground_restitution == 0.2);
+  const WorldObject& ball = robot.variant.plant.world.objects[0];
+  CHECK(ball.pose.position_m[0] == 1.5);
+  CHECK(std::get<WorldBall>(ball.shape).rolling_friction_m == 0.004);
+  CHECK(robot.variant.sight.latency_s == 0.2);
+}
+
 TEST_CASE("An unknown quantity and a value out of range are refused at their places") {
   Robot unknown;
   unknown.set("ground.fricton", 0.3);

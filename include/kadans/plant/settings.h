@@ -71,6 +71,9 @@ struct PlantSettings {
   std::vector<SensorChannel> channels;    // sensors other than joints, IMU and feet
   std::vector<SurfaceSettings> surfaces;  // links not named have friction 0.5
   double ground_friction = 1.0;           // a contact's friction is the product of both
+  double ground_restitution = 0;          // of a contact, the greater of both
+  // Of a soft ground, such as grass, under each point of contact (a sole has four); 0 N/m: hard.
+  double ground_stiffness_N_per_m = 0, ground_damping_Ns_per_m = 0;
   Vec3 gravity_m_s2{0, 0, -9.81};
   ContactSolver solver = ContactSolver::tree;
   int solver_iterations = 10;

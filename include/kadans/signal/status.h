@@ -12,6 +12,7 @@
 #include "kadans/signal/fault.h"
 #include "kadans/signal/frames.h"
 #include "kadans/signal/joystick.h"
+#include "kadans/signal/sight.h"
 
 namespace kadans {
 
@@ -125,6 +126,7 @@ struct alignas(8) Snapshot {
   std::array<Refusal, refusals_shown> refusals{};               // the newest; number n is at n modulo refusals_shown
   std::array<ArmedStatus, max_armed> armed{};
   JoystickState joystick;
+  SeenBall ball;
   PowerStatus power;
 };
 
@@ -154,6 +156,7 @@ inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
   to.refusals = from.refusals;
   to.armed = from.armed;
   to.joystick = from.joystick;
+  to.ball = from.ball;
   to.power.supply_V = from.power.supply_V;
   to.power.emergency = from.power.emergency;
   copy_first(from.power.drives, from.joints.count, to.power.drives);
@@ -165,7 +168,7 @@ static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 &&
               alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 112 && offsetof(Snapshot, joints) == 32);
 static_assert(sizeof(DriveStatus) == 12 && sizeof(PowerStatus) == 16 + 12 * max_joints);
-static_assert(sizeof(Snapshot) ==
-              5848 + 32 * max_feet + 24 * new_faults_shown);  // a new field also belongs in copy_used()
+static_assert(sizeof(Snapshot) == 5848 + 32 * max_feet + sizeof(SeenBall) +
+                                      24 * new_faults_shown);  // a new field also belongs in copy_used()
 
 }  // namespace kadans

@@ -86,6 +86,8 @@ class Sensors final : public SnapshotFilter {
         return only("safety");
       case joystick:
         return only("joystick");
+      case ball:
+        return only("seen.ball");
       case sensors:
         return only("sensors");
       case root:

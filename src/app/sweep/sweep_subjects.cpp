@@ -40,9 +40,9 @@ std::vector<double> ends_of(const Distribution& distribution) {
   return {distribution.at(0), distribution.at(1)};
 }
 
-void verify_ranges(const ExperimentConfig& plan, const Robot& robot, Problems& problems) {
+void verify_ranges(const ExperimentConfig& plan, const ScenarioConfig& scenario, const Robot& robot, Problems& problems) {
   const auto system = make_control_system(robot);
-  PlantVariant variant{.model = robot.config.model, .plant = robot.config.plant};
+  PlantVariant variant = plant_variant(scenario, robot.config);
   Quantities quantities(variant, system->catalog);
   for (const ExperimentAxis& axis : plan.vary) {
     const auto& [pattern, distribution] = axis.variation;
@@ -59,7 +59,7 @@ SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig&
   ScenarioConfig scenario = read_scenario_config(named.file);
   scenario.plugins = gate;
   const Robot robot = read_robot(scenario.robot, scenario.plugins);
-  verify_ranges(plan, robot, problems);
+  verify_ranges(plan, scenario, robot, problems);
   RunLog log;
   const Assembly assembly(scenario, plan.seed, log);
   const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file, assembly.signal_states());
@@ -67,7 +67,7 @@ SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig&
     problems.add(InputError(problem));
   const Metrics metrics(assembly.catalog().signals, plan.metrics, plan.file, assembly.signal_states());
   const auto system = make_control_system(robot);
-  PlantVariant variant{.model = robot.config.model, .plant = robot.config.plant};
+  PlantVariant variant = plant_variant(scenario, robot.config);
   return {.scenario = named,
           .name = scenario.name,
           .wall_limit_s = scenario.wall_limit_s,

@@ -331,6 +331,11 @@ void RobotReader::plant(Fields& f) {
   f.map("collisions", "how links collide, by link pattern", [&](Fields& entry) { collision(entry); });
   f.number("ground_friction", plant.ground_friction, {0, 10},
            "coefficient of friction of the ground; a contact's coefficient is the product of those of both surfaces");
+  f.number("ground_restitution", plant.ground_restitution, {0, 1}, "share of the speed that the ground gives back");
+  f.number("ground_stiffness_N_per_m", plant.ground_stiffness_N_per_m, {0, 1e7, "N/m"},
+           "of soft ground, under each point of contact (a sole has four); 0: hard");
+  f.number("ground_damping_Ns_per_m", plant.ground_damping_Ns_per_m, {0, 1e5, "N s/m"},
+           "damping of soft ground, under each point of contact");
   f.numbers("gravity_m_s2", plant.gravity_m_s2, {-100, 100, "m/s2"}, "gravity in world axes");
   static const std::vector<std::string> solvers{"tree", "stock"};
   f.choice("solver", plant.solver, solvers, "solver of contacts and joint laws: the one of this project, or Bullet's");

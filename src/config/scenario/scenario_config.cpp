@@ -280,6 +280,18 @@ void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
         [&](Fields& e) { button_fields(e, joystick.buttons, problems); });
 }
 
+void sight_fields(Fields& f, ScenarioSight& sight, const WorldConfig& world, Problems& problems) {
+  f.string("ball", sight.ball.name, "the object of the world that behaviors see as s.seen.ball", Need::required);
+  sight.ball.place = f.place("ball");
+  for (const SightRange& range : sight_ranges)
+    f.number(range.name, sight.settings.*range.value, {range.min, range.max, range.unit}, range.doc);
+  if (!f.reading() || !f.has("ball")) return;
+  std::vector<std::string> names;
+  for (const WorldObject& object : world.settings.objects) names.push_back(object.name);
+  if (std::ranges::find(names, sight.ball.name) == names.end())
+    problems.add_unknown(sight.ball.place, "object", sight.ball.name, names);
+}
+
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
@@ -306,6 +318,8 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   world_fields(f, scenario.world, problems);
   f.object("joystick", "a joystick that is played from a recording",
            [&](Fields& e) { joystick_fields(e, scenario, problems); });
+  f.object("sight", "simulated perception of a ball",
+           [&](Fields& e) { sight_fields(e, scenario.sight, scenario.world, problems); });
   f.list("checks", {0, 1000}, "checks that must hold", [&](Fields& e) {
     ScenarioCheck check;
     check_fields(e, check, scenario.duration_s, scenario.checks, problems);

@@ -1,6 +1,7 @@
 // A scenario in one JSON file: robots, a plant, the behaviors that play, what happens, and the checks that must hold.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -102,6 +103,37 @@ struct ScenarioJoystick {
   std::vector<InputEvent> buttons{};                           // in place of the robot's for the same buttons
 };
 
+// Perception that is simulated (simulated_sight.h). The numbers are quantities, too.
+struct SightSettings {
+  double rate_Hz = 15;
+  double latency_s = 0.1;
+  double distance_noise = 0.05;  // standard deviation, per distance
+  double bearing_noise_rad = 0.02;
+  double missed = 0.1;  // share of the pictures
+  double view_rad = 2;  // opening angle, about straight ahead
+  double far_m = 6;
+};
+struct SightRange {
+  const char* name;
+  double SightSettings::*value;
+  double min, max;
+  const char* unit;
+  const char* doc;
+};
+inline constexpr std::array<SightRange, 7> sight_ranges{
+    {{"rate_Hz", &SightSettings::rate_Hz, 0.1, 100, "Hz", "pictures in a second"},
+     {"latency_s", &SightSettings::latency_s, 0, 1, "s", "from a picture to what it says"},
+     {"distance_noise", &SightSettings::distance_noise, 0, 1, "", "standard deviation of a distance, per distance"},
+     {"bearing_noise_rad", &SightSettings::bearing_noise_rad, 0, 1, "rad", "standard deviation of a direction"},
+     {"missed", &SightSettings::missed, 0, 1, "", "share of the pictures that miss the ball"},
+     {"view_rad", &SightSettings::view_rad, 0, 6.3, "rad", "opening angle of the field of view, about straight ahead"},
+     {"far_m", &SightSettings::far_m, 0.1, 100, "m", "the furthest that it sees"}}};
+
+struct ScenarioSight {
+  PlacedName ball;  // an object of the world; "": nothing is seen
+  SightSettings settings;
+};
+
 // Which plug-ins the robot may load. Plug-ins that a record from elsewhere names are not trusted.
 struct PluginGate {
   bool closed = false;
@@ -136,6 +168,7 @@ struct ScenarioConfig {
   std::vector<ScenarioFault> faults;
   WorldConfig world;
   ScenarioJoystick joystick;
+  ScenarioSight sight;
   std::string joystick_device;  // not in the file: device of a run on the wall clock
   bool on_wall_clock = false;   // not in the file: time goes on while a behavior is slow
   std::vector<ScenarioCheck> checks;

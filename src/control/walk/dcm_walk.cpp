@@ -11,6 +11,7 @@ namespace kadans {
 namespace {
 
 constexpr double walk_rate_max_rad_s = 7;
+constexpr double kick_rate_max_rad_s = 15;
 constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
 enum Channel : std::uint32_t {
   forward_channel,
@@ -20,6 +21,10 @@ enum Channel : std::uint32_t {
   x_channel,
   y_channel,
   heading_channel,
+  kick_x_channel,
+  kick_y_channel,
+  kick_rad_channel,
+  kick_channel,
   channels
 };
 
@@ -108,12 +113,32 @@ void DcmWalk::declare_plan(Declaration& d) {
   d.parameter({"heel_m", "m", 0.001, 0.5, c.sole.heel_m, "Of the sole that may bear, behind the foot's frame."},
               &c.sole.heel_m);
   d.parameter({"toe_m", "m", 0.001, 0.5, c.sole.toe_m, "Before it."}, &c.sole.toe_m);
+  declare_kick(d);
+}
+
+void DcmWalk::declare_kick(Declaration& d) {
+  KickSwing::Config& c = plan_config_.kick;
+  d.parameter({"kick.ball_radius_m", "m", 0.02, 0.3, c.ball_radius_m, "Of the ball that it kicks."}, &c.ball_radius_m);
+  d.parameter({"kick.tip_m", "m", 0, 0.5, c.tip_m, "How far the tip of a foot is before its frame."}, &c.tip_m);
+  d.parameter({"kick.strike_s", "s", 0.05, 1, c.strike_s, "From lift-off to the strike."}, &c.strike_s);
+  d.parameter({"kick.after_s", "s", 0.02, 1, c.after_s, "Least time from there to the landing."}, &c.after_s);
+  d.parameter({"kick.step_s", "s", 0.1, 2, c.step_s, "Time of the step that kicks."}, &c.step_s);
+  d.parameter({"kick.follow_m", "m", 0, 0.5, c.follow_m, "How far the foot goes on beyond the strike, forward."},
+              &c.follow_m);
+  d.parameter({"kick.lead_s", "s", 0, 0.1, c.lead_s, "How far the reference is ahead, for the lag of the leg."},
+              &c.lead_s);
+  d.parameter({"kick.height_m", "m", 0, 0.2, c.height_m, "Of the sole at the strike."}, &c.height_m);
+  d.parameter({"kick.near_m", "m", -0.5, 0.5, c.near_m, "Where the foot may be at the strike, at least."}, &c.near_m);
+  d.parameter({"kick.far_m", "m", -0.5, 0.5, c.far_m, "Likewise, at most."}, &c.far_m);
+  d.parameter({"kick.inside_m", "m", 0, 1, c.inside_m, "Likewise to the side of the other foot, at least."},
+              &c.inside_m);
+  d.parameter({"kick.outside_m", "m", 0, 1, c.outside_m, "Likewise, at most."}, &c.outside_m);
 }
 
 void DcmWalk::declare_signals(Declaration& d) {
   const auto setpoint = [&](const char* name, const char* unit, double min, double max, const char* doc,
                             std::uint32_t channel) {
-    const double safe = channel == go_channel ? 0 : std::numeric_limits<double>::quiet_NaN();
+    const double safe = channel == go_channel || channel == kick_channel ? 0 : std::numeric_limits<double>::quiet_NaN();
     d.setpoint({.name = name,
                 .unit = unit,
                 .min = min,
@@ -130,6 +155,10 @@ void DcmWalk::declare_signals(Declaration& d) {
   setpoint("x_m", "m", -1e4, 1e4, "Where the base is by its steps; setting it sets it there.", x_channel);
   setpoint("y_m", "m", -1e4, 1e4, "Likewise, to the left.", y_channel);
   setpoint("heading_rad", "rad", -std::numbers::pi, std::numbers::pi, "Likewise, its heading.", heading_channel);
+  setpoint("kick_x_m", "m", -1e4, 1e4, "Where the ball to be kicked is.", kick_x_channel);
+  setpoint("kick_y_m", "m", -1e4, 1e4, "Likewise, to the left.", kick_y_channel);
+  setpoint("kick_rad", "rad", -std::numbers::pi, std::numbers::pi, "Where the ball shall go.", kick_rad_channel);
+  setpoint("kick_m_s", "m/s", 0, 3, "Speed of the foot; 0: no kick. Reads 0 when the ball was kicked.", kick_channel);
   const WalkPlan::State& s = plan_.state();
   d.signal({"phase", "", "0 stands, 1 sways, 2 steps, 3 bears; -1 has given up."}, &phase_number_);
   d.signal({"stance", "", "The foot that stands: 0 left, 1 right."}, &stance_number_);
@@ -148,6 +177,7 @@ void DcmWalk::declare_signals(Declaration& d) {
   d.signal({"pressure_x_m", "m", "Centre of pressure asked for, forward of the stance foot's frame."}, &s.in_sole_x_m);
   d.signal({"trim_x_m_s", "m/s", "Correction of the speed forward."}, &s.meant.trim_m_s.x_m);
   d.signal({"trim_y_m_s", "m/s", "Likewise to the left."}, &s.meant.trim_m_s.y_m);
+  d.signal({"kicks", "", "Kicks since it set out."}, &s.kicks);
   d.signal({"x_m", "m", "Where the base is by its steps."}, &odometry_.x_m);
   d.signal({"y_m", "m", "Where the base is by its steps, to the left."}, &odometry_.y_m);
   d.signal({"heading_rad", "rad", "Its heading."}, &odometry_.heading_rad);
@@ -176,7 +206,11 @@ bool DcmWalk::setpoint_state(std::uint32_t channel, SetpointState& state) const 
                                             stands() ? 0.0 : 1.0,
                                             odometry_.x_m,
                                             odometry_.y_m,
-                                            odometry_.heading_rad};
+                                            odometry_.heading_rad,
+                                            ball_.ball.x_m,
+                                            ball_.ball.y_m,
+                                            ball_.rad,
+                                            ball_.m_s};
   state = {.value = values[channel]};
   return true;
 }
@@ -187,6 +221,10 @@ void DcmWalk::follow(std::uint32_t channel, const SetpointState& state) noexcept
   if (channel == left_channel) wanted_.velocity.left_m_s = state.value;
   if (channel == turn_channel) wanted_.velocity.turn_rad_s = state.value;
   if (channel == go_channel) wanted_.go = state.value >= 0.5;
+  if (channel == kick_x_channel) ball_.ball.x_m = state.value;
+  if (channel == kick_y_channel) ball_.ball.y_m = state.value;
+  if (channel == kick_rad_channel) ball_.rad = state.value;
+  if (channel == kick_channel) ball_.m_s = state.value;
   if (channel == x_channel) o.foot_x_m += state.value - o.x_m, o.x_m = state.value;
   if (channel == y_channel) o.foot_y_m += state.value - o.y_m, o.y_m = state.value;
   if (channel == heading_channel) {  // the base stays where it is, the foot goes round it
@@ -212,6 +250,18 @@ void DcmWalk::reckon(const ControlInput& input, bool new_stance) noexcept {
   }
   o.x_m = o.foot_x_m - x_m;
   o.y_m = o.foot_y_m - y_m;
+}
+
+// The ball as the plan has it: from the foot that stands, in the heading frame.
+void DcmWalk::see_ball() noexcept {
+  wanted_.kick = {};
+  if (!(ball_.m_s > 0)) return;
+  const Odometry& o = odometry_;
+  const double frame_rad = o.heading_rad - over_feet_.yaw_rad();
+  const double c = std::cos(frame_rad), n = std::sin(frame_rad);
+  const double x_m = ball_.ball.x_m - o.foot_x_m, y_m = ball_.ball.y_m - o.foot_y_m;
+  wanted_.kick = {
+      {c * x_m + n * y_m, c * y_m - n * x_m}, std::remainder(ball_.rad - frame_rad, 2 * std::numbers::pi), ball_.m_s};
 }
 
 void DcmWalk::let_go(ActuationFrame& actuation) noexcept {
@@ -247,8 +297,11 @@ void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcep
   }
   feel_ground(input.dt_s);
   reckon(input, false);
+  see_ball();
+  const std::uint32_t kicks = plan_.state().kicks;
   if (plan_.advance(plan_config_, wanted_, sight(input), input.dt_s)) landed(input);
   const WalkPlan::State& s = plan_.state();
+  if (s.kicks != kicks) ball_.m_s = 0;
   phase_number_ = static_cast<double>(s.phase);
   stance_number_ = static_cast<double>(s.stance);
   if (s.phase != WalkPlan::Phase::steps) {
@@ -347,11 +400,10 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
       slope_.x_m * s.feet.at_m[0] - slope_.y_m * s.feet.at_m[1];
   const Vec3 way_m{over.foot_m[0] + s.feet.at_m[0] - swing_hip_m[0], over.foot_m[1] + s.feet.at_m[1] - swing_hip_m[1],
                    over.foot_m[2] + s.feet.at_m[2] - swing_hip_m[2] - risen_m};
-  const double next_yaw_rad = s.meant.turn_rad * swing_way(s.time_s / s.step_s);
-  LegInverse::Angles swing_rad =
-      swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m), next_yaw_rad - over_feet_.yaw_rad());
+  LegInverse::Angles swing_rad = swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m),
+                                                      plan_.other_yaw_rad(plan_config_) - over_feet_.yaw_rad());
   swing_rad[ankle_pitch] -= input.status.base.pitch_rad + slope_.x_m;
-  swing.aim(swing_rad, walk_rate_max_rad_s, input.dt_s);
+  swing.aim(swing_rad, s.kick.kicks() ? kick_rate_max_rad_s : walk_rate_max_rad_s, input.dt_s);
   const Efforts swing_Nm = swing.spring(c.gains, 1, input);
   turn(swing_Nm, input);
   const Efforts left_Nm = bearing(b, 1 - loaded, 0, input);
@@ -407,8 +459,8 @@ void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexce
 
 void DcmWalk::pass_state(StateBytes& bytes) noexcept {
   for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm);
-  bytes(over_feet_, plan_, wanted_, odometry_, slope_, given_up_, turn_Nm_, ankle_Nm_, phase_number_, stance_number_,
-        com_height_m_);
+  bytes(over_feet_, plan_, wanted_, ball_, odometry_, slope_, given_up_, turn_Nm_, ankle_Nm_, phase_number_,
+        stance_number_, com_height_m_);
 }
 
 std::unique_ptr<ControlObject> make_dcm_walk(const ObjectSetup& setup) { return std::make_unique<DcmWalk>(setup); }

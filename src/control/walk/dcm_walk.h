@@ -80,11 +80,13 @@ class DcmWalk final : public ControlObject {
 
   Leg leg(const ObjectSetup& setup, const char* side, std::size_t foot) const;
   void declare_plan(Declaration& declaration);
+  void declare_kick(Declaration& declaration);
   void declare_signals(Declaration& declaration);
   void let_go(ActuationFrame& actuation) noexcept;
   WalkPlan::Sight sight(const ControlInput& input) const noexcept;
   void begin(const ControlInput& input) noexcept;
   void reckon(const ControlInput& input, bool new_stance) noexcept;
+  void see_ball() noexcept;
   bool stands() const noexcept;
   void feel_ground(double dt_s) noexcept;
   void landed(const ControlInput& input) noexcept;
@@ -108,6 +110,7 @@ class DcmWalk final : public ControlObject {
     double zero_rad = 0;                       // yaw of the base at a heading of 0
   };
   Odometry odometry_;
+  Kick ball_;          // to be kicked, in the frame of the odometry
   GroundPoint slope_;  // of the ground in the heading frame, per metre, by the attitude of the foot that stands
   bool given_up_ = false;
   std::array<double, 2> turn_Nm_{};   // moment of the ground on the robot about its centre of mass: roll, pitch

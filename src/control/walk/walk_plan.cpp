@@ -64,7 +64,9 @@ void WalkPlan::look(const Config& c, const Sight& sight, double dt_s) noexcept {
   s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + c.trust_per_s * (seen.dcm_y_m - s.dcm.y_m));
 }
 
-void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
+// Where the other foot goes, and xi relative to it at the landing, when nothing disturbs. A step that prepares a kick
+// ends with xi where the step of the kick begins: further ahead, as that step is long, and for its longer time.
+void WalkPlan::mean(const Config& c, const Sight& sight, const Kick& kick) noexcept {
   State& s = state_;
   const double w_x = sight.rate_per_s, w_y = c.side_rate_share * w_x, sign = side_of(1 - s.stance);
   const double grown_x = std::exp(w_x * c.step_s), grown_y = std::exp(w_y * c.step_s);
@@ -72,9 +74,27 @@ void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
                   (s.meant.velocity.left_m_s + s.meant.trim_m_s.y_m) * c.step_s};
   s.meant.offset = {s.meant.step.x_m / (grown_x - 1) + c.shift_x_m,
                     s.meant.step.y_m / (grown_y - 1) - sign * c.width_m / (grown_y + 1)};
-  const double meant_y_m = sign * c.width_m + s.meant.step.y_m;
-  const double earliest_s = std::max(c.step_min_s, s.time_s), latest_s = std::max(c.step_max_s, s.time_s);
-  double least = 1e9, best_s = c.step_s;
+  s.meant.step.y_m += sign * c.width_m;
+  if (s.kick.kicks()) {
+    s.meant.step.x_m = s.kick.strike.x_m + c.kick.follow_m;
+    return;
+  }
+  const GroundPoint from_next{kick.ball.x_m - s.meant.step.x_m, kick.ball.y_m - s.meant.step.y_m};
+  const Kick next{from_next, kick.rad, kick.m_s};
+  s.prepares = KickSwing::reaches(c.kick, next, -sign);
+  if (!s.prepares) return;
+  const double step_m = KickSwing::strike_of(c.kick, next).x_m + c.kick.follow_m;
+  s.meant.offset = {c.shift_x_m + (step_m + s.meant.offset.x_m - c.shift_x_m) / std::exp(w_x * c.kick.step_s),
+                    (-sign * c.width_m - s.meant.offset.y_m) / std::exp(w_y * c.kick.step_s)};
+}
+
+void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
+  State& s = state_;
+  const double w_x = sight.rate_per_s, w_y = c.side_rate_share * w_x, sign = side_of(1 - s.stance);
+  const double wanted_s = s.kick.kicks() ? c.kick.step_s : c.step_s;
+  const double least_s = s.kick.kicks() ? c.kick.strike_s + c.kick.after_s : c.step_min_s;
+  const double earliest_s = std::max(least_s, s.time_s), latest_s = std::max(c.step_max_s, earliest_s);
+  double least = 1e9, best_s = wanted_s;
   GroundPoint best;
   for (int i = 0; i < times_tried; ++i) {
     const double t_s = earliest_s + (latest_s - earliest_s) * i / (times_tried - 1);
@@ -82,13 +102,13 @@ void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
     const double x_m = s.in_sole_x_m + (s.dcm.x_m - s.in_sole_x_m) * std::exp(w_x * left_s);
     const double y_m = s.dcm.y_m * std::exp(w_y * left_s);
     const double p = c.place_weight, all = 1 + p;
-    const GroundPoint at{
-        std::clamp((x_m - s.meant.offset.x_m + p * s.meant.step.x_m) / all, -c.reach_m, c.reach_m),
-        sign * std::clamp(sign * (y_m - s.meant.offset.y_m + p * meant_y_m) / all, c.apart_min_m, c.apart_max_m)};
+    const GroundPoint at{std::clamp((x_m - s.meant.offset.x_m + p * s.meant.step.x_m) / all, -c.reach_m, c.reach_m),
+                         sign * std::clamp(sign * (y_m - s.meant.offset.y_m + p * s.meant.step.y_m) / all,
+                                           c.apart_min_m, c.apart_max_m)};
     const auto square = [](double v) { return v * v; };
     const double cost = square(x_m - at.x_m - s.meant.offset.x_m) + square(y_m - at.y_m - s.meant.offset.y_m) +
-                        p * (square(at.x_m - s.meant.step.x_m) + square(at.y_m - meant_y_m)) +
-                        c.time_weight * square(t_s - c.step_s);
+                        p * (square(at.x_m - s.meant.step.x_m) + square(at.y_m - s.meant.step.y_m)) +
+                        c.time_weight * square(t_s - wanted_s);
     if (cost < least) {
       least = cost;
       best = at;
@@ -100,7 +120,8 @@ void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
     s.step_s = best_s;
   }
   // The pressure goes beyond xi where xi is ahead of what was meant.
-  const double meant_x_m = s.meant.offset.x_m * std::exp(w_x * std::min(s.time_s, c.step_s));
+  const double from_x_m = s.kick.kicks() ? s.meant.begun_x_m : s.meant.offset.x_m;
+  const double meant_x_m = from_x_m * std::exp(w_x * std::min(s.time_s, wanted_s));
   s.in_sole_x_m = std::clamp(c.shift_x_m + c.ankle_gain * (s.dcm.x_m - meant_x_m), -c.sole.heel_m, c.sole.toe_m);
 }
 
@@ -108,6 +129,11 @@ void WalkPlan::lead_foot(const Config& c) noexcept {
   State& s = state_;
   const double share = s.time_s / s.step_s, way = swing_way(share / c.place_share);
   const double sink_m = c.sink_m_s * std::max(s.time_s - s.step_s, 0.0);
+  if (s.kick.kicks()) {
+    s.feet.at_m = s.kick.at(c.kick, s.feet.from_m, s.feet.foothold, s.time_s + c.kick.lead_s, s.step_s);
+    s.feet.at_m[2] -= std::min(sink_m, 0.06);
+    return;
+  }
   s.feet.at_m = {s.feet.from_m[0] + way * (s.feet.foothold.x_m - s.feet.from_m[0]),
                  s.feet.from_m[1] + way * (s.feet.foothold.y_m - s.feet.from_m[1]),
                  s.feet.from_m[2] * (1 - way) + c.lift_m * swing_lift(share) - std::min(sink_m, 0.06)};
@@ -135,13 +161,16 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   s.dcm = {s.dcm.x_m - way.x_m, s.dcm.y_m - way.y_m};
   leave(sight);
   from_com_m_ = {sight.over[s.stance].com_m[0], sight.over[s.stance].com_m[1]};
+  s.meant.begun_x_m = s.meant.offset.x_m;
   ++s.steps;
+  s.kicks += s.kick.kicks();
+  s.kick.end();
   s.time_s = 0;
   s.step_s = c.step_s;
   s.meant.turn_rad = s.meant.velocity.turn_rad_s * c.step_s;
-  const double slow_m_s = 0.06;
+  const double slow_m_s = 0.06, beside_m = 0.1;
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
-      std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1)
+      std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m)
     s.phase = Phase::bears;
 }
 
@@ -160,12 +189,23 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
     leave(sight);
     return true;
   }
+  if (s.prepares && s.time_s < 1.5 * dt_s && KickSwing::reaches(c.kick, wanted.kick, side_of(1 - s.stance)))
+    s.kick.begin(c.kick, wanted.kick);
+  s.prepares = false;
+  mean(c, sight, wanted.kick);
   choose(c, sight);
   lead_foot(c);
-  const bool touches = s.time_s > c.early_share * s.step_s && sight.force_N[1 - s.stance] > c.touch_N;
+  const double early_s = s.kick.kicks() ? c.kick.strike_s + 0.5 * c.kick.after_s : c.early_share * s.step_s;
+  const bool touches = s.time_s > early_s && sight.force_N[1 - s.stance] > c.touch_N;
   if (!touches && s.time_s < s.step_s + late_s) return false;
   land(c, wanted, sight);
   return true;
+}
+
+double WalkPlan::other_yaw_rad(const Config& c) const noexcept {
+  const State& s = state_;
+  const double turn_rad = s.meant.turn_rad * swing_way(s.time_s / s.step_s);
+  return s.kick.kicks() ? turn_rad + s.kick.yaw_rad(c.kick, s.time_s + c.kick.lead_s) : turn_rad;
 }
 
 void WalkPlan::turned(double by_rad) noexcept {

@@ -24,6 +24,7 @@
 
 #include "control/balance/dcm_measure.h"
 #include "control/balance/step_plan.h"
+#include "kick_swing.h"
 
 namespace kadans {
 
@@ -52,6 +53,7 @@ class WalkPlan {
     double sway_s = 0.4;          // longest such time
     double speed_max_m_s2 = 0.5;  // how fast the meant velocity changes
     Sole sole{.heel_m = 0.06, .toe_m = 0.10, .half_width_m = 0.03};
+    KickSwing::Config kick;
   };
   struct Velocity {
     double forward_m_s = 0, left_m_s = 0, turn_rad_s = 0;
@@ -59,6 +61,7 @@ class WalkPlan {
   struct Wanted {
     Velocity velocity;
     bool go = false;
+    Kick kick;
   };
   struct Sight {
     std::array<DcmMeasure::OverFoot, 2> over{};
@@ -74,7 +77,8 @@ class WalkPlan {
   struct Meant {
     Velocity velocity;         // now
     GroundPoint trim_m_s;      // added to it
-    GroundPoint step, offset;  // of the next landing; the offset is b
+    GroundPoint step, offset;  // of the next landing: where the other foot goes; the offset is b
+    double begun_x_m = 0;      // the offset that was meant at the last landing, forward
     double turn_rad = 0;       // by which the heading turns at the next landing
   };
   struct State {
@@ -87,6 +91,9 @@ class WalkPlan {
     Meant meant;
     GroundPoint dcm;  // over the stance foot
     double in_sole_x_m = 0;
+    KickSwing kick;           // of this step
+    bool prepares = false;    // the next step shall kick
+    std::uint32_t kicks = 0;  // that were made
   };
 
   void reset() noexcept { state_ = {}; }
@@ -98,12 +105,16 @@ class WalkPlan {
   bool advance(const Config& config, const Wanted& wanted, const Sight& sight, double dt_s) noexcept;
   void turned(double by_rad) noexcept;
 
+  // Where the other foot shall point, of the heading.
+  double other_yaw_rad(const Config& config) const noexcept;
+
   const State& state() const noexcept { return state_; }
   void pass_state(auto& bytes) noexcept { bytes(state_, from_com_m_, step_time_s_); }
 
  private:
   void follow_wanted(const Config& config, const Wanted& wanted, double dt_s) noexcept;
   void look(const Config& config, const Sight& sight, double dt_s) noexcept;
+  void mean(const Config& config, const Sight& sight, const Kick& kick) noexcept;
   void choose(const Config& config, const Sight& sight) noexcept;
   void lead_foot(const Config& config) noexcept;
   void leave(const Sight& sight) noexcept;

@@ -21,7 +21,8 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
   actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
   written_ = actuation_;  // all of it, once
   declare_signals(catalog);
-  if (settings.joystick) declare_joystick(catalog.signals);
+  if (settings.joystick) declare_part(catalog.signals, StatusField::Part::joystick, "joystick", snapshot_);
+  if (settings.sight) declare_part(catalog.signals, StatusField::Part::ball, "seen.ball", snapshot_);
   row_.resize(catalog.signals.size());
 }
 
@@ -118,6 +119,9 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   sets_.fill(snapshot_);
   inbox_.motions().fill(snapshot_);
   snapshot_.joystick = exchange_.joystick.newest();
+  snapshot_.ball = exchange_.ball.newest();
+  if (snapshot_.ball.confidence > 0)
+    snapshot_.ball.age_s = 1e-9 * static_cast<double>(time_ns - snapshot_.ball.time_ns);
   tell_drives();
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);
@@ -142,10 +146,6 @@ void ControlEngine::declare_signals(Catalog& catalog) {
   table.add({"engine.control_sets", "", "Active control sets, a bit each, in the order of the configuration."},
             &snapshot_.control_sets);
   safety_.declare_signals(table, *catalog.model);
-}
-
-void ControlEngine::declare_joystick(SignalTable& table) const {
-  declare_part(table, StatusField::Part::joystick, "joystick", snapshot_);
 }
 
 }  // namespace kadans

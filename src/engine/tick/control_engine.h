@@ -55,6 +55,7 @@ inline constexpr std::size_t snapshot_readers = 2;  // 0: behavior engine, 1: su
 using SnapshotStorage = Latest<Snapshot, snapshot_readers>;
 using HeartbeatStorage = Latest<std::int64_t>;  // time of the behavior engine's last tick
 using JoystickStorage = Latest<JoystickState>;
+using BallStorage = Latest<SeenBall>;
 
 // The storages between the threads. Position independent; may live in shared memory.
 struct EngineExchange {
@@ -62,6 +63,7 @@ struct EngineExchange {
   CommandQueue commands;       // pushed by the behavior thread, popped by the control thread
   HeartbeatStorage heartbeat;  // written by the behavior thread
   JoystickStorage joystick;    // written by the thread that reads a joystick, read by the control thread
+  BallStorage ball;            // written by the thread of perception, read by the control thread
 };
 
 class ControlEngine {
@@ -94,7 +96,6 @@ class ControlEngine {
   void tell_drives() noexcept;
   void publish(std::int64_t time_ns) noexcept;
   void declare_signals(Catalog& catalog);
-  void declare_joystick(SignalTable& table) const;
 
   Plant& plant_;
   Estimator& estimator_;

@@ -9,12 +9,15 @@ namespace kadans::bullet {
 namespace {
 
 ContactWorld::Options world_options(const PlantSettings& settings, FrictionLaw friction) {
-  return {to_bullet(settings.gravity_m_s2),
-          settings.solver_iterations,
-          settings.ground_friction,
-          to_bullet(ground_pose(settings.world)),
-          settings.solver,
-          friction};
+  return {.gravity_m_s2 = to_bullet(settings.gravity_m_s2),
+          .solver_iterations = settings.solver_iterations,
+          .ground_friction = settings.ground_friction,
+          .ground_restitution = settings.ground_restitution,
+          .ground_stiffness_N_per_m = settings.ground_stiffness_N_per_m,
+          .ground_damping_Ns_per_m = settings.ground_damping_Ns_per_m,
+          .ground = to_bullet(ground_pose(settings.world)),
+          .solver = settings.solver,
+          .friction = friction};
 }
 
 }  // namespace

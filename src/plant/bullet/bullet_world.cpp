@@ -24,6 +24,9 @@ std::vector<PlantSettings> settings_of(std::span<const WorldSite> robots) {
     PlantSettings& own = all.emplace_back(robot.settings);
     own.gravity_m_s2 = first.gravity_m_s2;
     own.ground_friction = first.ground_friction;
+    own.ground_restitution = first.ground_restitution;
+    own.ground_stiffness_N_per_m = first.ground_stiffness_N_per_m;
+    own.ground_damping_Ns_per_m = first.ground_damping_Ns_per_m;
     own.solver = first.solver;
     own.solver_iterations = first.solver_iterations;
     own.world = first.world;

@@ -170,6 +170,10 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
     refuse("feet", static_cast<double>(settings.feet.size()), "at most " + std::to_string(max_feet));
   if (settings.solver_iterations < 1) refuse("solver_iterations", settings.solver_iterations, "at least 1");
   require_at_least_zero("ground_friction", settings.ground_friction);
+  require_at_least_zero("ground_stiffness_N_per_m", settings.ground_stiffness_N_per_m);
+  require_at_least_zero("ground_damping_Ns_per_m", settings.ground_damping_Ns_per_m);
+  if (!(settings.ground_restitution >= 0 && settings.ground_restitution <= 1))
+    refuse("ground_restitution", settings.ground_restitution, "0..1");
   for (const double g : settings.gravity_m_s2) {
     if (!std::isfinite(g)) throw std::invalid_argument("gravity_m_s2 must be finite");
   }

@@ -50,8 +50,12 @@ std::vector<std::pair<double*, double>> values_in_presets(Catalog& catalog, Para
 
 Quantities::Quantities(PlantVariant& variant, Catalog& catalog, bool further_robot) {
   PlantSettings& plant = variant.plant;
-  if (!further_robot) add_value("ground.friction", {0, 10, ""}, plant.ground_friction);
+  if (!further_robot) add_world(plant);
   add_value("actuation.delay_s", {0, 0.1, "s"}, variant.actuation_delay_s);
+  if (variant.sees) {
+    for (const SightRange& range : sight_ranges)
+      add_value(std::string("sight.") + range.name, {range.min, range.max, range.unit}, variant.sight.*range.value);
+  }
   add_start(plant);
   add_sensors(plant);
   add_joints(variant.model, plant);
@@ -70,6 +74,24 @@ void Quantities::add_value(std::string name, NumberRange range, double& value) {
 
 void Quantities::add_scale(std::string name, double& value) {
   add(std::move(name), scale_range, [&value, whole = value](double factor) { value = whole * factor; });
+}
+
+void Quantities::add_world(PlantSettings& plant) {
+  add_value("ground.friction", {0, 10, ""}, plant.ground_friction);
+  add_value("ground.restitution", {0, 1, ""}, plant.ground_restitution);
+  add_value("ground.stiffness_N_per_m", {0, 1e7, "N/m"}, plant.ground_stiffness_N_per_m);
+  add_value("ground.damping_Ns_per_m", {0, 1e5, "N s/m"}, plant.ground_damping_Ns_per_m);
+  for (WorldObject& object : plant.world.objects) {
+    const std::string name = "world." + object.name + ".";
+    add_value(name + "x_m", {-1000, 1000, "m"}, object.pose.position_m[0]);
+    add_value(name + "y_m", {-1000, 1000, "m"}, object.pose.position_m[1]);
+    add_value(name + "friction", {0, 10, ""}, object.friction);
+    auto* ball = std::get_if<WorldBall>(&object.shape);
+    if (ball == nullptr) continue;
+    add_value(name + "mass_kg", {1e-4, 1e4, "kg"}, ball->mass_kg);
+    add_value(name + "rolling_friction_m", {0, 1, "m"}, ball->rolling_friction_m);
+    add_value(name + "restitution", {0, 1, ""}, ball->restitution);
+  }
 }
 
 void Quantities::add_start(PlantSettings& plant) {

@@ -1,12 +1,15 @@
 // Quantities: the named numbers that may be set or drawn for a run. They are the plant's physics, its sensors, its
 // start, and the parameters of the control objects.
 //
-//   ground.friction                      joint.<joint>.torque_scale, damping_scale, coulomb_scale, spring_scale
+//   ground.friction, restitution, stiffness_N_per_m, damping_Ns_per_m
+//   world.<object>.x_m, y_m, friction; of a ball also mass_kg, rolling_friction_m, restitution
+//                                        joint.<joint>.torque_scale, damping_scale, coulomb_scale, spring_scale
 //   link.<link>.mass_scale, friction     joint.<joint>.coulomb_Nm, start_rad (added), encoder_noise_rad
 //   start.x_m, y_m, roll_rad, pitch_rad, yaw_rad
 //                                        imu.gyro_noise_rad_s, gyro_bias_rad_s, accelerometer_noise_m_s2, ...
 //   sensor.<name>.value, noise
 //   foot.<link>.noise_N                  control.<object>.<parameter>, and <parameter>_scale
+//   sight.rate_Hz, latency_s, ...        of simulated perception
 //   actuation.delay_s                    delay from the control engine's write to the drives' reaction
 //
 // A quantity of the plant changes the plant alone, never the control side's model of it: the controller does not know
@@ -20,6 +23,7 @@
 #include <vector>
 
 #include "config/scenario/distribution.h"
+#include "config/scenario/scenario_config.h"
 #include "kadans/control/catalog.h"
 #include "kadans/plant/settings.h"
 
@@ -36,6 +40,8 @@ struct PlantVariant {
   RobotModel model;
   PlantSettings plant;
   double actuation_delay_s = 0;
+  bool sees = false;  // it has simulated perception
+  SightSettings sight;
 };
 
 class Quantities {
@@ -68,6 +74,7 @@ class Quantities {
   void add_links(RobotModel& model, PlantSettings& plant);
   void add_sensors(PlantSettings& plant);
   void add_start(PlantSettings& plant);
+  void add_world(PlantSettings& plant);
   void add_parameters(Catalog& catalog);
   std::vector<std::size_t> chosen(const std::string& pattern, TextPlace place, Problems& problems) const;
   bool apply(std::size_t index, double value, TextPlace place, std::vector<QuantityValue>& done, Problems& problems);

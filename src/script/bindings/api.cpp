@@ -225,6 +225,8 @@ constexpr ApiEntry written[] = {
     {"s", "support", "kadans.Support", "Where the ground supports the robot"},
     {"s", "safety", "kadans.Safety", "State of the safety layer"},
     {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
+    {"s", "seen", "kadans.Seen", "What perception saw last"},
+    {"seen", "ball", "kadans.SeenBall", "The ball; keeps what it was until the ball is seen again"},
     {"event", "name", "string?", "Its name"},
     {"event", "data", "table?",
      "What its sender gave it; of an end: { result = }, of a k.parallel: { outcomes = { region = outcome }, results = "
@@ -255,6 +257,8 @@ const char* owner_of(StatusField::Part part) {
       return "safety";
     case joystick:
       return "joystick";
+    case ball:
+      return "ball";
     case sensors:
       return "sensors";
     case root:
@@ -304,7 +308,9 @@ constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require
                             {"foot", "kadans.Foot", "A foot: `s.feet.left`"},
                             {"support", "kadans.Support", "The ground: `s.support`"},
                             {"safety", "kadans.Safety", "The safety layer: `s.safety`"},
-                            {"joystick", "kadans.Joystick", "A joystick: `s.joystick`"}};
+                            {"joystick", "kadans.Joystick", "A joystick: `s.joystick`"},
+                            {"seen", "kadans.Seen", "What perception saw: `s.seen`"},
+                            {"ball", "kadans.SeenBall", "The ball: `s.seen.ball`"}};
 
 std::string bare(std::string_view name) { return std::string(name.substr(0, name.find('('))); }
 
@@ -457,6 +463,8 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("support", s["support"].names());
   add("safety", s["safety"].names());
   add("joystick", s["joystick"].names());
+  add("seen", s["seen"].names());
+  add("ball", s["seen"].fields["ball"].names());
   std::sort(all.begin(), all.end());
   return all;
 }

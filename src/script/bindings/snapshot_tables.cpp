@@ -153,6 +153,11 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, bool on_deman
   lua_setfield(state, -2, "safety");
   push_whole_part(state, Kind::joystick, 0, "s.joystick");
   lua_setfield(state, -2, "joystick");
+  lua_createtable(state, 0, 1);
+  push_whole_part(state, Kind::ball, 0, "s.seen.ball");
+  lua_setfield(state, -2, "ball");
+  make_read_only(state, "s.seen");
+  lua_setfield(state, -2, "seen");
   push_whole_part(state, Kind::sensors, 0, "s.sensors");
   lua_setfield(state, -2, "sensors");
   lua_createtable(state, 0, 2);

@@ -108,6 +108,7 @@ ValueCheck::Type ValueCheck::type_of(const SourceMeaning& meaning) const {
   if (path.size() == 3 && path[0] == "joints") return field_of(Part::joint, path[2]);
   if (path.size() == 3 && path[0] == "feet") return field_of(Part::foot, path[2]);
   if (path.size() == 3 && path[0] == "base") return field_of(Part::rate, path[2]);
+  if (path.size() == 3 && path[0] == "seen") return field_of(Part::ball, path[2]);
   constexpr std::pair<const char*, Part> parts[] = {{"base", Part::base},
                                                     {"support", Part::support},
                                                     {"safety", Part::safety},

@@ -150,7 +150,9 @@ ContactWorld::ContactWorld(const Options& options, PairMask& mask)
   info.m_leastSquaresResidualThreshold = 0;
   ground_.setWorldTransform(options.ground);
   ground_.setFriction(options.ground_friction);
-  ground_.setRestitution(0);
+  ground_.setRestitution(options.ground_restitution);
+  if (options.ground_stiffness_N_per_m > 0)
+    ground_.setContactStiffnessAndDamping(options.ground_stiffness_N_per_m, options.ground_damping_Ns_per_m);
   world_->addCollisionObject(&ground_, btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);
 }
 

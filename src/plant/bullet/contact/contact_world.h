@@ -40,8 +40,9 @@ class ContactWorld {
   struct Options {
     btVector3 gravity_m_s2;
     int solver_iterations = 10;
-    double ground_friction = 1;
-    btTransform ground = btTransform::getIdentity();  // of the plane: z is its normal
+    double ground_friction = 1, ground_restitution = 0;
+    double ground_stiffness_N_per_m = 0, ground_damping_Ns_per_m = 0;  // 0 N/m: hard
+    btTransform ground = btTransform::getIdentity();                   // of the plane: z is its normal
     ContactSolver solver = ContactSolver::tree;
     FrictionLaw friction = FrictionLaw::cone;  // of our own solver
   };

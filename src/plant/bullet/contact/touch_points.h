@@ -69,19 +69,31 @@ struct PlacedBox {
 };
 TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b);
 
-// The combined properties of two surfaces: friction is the product, restitution the greater of both. A body that
+// The combined properties of two surfaces: friction is the product, restitution the greater of both, softness that of
+// the one that is soft. A body that
 // bounces has a contact only when it touches: if the solver held it back before, it would lose speed before the bounce.
 class ContactSurface {
  public:
   ContactSurface(const btCollisionObject& a, const btCollisionObject& b)
       : friction_(btManifoldResult::calculateCombinedFriction(&a, &b)),
-        restitution_(std::max(a.getRestitution(), b.getRestitution())) {}
+        restitution_(std::max(a.getRestitution(), b.getRestitution())) {
+    for (const btCollisionObject* one : {&a, &b}) {
+      if ((one->getCollisionFlags() & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) == 0) continue;
+      stiffness_N_per_m_ = one->getContactStiffness();
+      damping_Ns_per_m_ = one->getContactDamping();
+    }
+  }
 
   bool counts(double distance_m) const { return restitution_ == 0 || distance_m < bounce_distance_m; }
 
   void give(btManifoldPoint& point) const {
     point.m_combinedFriction = friction_;
     point.m_combinedRestitution = restitution_;
+    if (stiffness_N_per_m_ > 0) {
+      point.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
+      point.m_combinedContactStiffness1 = stiffness_N_per_m_;
+      point.m_combinedContactDamping1 = damping_Ns_per_m_;
+    }
     if (restitution_ == 0) return;
     point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
     point.m_contactERP = bounce_erp;  // pushing an overlap out must not add to the bounce
@@ -90,6 +102,7 @@ class ContactSurface {
  private:
   static constexpr double bounce_distance_m = 1e-5, bounce_erp = 0.005;
   double friction_, restitution_;
+  double stiffness_N_per_m_ = 0, damping_Ns_per_m_ = 0;  // 0 N/m: hard
 };
 
 }  // namespace kadans::bullet

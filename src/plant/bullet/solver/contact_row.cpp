@@ -27,8 +27,8 @@ ContactRow::ContactRow(btManifoldPoint& point, const ContactBody& first, const C
   add_side(second, point.getPositionWorldOnB(), -1, memory);
   same_tree_ = side_count_ == 2 && sides_[0].z == sides_[1].z;
   if (same_tree_) add_shared_response();
-  prepare_gains();
   aim(timing);
+  prepare_gains();
   const Three start{point.m_appliedImpulse, point.m_appliedImpulseLateral1, point.m_appliedImpulseLateral2, 0};
   if (normal_gain_ > 0 && start[0] > 0) apply(start);
 }
@@ -68,7 +68,7 @@ void ContactRow::add_shared_response() {
 
 void ContactRow::prepare_gains() {
   const btScalar first = response_[1][1], second = response_[2][2], mixed = response_[1][2];
-  if (response_[0][0] > smallest_response) normal_gain_ = 1 / response_[0][0];
+  if (response_[0][0] > smallest_response) normal_gain_ = 1 / (response_[0][0] + softness_);
   const btScalar determinant = first * second - mixed * mixed;
   if (!(determinant > smallest_response * smallest_response)) return;  // no friction where nothing can slide
   hold_[0] = second / determinant;
@@ -82,7 +82,12 @@ void ContactRow::prepare_gains() {
 void ContactRow::aim(const ContactTiming& timing) {
   const btScalar distance_m = point_->getDistance();
   btScalar wanted = -distance_m / timing.dt_s;
-  if (distance_m <= 0) {
+  if ((point_->m_contactPointFlags & BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING) != 0) {
+    const btScalar spring_Ns_per_m = timing.dt_s * point_->m_combinedContactStiffness1;
+    const btScalar sum_Ns_per_m = spring_Ns_per_m + point_->m_combinedContactDamping1;
+    softness_ = 1 / (timing.dt_s * sum_Ns_per_m);
+    wanted *= spring_Ns_per_m / sum_Ns_per_m;
+  } else if (distance_m <= 0) {
     const bool own = (point_->m_contactPointFlags & BT_CONTACT_FLAG_HAS_CONTACT_ERP) != 0;
     wanted *= own ? point_->m_contactERP : timing.erp;
   }
@@ -118,7 +123,7 @@ void ContactRow::apply(const Three& change) {
 
 btScalar ContactRow::iterate(FrictionLaw law) {
   Three v = velocity();
-  Three wanted{std::max(btScalar(0), impulse_[0] - normal_gain_ * v[0]), 0, 0, 0};
+  Three wanted{std::max(btScalar(0), impulse_[0] - normal_gain_ * (v[0] + softness_ * impulse_[0])), 0, 0, 0};
   if (wanted[0] == 0 && impulse_[0] == 0) return 0;
   const btScalar normal_change = wanted[0] - impulse_[0];
   v[1] += response_[0][1] * normal_change;

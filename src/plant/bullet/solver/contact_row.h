@@ -5,6 +5,8 @@
 // static or driven body has no y and enters with its velocity. A = sum of y y^T, 3 x 3, says how an impulse changes the
 // contact's own velocity. The normal law is Bullet's: the velocity at the step's end is at least -distance / dt while
 // apart, and erp * depth / dt, or what the restitution asks for, when overlapping.
+// Soft ground is a spring and a damper instead, of the overlap and the velocity at the step's end: so it is stable
+// however stiff it is.
 //
 // An iteration keeps all other impulses. It computes the normal impulse first, then the friction for this normal
 // impulse. Friction first tries to hold: exactly, in both directions at once. If that takes more than friction *
@@ -97,6 +99,7 @@ class ContactRow {
   bool same_tree_ = false;
   Three impulse_{}, bias_{};         // bias: velocity without any impulse, less the wanted one
   std::array<Three, 3> response_{};  // A
+  btScalar softness_ = 0;            // velocity per impulse with which a soft ground gives way
   btScalar normal_gain_ = 0, slide_gain_ = 0;
   btScalar hold_[3] = {0, 0, 0};  // inverse of A's lower block: first, mixed, second
 };

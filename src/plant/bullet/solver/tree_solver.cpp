@@ -134,9 +134,9 @@ void TreeSolver::add_joint_rows(Joint& joint) {
 
 void TreeSolver::add_rolling_rows() {
   for (const Rolling& rolling : rollings_) {
-    const btScalar limit = rolling.rows->limit_Nms();
-    if (!(limit > 0)) continue;
     for (int axis = 0; axis < 3; ++axis) {
+      const btScalar limit = rolling.rows->limit_Nms(axis);
+      if (!(limit > 0)) continue;
       joint_rows_.emplace_back(*rolling.tree, Coordinate{.joint = axis},
                                JointLaw{.lower = -limit, .upper = limit, .stiff = true}, 0.0, memory_);
     }

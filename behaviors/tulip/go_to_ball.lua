@@ -1,0 +1,135 @@
+-- Goes to the ball that it sees, around it, and kicks it toward a place; again, when it is still on this side.
+local k = require "kadans"
+local ball = require "ball"
+local floor = require "floor"
+local walk = require "walking"
+
+local P = k.params {
+  settle_s    = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
+  target_x_m  = { 4, min = -20, max = 20, unit = "m", doc = "where the ball shall go, counted from where it sets out" },
+  target_y_m  = { 0, min = -20, max = 20, unit = "m", doc = "to the left" },
+  beyond_m    = { 1.5, min = 0, max = 4, unit = "m", doc = "how far beyond it the kick would roll" },
+  roll_m_s2   = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
+  watch_s     = { 2.5, min = 0.5, max = 20, unit = "s", doc = "how long it watches the ball that it kicked" },
+  lost_s      = { 2, min = 0.1, max = 20, unit = "s", doc = "a ball not seen for so long is looked for" },
+}
+
+local around_m = 0.6  -- radius of the way around the ball
+local there_m = 0.3   -- a ball that is so far beyond the target is there: what is seen is noisy
+
+local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
+local function within(value, most) return math.max(-most, math.min(most, value)) end
+
+-- Walks toward a place, facing it.
+local function toward(m, at, x_m, y_m)
+  local turn_rad = angle(math.atan2(y_m - at.y_m, x_m - at.x_m) - at.heading_rad)
+  walk.go(m, walk.slowed { forward_m_s = 0.35 * math.max(0, math.cos(turn_rad)) ^ 3, turn_rad_s = within(1.5 * turn_rad, 0.6) })
+end
+
+local function approach(m, b)
+  local at = walk.at(m)
+  local rad = math.atan2(P.target_y_m - b.y_m, P.target_x_m - b.x_m)
+  local ux, uy = math.cos(rad), math.sin(rad)
+  local behind = -(ux * (at.x_m - b.x_m) + uy * (at.y_m - b.y_m))  -- how far the robot is behind the ball
+  local left = ux * (at.y_m - b.y_m) - uy * (at.x_m - b.x_m)       -- and to the left of its way
+  if math.abs(left) > 0.04 then m.vars.side = left > 0 and -1 or 1 end  -- on its left: the ball is before the right foot
+  local place = walk.to_kick(b, rad, m.vars.side, rad)
+  local off_m = math.sqrt((place.x_m - at.x_m) ^ 2 + (place.y_m - at.y_m) ^ 2)
+  if behind > 0.15 and math.abs(left) < 0.15 + 0.7 * (behind - 0.15) then
+    if off_m > 0.5 then
+      toward(m, at, place.x_m, place.y_m)
+    else
+      walk.beside(m, place)
+      if off_m < 0.2 and math.abs(angle(rad - at.heading_rad)) < 0.3 then
+        local far_m = math.sqrt((P.target_x_m - b.x_m) ^ 2 + (P.target_y_m - b.y_m) ^ 2) + P.beyond_m
+        walk.kick(m, b, rad, math.min(far_m, 4.5), P.roll_m_s2)
+      end
+    end
+    return
+  end
+  walk.keep(m)
+  local from_rad = math.atan2(left, behind)  -- about the ball, 0 behind it
+  local to_rad = from_rad - within(from_rad, 0.8)
+  local c, n = math.cos(to_rad), math.sin(to_rad)
+  toward(m, at, b.x_m - around_m * (c * ux + n * uy), b.y_m - around_m * (c * uy - n * ux))
+end
+
+-- How far the ball is beyond the target.
+local function beyond(b)
+  local x_m, y_m = P.target_x_m, P.target_y_m
+  return (x_m * (b.x_m - x_m) + y_m * (b.y_m - y_m)) / math.sqrt(x_m ^ 2 + y_m ^ 2)
+end
+
+local function look(m, s)
+  local b = ball.watch(m, s, m.vars.known)
+  m.vars.sees = b ~= nil and s.time_s - b.seen_s < P.lost_s
+  m.vars.there = b ~= nil and beyond(b) > there_m
+  return b
+end
+
+-- Turns to where the ball was last.
+local function search(m)
+  local at, b = walk.at(m), m.vars.known
+  local turn_rad = b.x_m and angle(math.atan2(b.y_m - at.y_m, b.x_m - at.x_m) - at.heading_rad) or 1
+  walk.go(m, { turn_rad_s = turn_rad > 0 and 0.6 or -0.6 })
+end
+
+local function lies(s) return floor.lies(s.base) end
+local function there(_, m) return m.vars.there end
+
+return k.behavior "go_to_ball" {
+  controls = "walking",
+  initial  = "set_out",
+  vars     = { known = {}, side = 1, sees = false, there = false, armed = false, kicked = false, stands = false },
+
+  k.state "set_out" {
+    run = function(m)
+      m.posture:set_gains("stiff")
+      m.posture:move("set_out", { time_s = P.settle_s })
+      m:wait(P.settle_s)
+    end,
+    { on = "run.done", to = "search" },
+  },
+  k.state "search" {
+    enter = search,
+    during = look,
+    { when = lies, to = "fallen", why = "lies" },
+    { when = there, to = "stop", why = "the ball is there" },
+    { when = function(_, m) return m.vars.sees end, to = "approach" },
+  },
+  k.state "approach" {
+    enter = function(m) m.vars.armed, m.vars.kicked = false, false end,
+    during = function(m, s)
+      local b = look(m, s)
+      m.vars.kicked = m.vars.armed and not walk.kicks(m)
+      m.vars.armed = walk.kicks(m)
+      if not m.vars.kicked then approach(m, b) end
+    end,
+    exit = walk.keep,
+    { when = lies, to = "fallen", why = "lies" },
+    { when = there, to = "stop", why = "the ball is there" },
+    { when = function(_, m) return m.vars.kicked end, to = "watch" },
+    { when = function(_, m) return not m.vars.sees end, to = "search", why = "lost" },
+  },
+  k.state "watch" {
+    enter = function(m) walk.go(m, {}) end,
+    during = look,
+    { when = lies, to = "fallen", why = "lies" },
+    { when = there, to = "stop", why = "the ball is there" },
+    { after = P.watch_s, to = "search" },
+  },
+  k.state "stop" {
+    enter = walk.stop,
+    during = function(m) m.vars.stands = walk.stands(m) end,
+    { when = lies, to = "failed", why = "lies" },
+    { when = function(_, m) return m.vars.stands end, to = "done" },
+  },
+  k.state "fallen" {
+    enter = walk.stop,
+    k.call "get_up",
+    { on = "done", to = "set_out" },
+    { on = "failed", to = "failed" },
+  },
+  k.final "done" { outcome = "done" },
+  k.final "failed" { outcome = "failed" },
+}
