@@ -267,7 +267,7 @@ TEST_CASE("A robot on boards that are not there is refused, with what to do") {
   Outcome outcome = run(command + "--peer 127.0.7.97", folder);
   CHECK(outcome.exit_code == 2);
   CHECK(has(outcome.err, "config/jiwiy/anything_io.json:"));
-  CHECK(has(outcome.err, "board 'io' at 127.0.7.97 does not answer: is it powered, is its cable in"));
+  CHECK(has(outcome.err, "board 'io' at 127.0.7.97 does not answer: is it powered, and is its cable in?"));
   outcome = run(command + "--peer nowhere", folder);
   CHECK(outcome.exit_code == 2);
   CHECK(has(outcome.err, "--peer: 'nowhere' must be an address such as 192.168.1.121"));

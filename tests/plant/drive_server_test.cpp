@@ -24,10 +24,10 @@ HostMot2Settings at(const char* address) {
 struct Ends {
   explicit Ends(const HostMot2Settings& settings)
       : server(settings, site()), model(test::two_joints(), PlantSettings{.position_rad = {0.1, -0.2}}) {
-    const std::string place = board_place(settings.boards.front().address);
-    UdpPort(place).send(std::array<std::uint8_t, 1>{});  // somebody is there
+    const BoardSettings& board = settings.boards.front();
+    UdpPort(board).send(std::array<std::uint8_t, 1>{});  // somebody is there
     std::vector<std::unique_ptr<BoardLink>> links;
-    links.push_back(std::make_unique<LbpLink>(std::make_unique<UdpPort>(place), 5'000'000'000, 0));
+    links.push_back(std::make_unique<LbpLink>(std::make_unique<UdpPort>(board), 5'000'000'000, 0));
     plant = std::make_unique<HostMot2Plant>(settings, site(), std::move(links));
   }
   void tick() {

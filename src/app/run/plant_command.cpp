@@ -50,8 +50,11 @@ class ServeTask final : public Task {
 class PlantService {
  public:
   explicit PlantService(const PlantOptions& options) : options_(options), robot_(read_robot(options.robot)) {
-    if (options.in_step && !emulator_->step_with_peer())
-      throw InputError({.message = "--in-step: the protocol '" + options.as + "' does not count the peer's ticks"});
+    if (!options.in_step || emulator_->step_with_peer()) return;
+    throw InputError({.file = "--in-step",
+                      .message = options.imu.empty()
+                                     ? "the protocol '" + options.as + "' does not count the peer's ticks"
+                                     : "does not go with --imu: its device measures by the clock"});
   }
 
   int run() {

@@ -111,8 +111,9 @@ void HostMot2Plant::read(SensorFrame& sensors) noexcept {
   counts_ = {};
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     const bool bitten = boards_[i].bitten();
-    // The first one of all came in open().
+    // The first one of all came in open(). On a busy machine it has grown old when the loop begins: it is asked again.
     if (!driven_) {
+      if (seconds_between(boards_[i].time_ns(), sensors.time_ns) > settings_.watchdog_s) boards_[i].send();
       fresh_[i] = boards_[i].collect() || fresh_[i];
     } else {
       fresh_[i] = asked_ && boards_[i].collect();

@@ -25,7 +25,7 @@ class HostMot2EthernetType final : public PlantType {
         links.push_back(std::make_unique<hostmot2::MappedLink>(board.resource));
         continue;
       }
-      auto port = std::make_unique<hostmot2::UdpPort>(hostmot2::board_place(board.address));
+      auto port = std::make_unique<hostmot2::UdpPort>(board);
       links.push_back(std::make_unique<hostmot2::LbpLink>(std::move(port), std::llround(1e9 * settings.patience_s),
                                                           std::llround(1e9 * settings.reply_wait_s)));
     }
