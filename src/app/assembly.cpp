@@ -7,6 +7,8 @@
 #include "app/run/read_only_plant.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
+#include "plant/emulated_drives.h"
+#include "plant/imu/emulator/imu_world.h"
 #include "plant/imu/imu_plant.h"
 #include "scenario/disturb/planned_faults.h"
 #include "signal/nearest_name.h"
@@ -182,7 +184,7 @@ void Assembly::complete() {
       robot_.config.safety.sensors.stuck_ticks = std::numeric_limits<std::uint32_t>::max();
     }
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
-    robot_.config.safety.drive_words = plant_type().drive_words();
+    robot_.config.safety.drive_words = (has_bus() ? bus_type() : plant_type()).drive_words();
     estimator_ =
         std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
     safety_ = std::make_unique<Safety>(robot_.config.safety, robot_.config.model);
@@ -328,11 +330,42 @@ void Assembly::make_world(const PlantType& type) {
     for (const auto& other : others_) sites.push_back({other->variant_.model, other->variant_.plant, other->seed_});
     sound_ = type.make_shared_world(sites);
   }
+  if (has_bus()) stand_behind_bus();
   join(*sound_);
   for (const auto& other : others_) {
     other->join(*sound_);
     other->complete();
   }
+}
+
+const PlantType& Assembly::bus_type() const {
+  return plant_type_named(robot_.config, scenario_.file, scenario_.bus.type, &PlantType::has_wired_world);
+}
+
+// What befalls the IMU on its line is told to that, the rest to the bus.
+void Assembly::stand_behind_bus() {
+  const PlantType& type = bus_type();
+  const imu::SerialImuSettings beside = serial_imu_at(robot_.config, type, "", "");
+  PlantSite site = plant_site(robot_.config, "");
+  site.seed = seed_;
+  std::vector<EmulatedFault> faults, faults_of_imu;
+  for (const PlacedName& one : scenario_.bus.faults) {
+    try {
+      const EmulatedFault fault = emulated_fault(one.name);
+      (beside.given() && fault.of == "imu" ? faults_of_imu : faults).push_back(fault);
+    } catch (const std::invalid_argument& error) {
+      refuse(scenario_.file, one.place, "bus.faults: " + one.name + ": " + error.what());
+    }
+  }
+  try {
+    sound_ = type.make_wired_world(std::move(sound_), site, faults);
+    if (beside.given())
+      sound_ = std::make_unique<imu::ImuWorld>(std::move(sound_), beside, robot_.config.plant.imu.pose.orientation,
+                                               faults_of_imu, seed_);
+  } catch (const std::invalid_argument& error) {
+    refuse(scenario_.file, scenario_.bus.type.place, std::string("bus.faults: ") + error.what());
+  }
+  (void)sound_->robot(0).open();
 }
 
 void Assembly::join(World& world) {

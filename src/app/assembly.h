@@ -121,6 +121,9 @@ class Assembly {
   const PlantType& plant_type() const;
   void make_plant();
   void make_world(const PlantType& type);
+  bool has_bus() const noexcept { return !scenario_.bus.type.name.empty(); }
+  const PlantType& bus_type() const;
+  void stand_behind_bus();
   void join(World& world);
   WorldRobot& world_robot() noexcept;
   const TruthSource* truth_source() noexcept;

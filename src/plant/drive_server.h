@@ -5,6 +5,9 @@
 // Between two sessions the drives' power is off. The model's time begins when the first drive gets torque, so that the
 // robot does not fall while its drives are found and set up.
 //
+// In step with its peer, whose clock may be slow or stand still, the model's time, and with it that of the drives'
+// watchdogs, passes with the cycles of the peer's bus. The server is then patient for in_step_timeout_ns.
+//
 // Faults of the bus and the drives may be planned; they happen by the model's time in each session anew.
 //
 // Threads: await and beat by one thread at a time; a thread of its own serves the bus during a session. What a type
@@ -14,56 +17,24 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
-#include <span>
-#include <string>
 #include <thread>
 #include <vector>
 
-#include "kadans/plant/plant_type.h"
+#include "emulated_drives.h"
 
 namespace kadans {
-
-// A kind of fault that a bus or its drives may have.
-struct EmulatedFaultKind {
-  enum class Of : std::uint8_t { nothing, line, drive };  // line: a port or a board; none named: all
-  const char* name;
-  Of of;
-  const char* size;  // what it means; "" when it means nothing
-};
-// Throws std::invalid_argument that says what is wrong with the fault.
-void check_fault(const EmulatedFault& fault, std::span<const EmulatedFaultKind> kinds,
-                 const std::vector<std::string>& drives, const std::vector<std::string>& lines);
-
-// What moves the robot on the other side of the bus. Called by one thread at a time.
-class EmulatedDrives {
- public:
-  EmulatedDrives() = default;
-  EmulatedDrives(const EmulatedDrives&) = delete;
-  EmulatedDrives& operator=(const EmulatedDrives&) = delete;
-
-  virtual void look(WorldRobot& robot) = 0;   // the drives stand where the robot's joints are
-  virtual void drive(WorldRobot& robot) = 0;  // the robot's drives do what these do
-  virtual void pass(std::int64_t dt_ns) noexcept = 0;
-  virtual void switch_power() noexcept = 0;  // off and on again
-  virtual bool any_torque() const noexcept = 0;
-  virtual bool any_watchdog_tripped() const noexcept = 0;
-  // Throws std::invalid_argument when they cannot have this fault.
-  virtual void check(const EmulatedFault& fault) const = 0;
-  virtual void befall(const EmulatedFault& fault, bool begins) noexcept = 0;  // or ends
-
- protected:
-  ~EmulatedDrives() = default;
-};
 
 class DriveServer : public PlantEmulator {
  public:
   bool await(int milliseconds) noexcept final;
   bool beat(World& world, std::uint32_t periods) final;
+  bool step_with_peer() noexcept final { return in_step_ = true; }
   const Session& session() const noexcept final { return session_; }
   void plan_faults(const std::vector<EmulatedFault>& faults) final;
 
  protected:
-  explicit DriveServer(std::int64_t period_ns) noexcept : period_ns_(period_ns) {}
+  // A cycle of the peer's bus is a tick of its control in every `divisor`.
+  DriveServer(std::int64_t period_ns, std::uint32_t divisor) noexcept : period_ns_(period_ns), divisor_(divisor) {}
   // A destructor of a type calls it first.
   bool end_session() noexcept;
 
@@ -71,19 +42,22 @@ class DriveServer : public PlantEmulator {
   virtual std::vector<int> descriptors() const = 0;
   // Takes what came and answers it; returns when it is to be called again at the latest, on CLOCK_MONOTONIC.
   virtual std::int64_t serve_bus(std::int64_t now_ns) noexcept = 0;
-  virtual std::uint64_t heard() const noexcept = 0;  // messages that were understood, ever
+  virtual std::uint64_t heard() const noexcept = 0;   // messages that were understood, ever
+  virtual std::uint64_t cycles() const noexcept = 0;  // of the peer's bus, ever
   virtual EmulatedDrives& drives() noexcept = 0;
 
  private:
-  void serve() noexcept;
-  void let_faults_happen() noexcept;
+  static constexpr std::int64_t in_step_timeout_ns = 60'000'000'000;
+  static constexpr std::uint64_t in_step_ahead_max = 10;  // cycles in a beat; beyond that they are lost
 
-  struct Planned {
-    EmulatedFault is;
-    bool begun = false, ended = false;
-  };
+  void serve() noexcept;
+  std::uint32_t due(std::uint32_t periods) noexcept;
+
   std::int64_t period_ns_;
-  std::vector<Planned> faults_;
+  std::uint32_t divisor_;
+  bool in_step_ = false;
+  std::uint64_t stepped_ = 0;  // for that many cycles of the peer's bus
+  FaultPlan faults_;
   std::int64_t time_ns_ = 0;  // of the model, in this session
   std::mutex mutex_;          // of what the type brings
   std::thread thread_;

@@ -23,6 +23,10 @@ std::unique_ptr<Plant> PlantType::make_plant(const PlantSite&) const { fail(*thi
 std::unique_ptr<PlantEmulator> PlantType::make_emulator(const PlantSite&, const std::string&) const {
   fail(*this, " speaks no protocol");
 }
+std::unique_ptr<World> PlantType::make_wired_world(std::unique_ptr<World>, const PlantSite&,
+                                                   const std::vector<EmulatedFault>&) const {
+  fail(*this, " has no wire on virtual time");
+}
 
 void PlantEmulator::plan_faults(const std::vector<EmulatedFault>& faults) {
   if (!faults.empty()) throw std::invalid_argument("this protocol has no faults: let scenarios have them");

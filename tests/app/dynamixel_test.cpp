@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 
 #include "app/assembly.h"
-#include "plant/dynamixel_world.h"
 #include "program.h"
 
 using namespace kadans;
@@ -12,31 +11,6 @@ namespace {
 
 constexpr const char* robot_file = KADANS_SOURCE_DIR "/config/jiwiy/servos.json";
 
-test::DynamixelWorld* newest_world = nullptr;
-
-// A model for scenarios: Bullet's, driven through servos.
-class ServosType final : public PlantType {
- public:
-  std::string_view name() const noexcept override { return "servos"; }
-  std::string_view doc() const noexcept override { return "of the test"; }
-  bool is_model() const noexcept override { return true; }
-  std::unique_ptr<World> make_world(const WorldSite& world) const override {
-    dynamixel::DynamixelSettings settings;
-    settings.ports = {{.name = "bus", .device = "the bus", .baud = 3'000'000}};
-    settings.servos = {
-        {.drive = "pan", .port = "bus", .id = 1, .model = dynamixel::find_model("XM430-W210")},
-        {.drive = "tilt", .port = "bus", .id = 2, .model = dynamixel::find_model("XM430-W210"), .reversed = true}};
-    const PlantSite site{.file = robot_file,
-                         .layout = {.robot = "jiwiy", .joints = {"pan", "tilt"}, .period_ns = 2'000'000}};
-    const PlantTypes types = plant_types();
-    auto made = std::make_unique<test::DynamixelWorld>(plant_type(types, "bullet").make_world(world), settings, site);
-    newest_world = made.get();
-    return made;
-  }
-};
-std::unique_ptr<PlantType> make_servos_type() { return std::make_unique<ServosType>(); }
-KADANS_REGISTER_PLANT_TYPE(make_servos_type);
-
 struct Sine {
   bool passed = false;
   std::string why;
@@ -44,10 +18,10 @@ struct Sine {
   std::vector<PlantCount> counts;
 };
 
-Sine sine(const char* plant, std::uint64_t seed) {
+Sine sine(const char* bus, std::uint64_t seed) {
   ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/jiwiy_sine.json");
   scenario.robot = robot_file;
-  scenario.plant = plant;
+  scenario.bus.type.name = bus;
   RunLog log;
   Assembly robot(scenario, seed, log);
   Checks checks(robot.catalog().signals, scenario.checks);
@@ -59,7 +33,7 @@ Sine sine(const char* plant, std::uint64_t seed) {
   for (const RunFault& one : result.faults) is.why += std::string(name(one.code)) + "; ";
   is.hash = result.state_hash;
   is.why += result.error;
-  if (std::string_view(plant) == "servos") is.counts = newest_world->driver().link_counts();
+  is.counts = robot.plant().link_counts();
   return is;
 }
 
@@ -68,7 +42,7 @@ Sine sine(const char* plant, std::uint64_t seed) {
 TEST_CASE("JIWIY follows its sine through servos, with the behavior that drives the model, on every seed") {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     CAPTURE(seed);
-    const Sine model = sine("bullet", seed), servos = sine("servos", seed);
+    const Sine model = sine("", seed), servos = sine("dynamixel", seed);
     CAPTURE(servos.why);
     CHECK(model.passed);
     CHECK(servos.passed);
@@ -76,7 +50,7 @@ TEST_CASE("JIWIY follows its sine through servos, with the behavior that drives 
     CHECK(servos.counts.at(0).value > 3700);  // a cycle in each control tick of 2 ms
     CHECK(servos.counts.at(2).value == 0);    // none lost
   }
-  CHECK(sine("servos", 1).hash == sine("servos", 1).hash);
+  CHECK(sine("dynamixel", 1).hash == sine("dynamixel", 1).hash);
 }
 
 TEST_CASE("A device that is no port of servos is refused, with what to do") {

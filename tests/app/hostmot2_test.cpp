@@ -6,10 +6,6 @@
 #include <doctest/doctest.h>
 
 #include "app/assembly.h"
-#include "plant/dynamixel_world.h"
-#include "plant/hostmot2_world.h"
-#include "plant/json_plant_fields.h"
-#include "plant/udp_world.h"
 #include "program.h"
 
 namespace hostmot2_test {
@@ -20,149 +16,49 @@ using namespace kadans::program;
 namespace {
 
 const std::string source = KADANS_SOURCE_DIR "/";
-std::string robot_on_boards;  // the configuration of the robot that stands there
-test::HostMot2World* newest_machine = nullptr;
-test::DynamixelWorld* newest_servos = nullptr;
-test::UdpWorld* newest_udp = nullptr;
-
-// With what the files say on which it is based.
-nlohmann::ordered_json read_whole(const std::string& file) {
-  std::ifstream in(file);
-  const nlohmann::ordered_json own = nlohmann::ordered_json::parse(in);
-  if (!own.contains("based_on")) return own;
-  nlohmann::ordered_json all = read_whole(source + own.at("based_on").get<std::string>());
-  all.merge_patch(own);
-  return all;
-}
-
-// A model for scenarios: Bullet's, driven through the boards that the robot's configuration names.
-class BoardsType final : public PlantType {
- public:
-  std::string_view name() const noexcept override { return "boards"; }
-  std::string_view doc() const noexcept override { return "of the test"; }
-  bool is_model() const noexcept override { return true; }
-  std::unique_ptr<World> make_world(const WorldSite& world) const override {
-    const nlohmann::ordered_json robot = read_whole(robot_on_boards);
-    hostmot2::HostMot2Settings settings;
-    test::JsonPlantFields fields(robot.at("plant").at("hm2-eth"));
-    settings.fields(fields);
-    PlantSite site{.file = robot_on_boards, .layout = {.robot = robot.at("name")}};
-    for (const auto& joint : world.model.joints) site.layout.joints.push_back(joint.name);
-    for (const FootSettings& foot : world.settings.feet) site.layout.feet.push_back(foot.link);
-    const PlantTypes types = plant_types();
-    auto made =
-        std::make_unique<test::HostMot2World>(plant_type(types, "bullet").make_world(world), settings, settings, site);
-    if (robot.at("plant").contains("serial_imu")) {
-      imu::SerialImuSettings beside;
-      test::JsonPlantFields its(robot.at("plant").at("serial_imu"));
-      beside.fields(its);
-      made->stand_beside(beside, world.settings.imu.pose.orientation);
-    }
-    newest_machine = made.get();
-    return made;
-  }
-};
-// The same robot on servos as strong as its motors, a port for each leg.
-class LegServosType final : public PlantType {
- public:
-  std::string_view name() const noexcept override { return "leg_servos"; }
-  std::string_view doc() const noexcept override { return "of the test"; }
-  bool is_model() const noexcept override { return true; }
-  std::unique_ptr<World> make_world(const WorldSite& world) const override {
-    dynamixel::DynamixelSettings settings;
-    settings.ports = {{.name = "l", .device = "left", .baud = 4'000'000},
-                      {.name = "r", .device = "right", .baud = 4'000'000}};
-    settings.usb_latency_s = 0.0005;
-    std::uint32_t id = 0;
-    PlantSite site{.file = robot_on_boards, .layout = {.robot = "tulip"}};
-    for (const auto& joint : world.model.joints) {
-      site.layout.joints.push_back(joint.name);
-      if (joint.passive()) continue;
-      settings.servos.push_back({.drive = joint.name,
-                                 .port = joint.name.substr(0, 1),
-                                 .id = ++id,
-                                 .model = dynamixel::find_model("XM430-W350"),
-                                 .Nm_per_A = 12});
-    }
-    const PlantTypes types = plant_types();
-    auto made = std::make_unique<test::DynamixelWorld>(plant_type(types, "bullet").make_world(world), settings, site);
-    newest_servos = made.get();
-    return made;
-  }
-};
-
-class UdpWorldType final : public PlantType {
- public:
-  std::string_view name() const noexcept override { return "udp_in_step"; }
-  std::string_view doc() const noexcept override { return "of the test"; }
-  bool is_model() const noexcept override { return true; }
-  std::unique_ptr<World> make_world(const WorldSite& world) const override {
-    PlantLayout layout{.robot = "tulip"};
-    for (const auto& joint : world.model.joints) layout.joints.push_back(joint.name);
-    for (const FootSettings& foot : world.settings.feet) layout.feet.push_back(foot.link);
-    const PlantTypes types = plant_types();
-    auto made = std::make_unique<test::UdpWorld>(plant_type(types, "bullet").make_world(world), layout);
-    newest_udp = made.get();
-    return made;
-  }
-};
-std::unique_ptr<PlantType> make_leg_servos_type() { return std::make_unique<LegServosType>(); }
-KADANS_REGISTER_PLANT_TYPE(make_leg_servos_type);
-std::unique_ptr<PlantType> make_udp_world_type() { return std::make_unique<UdpWorldType>(); }
-KADANS_REGISTER_PLANT_TYPE(make_udp_world_type);
-std::unique_ptr<PlantType> make_boards_type() { return std::make_unique<BoardsType>(); }
-KADANS_REGISTER_PLANT_TYPE(make_boards_type);
-
 struct Through {
   bool passed = false;
   std::string why;
   std::uint64_t hash = 0;
   std::vector<PlantCount> counts;
+  std::uint64_t lost = 0;
   double delay_ticks = 0;  // mean age of a joint's reading
   std::vector<CheckResult> checks;
 };
 
 // Over the 20 ticks behind the end of a run.
-double delay_ticks_of(OneRobotWorld& world) {
+double delay_ticks_of(World& world) {
   SensorFrame sensors;
   double sum = 0;
   for (int i = 0; i < 20; ++i) {
-    world.read(sensors);
+    world.robot(0).read(sensors);
     const std::int64_t time_ns = sensors.joints[0].time_ns != 0 ? sensors.joints[0].time_ns : sensors.time_ns;
     sum += 1e3 * seconds_between(time_ns, sensors.time_ns);
-    world.write({});
+    world.robot(0).write({});
     world.step(1'000'000);
   }
   return sum / 20;
 }
 
-// `stick`: a recording in the place of the scenario's.
-Through run_through(const char* plant, const std::string& file, const char* scenario_name, std::uint64_t seed,
+// `bus`: "" for the model itself. `stick`: a recording in the place of the scenario's.
+Through run_through(const char* bus, const std::string& file, const char* scenario_name, std::uint64_t seed,
                     const std::string& stick = "") {
-  robot_on_boards = source + file;
   ScenarioConfig scenario = read_scenario_config(source + "config/scenarios/" + scenario_name + ".json");
-  scenario.robot = robot_on_boards;
-  scenario.plant = plant;
+  scenario.robot = source + file;
+  scenario.bus.type.name = bus;
   if (!stick.empty()) scenario.joystick.recording = stick;
   RunLog log;
   Assembly robot(scenario, seed, log);
   Checks checks(robot.catalog().signals, scenario.checks);
   const RunResult result = run_scenario(robot.parts(), scenario.duration_s, checks, {});
-  Through is{.passed = result.passed};
+  Through is{.passed = result.passed, .why = result.error, .hash = result.state_hash, .checks = result.checks};
   for (const CheckResult& check : result.checks) {
     if (!check.passed) is.why += check.name + " (" + std::to_string(check.value) + "); ";
   }
   for (const RunFault& one : result.faults) is.why += std::string(name(one.code)) + "; ";
-  is.hash = result.state_hash;
-  is.why += result.error;
-  const std::string_view through = plant;
-  if (through == "boards") is.counts = newest_machine->driver().link_counts();
-  if (through == "leg_servos") is.counts = newest_servos->driver().link_counts();
-  if (through == "udp_in_step") is.counts = newest_udp->driver().link_counts();
-  if (through == "boards") is.delay_ticks = delay_ticks_of(*newest_machine);
-  if (through == "leg_servos") is.delay_ticks = delay_ticks_of(*newest_servos);
-  if (through == "udp_in_step") is.delay_ticks = newest_udp->driver().round_trip_ticks();
-  is.checks = result.checks;
+  is.counts = robot.plant().link_counts();
+  for (const PlantCount& one : is.counts) is.lost += std::string_view(one.name) == "lost" ? one.value : 0;
+  is.delay_ticks = delay_ticks_of(*robot.world());
   return is;
 }
 
@@ -179,8 +75,8 @@ TEST_CASE("JIWIY follows its sine through a HostMot2 board, with the behavior th
   constexpr const char* file = "config/jiwiy/anything_io.json";
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     CAPTURE(seed);
-    const Through model = run_through("bullet", file, "jiwiy_sine", seed);
-    const Through board = run_through("boards", file, "jiwiy_sine", seed);
+    const Through model = run_through("", file, "jiwiy_sine", seed);
+    const Through board = run_through("hm2-eth", file, "jiwiy_sine", seed);
     CAPTURE(board.why);
     CHECK(model.passed);
     CHECK(board.passed);
@@ -189,7 +85,7 @@ TEST_CASE("JIWIY follows its sine through a HostMot2 board, with the behavior th
     CHECK(count_of(board, "lost") == 0);
     CHECK(count_of(board, "bites") == 0);
   }
-  CHECK(run_through("boards", file, "jiwiy_sine", 1).hash == run_through("boards", file, "jiwiy_sine", 1).hash);
+  CHECK(run_through("hm2-eth", file, "jiwiy_sine", 1).hash == run_through("hm2-eth", file, "jiwiy_sine", 1).hash);
 }
 
 TEST_CASE("JIWIY as in 2008: its joystick at 10 Hz turns it through a board that is asked at 100 Hz") {
@@ -201,7 +97,7 @@ TEST_CASE("JIWIY as in 2008: its joystick at 10 Hz turns it through a board that
     if (!line.starts_with("E:") || line.find(" 0001 ") == std::string::npos) out << line << '\n';
   }
   out.close();
-  const Through board = run_through("boards", "config/jiwiy/anything_io_2008.json", "jiwiy_unplugged", 1, stick);
+  const Through board = run_through("hm2-eth", "config/jiwiy/anything_io_2008.json", "jiwiy_unplugged", 1, stick);
   CAPTURE(board.why);
   CHECK(board.passed);
   CHECK(count_of(board, "sent") == 351);  // in 3.5 s
@@ -210,11 +106,27 @@ TEST_CASE("JIWIY as in 2008: its joystick at 10 Hz turns it through a board that
 }
 
 TEST_CASE(
+    "JIWIY as in 2008 rests and follows in effort mode, too: its gains fit the delay of a board that is asked at 100 "
+    "Hz") {
+  constexpr const char* file = "config/jiwiy/anything_io_2008.json";
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    CAPTURE(seed);
+    // Its recording's button hands over to effort mode before the joystick is pulled out.
+    const Through stick = run_through("hm2-eth", file, "jiwiy_unplugged", seed);
+    CAPTURE(stick.why);
+    CHECK(stick.passed);
+    const Through sine = run_through("hm2-eth", file, "jiwiy_sine", seed);
+    CAPTURE(sine.why);
+    CHECK(sine.passed);
+  }
+}
+
+TEST_CASE(
     "TULip squats, gets up and catches pushes through two HostMot2 boards and a serial IMU, with the same behaviors") {
   constexpr const char* file = "config/tulip/anything_io.json";
   for (const std::string scenario : {"squat", "get_up_prone", "get_up_supine", "push_forward", "push_left"}) {
     CAPTURE(scenario);
-    const Through boards = run_through("boards", file, scenario.c_str(), 1);
+    const Through boards = run_through("hm2-eth", file, scenario.c_str(), 1);
     CAPTURE(boards.why);
     CHECK(boards.passed);
     CHECK(count_of(boards, "lost") == 0);
@@ -222,7 +134,7 @@ TEST_CASE(
     CHECK(count_of(boards, "imu_readings") > 200);
     CHECK(count_of(boards, "imu_lost") == 0);
   }
-  CHECK(run_through("boards", file, "squat", 1).hash == run_through("boards", file, "squat", 1).hash);
+  CHECK(run_through("hm2-eth", file, "squat", 1).hash == run_through("hm2-eth", file, "squat", 1).hash);
 }
 
 TEST_CASE("The same squat goes through every bus, and the table says how well") {
@@ -233,21 +145,23 @@ TEST_CASE("The same squat goes through every bus, and the table says how well") 
     return 1e9;
   };
   std::string table = "through, height error mm, tilt rad, delay ticks, lost\n";
-  for (const std::string plant : {"bullet", "udp_in_step", "boards", "leg_servos"}) {
-    const std::string file = plant == "boards" ? "config/tulip/anything_io.json" : "config/tulip/robot.json";
-    const Through run = run_through(plant.c_str(), file, "squat", 1);
-    CAPTURE(plant);
+  for (const std::string bus : {"", "udp", "hm2-eth", "dynamixel"}) {
+    const char* const file = bus == "hm2-eth"     ? "config/tulip/anything_io.json"
+                             : bus == "dynamixel" ? "config/tulip/servos.json"
+                                                  : "config/tulip/robot.json";
+    const Through run = run_through(bus.c_str(), file, "squat", 1);
+    CAPTURE(bus);
     CAPTURE(run.why);
     // Servos on a serial line are read and driven anew every other tick: it squats, and sways.
-    if (plant == "leg_servos") {
+    if (bus == "dynamixel") {
       for (const char* what : {"stays up", "crouches", "stands at the end"}) CHECK_FALSE(has(run.why, what));
     } else {
       CHECK(run.passed);
     }
     std::array<char, 200> row{};
-    std::snprintf(row.data(), row.size(), "%s, %.3f, %.4f, %.2f, %llu\n", plant.c_str(),
+    std::snprintf(row.data(), row.size(), "%s, %.3f, %.4f, %.2f, %llu\n", bus.c_str(),
                   1e3 * worst(run, "height follows"), worst(run, "torso upright"), run.delay_ticks,
-                  static_cast<unsigned long long>(run.counts.empty() ? 0 : count_of(run, "lost")));
+                  static_cast<unsigned long long>(run.lost));
     table += row.data();
   }
   MESSAGE(table);
@@ -353,7 +267,7 @@ TEST_CASE("A robot on boards that are not there is refused, with what to do") {
   Outcome outcome = run(command + "--peer 127.0.7.97", folder);
   CHECK(outcome.exit_code == 2);
   CHECK(has(outcome.err, "config/jiwiy/anything_io.json:"));
-  CHECK(has(outcome.err, "board 'io' at 127.0.7.97 does not answer: is it powered, is its cable in"));
+  CHECK(has(outcome.err, "board 'io' at 127.0.7.97 does not answer: is it powered, and is its cable in?"));
   outcome = run(command + "--peer nowhere", folder);
   CHECK(outcome.exit_code == 2);
   CHECK(has(outcome.err, "--peer: 'nowhere' must be an address such as 192.168.1.121"));

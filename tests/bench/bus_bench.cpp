@@ -145,8 +145,8 @@ void bench_bus(Report& report) {
   Answerer board(board_at, &machine.wire(0));
   Answerer echo(echo_at, nullptr);
   std::vector<std::unique_ptr<hostmot2::BoardLink>> links;
-  links.push_back(
-      std::make_unique<hostmot2::LbpLink>(std::make_unique<hostmot2::UdpPort>(board_at), 50'000'000, 10'000'000));
+  links.push_back(std::make_unique<hostmot2::LbpLink>(std::make_unique<hostmot2::UdpPort>(settings.boards.front()),
+                                                      50'000'000, 10'000'000));
   hostmot2::HostMot2Plant plant(settings, site, std::move(links));
   (void)plant.open();
   SensorFrame sensors;

@@ -16,6 +16,9 @@ inline constexpr Broken broken_scenarios[] = {
     {"\"plant\": \"bullet\"", "\"plant\": \"bulet\"", "4:12: plant: unknown value 'bulet', did you mean 'bullet'?"},
     {"\"plant\": \"bullet\"", "\"plant\": \"mujoco\"", "4:12: plant: unknown value 'mujoco' (known: bullet, ideal)"},
     {"\"plant\": \"bullet\"", "\"plant\": false", "4:12: plant must be a string, not false: what plays the robot"},
+    {"\"plant\": \"bullet\"", "\"bus\": {}",
+     "4:10: key 'type' is missing in bus: the bus, as `kadans run --plant` names it; "
+     "where its drives are stands in the robot's configuration"},
     {"\"duration_s\": 2.5", "\"duration\": 2.5",
      "1:1: key 'duration_s' is missing: duration of the simulation\n5:3: unknown key 'duration', did you mean "
      "'duration_s'?"},

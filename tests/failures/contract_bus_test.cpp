@@ -6,6 +6,7 @@
 #include "kadans/signal/input_error.h"
 #include "plant/dynamixel_world.h"
 #include "plant/hostmot2_world.h"
+#include "plant/imu/emulator/imu_world.h"
 
 namespace contract_bus_test {
 
@@ -114,8 +115,16 @@ hostmot2::HostMot2Settings board_settings() {
 }
 
 struct Boards : BusRobot<test::HostMot2World> {
-  explicit Boards(const imu::SerialImuSettings& beside = {})
-      : BusRobot(hostmot2::drive_code_words, 0, board_settings(), board_settings(), site(), beside) {}
+  Boards() : BusRobot(hostmot2::drive_code_words, 0, board_settings(), board_settings(), site()) {}
+};
+
+// The same boards with an IMU on a serial line beside them.
+struct BoardsBesideImu : imu::ImuWorld {
+  explicit BoardsBesideImu(std::unique_ptr<World> model)
+      : BoardsBesideImu(new test::HostMot2World(std::move(model), board_settings(), board_settings(), site())) {}
+  explicit BoardsBesideImu(test::HostMot2World* made)
+      : ImuWorld(std::unique_ptr<World>(made), {.device = "the line"}, {1, 0, 0, 0}), boards(*made) {}
+  test::HostMot2World& boards;
 };
 
 }  // namespace
@@ -151,15 +160,15 @@ TEST_CASE("that board's joints alone are off, latched, the others are driven as 
 
 TEST_CASE("after silent_ticks_max readings the robot holds until it is back, and the drives go on" *
           description("an IMU on a serial line is silent: its cable is out")) {
-  Boards robot({.device = "the line"});
-  robot.world.imu_device().silent = true;
+  BusRobot<BoardsBesideImu> robot(hostmot2::drive_code_words, 0);
+  robot.world.device().silent = true;
   robot.run(50);
   CHECK(robot.status().level == SafetyLevel::normal);
   robot.run(30);
   CHECK(robot.status().level == SafetyLevel::hold);
   CHECK(robot.status().first_fault.code == FaultCode::imu_silent);
-  for (const std::size_t joint : {0U, 1U}) CHECK(robot.world.machine().enabled(joint));
-  robot.world.imu_device().silent = false;
+  for (const std::size_t joint : {0U, 1U}) CHECK(robot.world.boards.machine().enabled(joint));
+  robot.world.device().silent = false;
   robot.run(600);  // the fault must be over for a while
   CHECK(robot.status().level == SafetyLevel::normal);
 }

@@ -161,6 +161,14 @@ TEST_CASE("What does not fit is told before anything moves") {
   CHECK(Bench().why_not().empty());
 }
 
+TEST_CASE("A loop whose first tick comes late begins with a reading of that tick") {
+  Bench bench;
+  bench.world.start();
+  for (int i = 0; i < 40; ++i) bench.world.step(ms);
+  bench.world.read(bench.sensors);
+  CHECK(bench.sensors.joints[0].time_ns == 40 * ms);
+}
+
 TEST_CASE("When the driver falls silent the board releases its outputs, and obeys again after reset and enable") {
   Bench bench;
   bench.run(effort(0.2), velocity(0.2), 100);

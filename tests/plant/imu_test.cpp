@@ -5,12 +5,12 @@
 
 #include <doctest/doctest.h>
 
-#include "imu_line.h"
 #include "json_plant_fields.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/plant/ideal_world.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/testing/allocation_count.h"
+#include "plant/imu/emulator/imu_line.h"
 #include "plant/imu/imu_plant.h"
 #include "two_joints.h"
 
@@ -58,7 +58,7 @@ SerialImuSettings mti(Protocol protocol = Protocol::mtdata2) {
 struct Rig {
   explicit Rig(const SerialImuSettings& settings = mti(), EmulatedImu::Settings there = {})
       : device(there, 1),
-        line(new test::ImuLine(device)),
+        line(new ImuLine(device)),
         world(test::two_joints(), PlantSettings{.position_rad = {0, 0}}),
         plant(std::make_unique<Bus>(world, *this), settings, from_roll_pitch_yaw(0, 0, std::acos(0.0)),
               std::unique_ptr<SerialPort>(line), ImuPlant::Threads::none) {}
@@ -104,7 +104,7 @@ struct Rig {
   }
 
   EmulatedImu device;
-  test::ImuLine* line;
+  ImuLine* line;
   IdealWorld world;
   std::int64_t now_ns = 0;
   ImuPlant plant;

@@ -58,3 +58,15 @@ ip netns exec "$here" "$kadans" run config/jiwiy/anything_io.json --plant hm2-et
 received=$(grep -o '"received": *[0-9]*' "$work/run" | grep -o '[0-9]*$' || echo 0)
 [ "$received" -gt 1000 ] || { echo "the boards answered $received times in 3 s"; cat "$work/run" "$work/why"; exit 1; }
 echo "kadans had $received answers of the boards over veth in 3 s"
+
+# With the interface down, or without its cable, nothing begins, and the card is named at the board's line.
+refused() {  # WORDS
+  ! ip netns exec "$here" "$kadans" run config/jiwiy/anything_io.json --plant hm2-eth --soft --no-ctl >"$work/run" 2>"$work/why" ||
+    { echo "it drives boards that it cannot reach"; exit 1; }
+  grep -q "anything_io.json:[0-9]*:[0-9]*: board 'io'.*$1" "$work/why" || { echo "it does not say '$1'"; cat "$work/why"; exit 1; }
+}
+ip -n "$there" link set board1 down
+refused "board0 (192.168.1.1) has no cable in, or nothing is powered at its other end: plug the cable in"
+ip -n "$here" link set board0 down
+refused "board0 (192.168.1.1) is down: sudo ip link set board0 up"
+echo "an interface that is down is named"

@@ -162,6 +162,13 @@ class PlantType {
   // Speaks a protocol: make_emulator makes the other side of it, which listens at `listen`. Throws InputError.
   virtual bool is_protocol() const noexcept { return false; }
   virtual std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const;
+
+  // The same with both ends of the wire on virtual time: make_wired_world makes a world of one robot around `model`,
+  // which is driven through the bus, byte by byte. Throws InputError; for faults that it cannot have
+  // std::invalid_argument. Its robot's open() finds the drives.
+  virtual bool has_wired_world() const noexcept { return false; }
+  virtual std::unique_ptr<World> make_wired_world(std::unique_ptr<World> model, const PlantSite& site,
+                                                  const std::vector<EmulatedFault>& faults) const;
 };
 
 using MakePlantType = std::unique_ptr<PlantType> (*)();

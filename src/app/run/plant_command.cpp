@@ -1,8 +1,6 @@
 // `kadans plant`: serves a model of a robot in real time to control engines on other machines, one after the other.
 // Each session begins with the robot in its configured start.
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +15,7 @@
 #include "app/timing/run_report.h"
 #include "config/json/foreign_json.h"
 #include "kadans/plant/plant_type.h"
+#include "plant/emulated_drives.h"
 #include "plant/imu/emulator/imu_server.h"
 #include "real_time_start.h"
 #include "realtime/machine/keep_awake.h"
@@ -48,36 +47,14 @@ class ServeTask final : public Task {
   std::uint64_t lost_periods_ = 0;
 };
 
-// "drive_hot:tilt@3+1=85". Throws std::invalid_argument.
-EmulatedFault read_fault(const std::string& text) {
-  EmulatedFault fault;
-  const std::size_t at = text.find('@');
-  const std::string what = text.substr(0, at);
-  const std::size_t colon = what.find(':');
-  fault.kind = what.substr(0, colon);
-  if (colon != std::string::npos) fault.of = what.substr(colon + 1);
-  const auto number = [&](std::size_t from, std::size_t until) {
-    double value = 0;
-    const char* const end = text.data() + std::min(until, text.size());
-    const auto [rest, error] = std::from_chars(text.data() + from, end, value);
-    if (error != std::errc() || rest != end || !(std::abs(value) <= 1e6))
-      throw std::invalid_argument("'" + text.substr(from, until - from) + "' is no number");
-    return value;
-  };
-  if (at == std::string::npos) throw std::invalid_argument("says no time: @ and seconds after the first torque");
-  const std::size_t equals = std::min(text.find('=', at), text.size()), plus = std::min(text.find('+', at), equals);
-  fault.from_s = number(at + 1, plus);
-  if (plus < equals) fault.until_s = fault.from_s + number(plus + 1, equals);
-  if (equals < text.size()) fault.size = number(equals + 1, text.size());
-  if (!(fault.from_s >= 0 && fault.until_s > fault.from_s)) throw std::invalid_argument("times must be above 0");
-  return fault;
-}
-
 class PlantService {
  public:
   explicit PlantService(const PlantOptions& options) : options_(options), robot_(read_robot(options.robot)) {
-    if (options.in_step && !emulator_->step_with_peer())
-      throw InputError({.message = "--in-step: the protocol '" + options.as + "' does not count the peer's ticks"});
+    if (!options.in_step || emulator_->step_with_peer()) return;
+    throw InputError({.file = "--in-step",
+                      .message = options.imu.empty()
+                                     ? "the protocol '" + options.as + "' does not count the peer's ticks"
+                                     : "does not go with --imu: its device measures by the clock"});
   }
 
   int run() {
@@ -126,7 +103,7 @@ class PlantService {
   void plan_faults(PlantEmulator& drives) const {
     for (const std::string& text : options_.faults) {
       try {
-        drives.plan_faults({read_fault(text)});
+        drives.plan_faults({emulated_fault(text)});
       } catch (const std::invalid_argument& error) {
         throw InputError({.file = "--fault", .message = text + ": " + error.what()});
       }

@@ -192,6 +192,18 @@ void plant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   }
 }
 
+void bus_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+  ScenarioBus& bus = scenario.bus;
+  f.string("type", bus.type.name,
+           "the bus, as `kadans run --plant` names it; where its drives are stands in the robot's configuration",
+           Need::required);
+  bus.type.place = f.place("type");
+  f.strings("faults", bus.faults, {0, 1000},
+            "what befalls the bus or its drives, as KIND[:OF]@S[+D][=SIZE]: cable_out@2+0.5, drive_hot:tilt@3=85");
+  if (f.reading() && !scenario.robots.empty())
+    problems.add(f.place(), "bus: a robot on a bus is alone in its world, this scenario has robots");
+}
+
 // How it is run among others.
 void suite_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   std::vector<PlacedName> tags;
@@ -316,6 +328,8 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     if (e.reading()) scenario.robots.push_back(std::move(robot));
   });
   world_fields(f, scenario.world, problems);
+  f.object("bus", "a bus with drives between the control and the model, byte by byte on virtual time",
+           [&](Fields& e) { bus_fields(e, scenario, problems); });
   f.object("joystick", "a joystick that is played from a recording",
            [&](Fields& e) { joystick_fields(e, scenario, problems); });
   f.object("sight", "simulated perception of a ball",

@@ -143,6 +143,12 @@ struct PluginGate {
   bool lets_in(const std::filesystem::path& file) const;
 };
 
+// A bus with drives that stands between the control and the model, on virtual time, and what befalls it.
+struct ScenarioBus {
+  PlacedName type;                 // a plant type with a wired world (plant_type.h); "": none
+  std::vector<PlacedName> faults;  // "drive_hot:tilt@3=85", as of `kadans plant --fault`
+};
+
 struct ScenarioConfig {
   std::string file;
   std::string name;
@@ -150,6 +156,7 @@ struct ScenarioConfig {
   std::string robot;             // path of the robot's configuration, resolved
   std::string plant = "bullet";  // name of a plant type (plant_type.h); a file may name only a model
   TextPlace plant_place;         // in a file that names one
+  ScenarioBus bus;
   std::string imu;   // not in the file: the device of the IMU beside it; "": the one in the robot's configuration
   std::string peer;  // not in the file: address of a plant that is no model; "": the one in the robot's configuration
   bool read_only = false;  // not in the file: nothing is asked of the drives

@@ -2,6 +2,7 @@
 
 #include "dynamixel_plant.h"
 #include "emulator/servo_server.h"
+#include "emulator/servo_world.h"
 #include "kadans/signal/input_error.h"
 #include "port_check.h"
 
@@ -23,6 +24,13 @@ class DynamixelType final : public PlantType {
   bool is_protocol() const noexcept override { return true; }
   std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const override {
     return std::make_unique<dynamixel::ServoServer>(settings_at(site, ""), site, listen);
+  }
+  bool has_wired_world() const noexcept override { return true; }
+  std::unique_ptr<World> make_wired_world(std::unique_ptr<World> model, const PlantSite& site,
+                                          const std::vector<EmulatedFault>& faults) const override {
+    auto world = std::make_unique<dynamixel::ServoWorld>(std::move(model), settings_at(site, ""), site);
+    world->plan_faults(faults);
+    return world;
   }
   std::vector<Finding> examine(const PlantSite& site) const override {
     return settings_.servos.empty() ? std::vector<Finding>()

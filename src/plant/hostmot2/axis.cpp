@@ -44,6 +44,7 @@ void Axis::take(bool fresh, std::uint32_t silent_ticks_max) noexcept {
   if (!fresh) return;
   if (board_.bitten()) code_ |= code_watchdog;
   if (board_.forgot()) code_ |= code_forgot;
+  if (board_.forgot()) return;  // its count began anew, wherever the joint was
   encoder_.take(board_.encoder(wiring_.encoder), board_.stamp_clock(), seconds_between(last_ns_, board_.time_ns()));
   const bool good = plausible();
   last_count_ = encoder_.count();

@@ -70,10 +70,10 @@ void Board::check_wiring(const HostMot2Settings& all) const {
 
 void Board::open(const HostMot2Settings& all) {
   std::string card;
-  if (!link_->card_name(card))
-    fail(settings_.place,
-         "does not answer: is it powered, is its cable in, and is this machine's network card in its network "
-         "(`kadans doctor ROBOT` says)?");
+  if (!link_->card_name(card)) {
+    const std::string why = link_->why_silent();
+    fail(settings_.place, "does not answer: " + (why.empty() ? "is it powered, and is its cable in?" : why));
+  }
   if (!card.empty() && card != settings_.card)
     fail(settings_.place, "is a " + card + ", the configuration says " + settings_.card);
   try {

@@ -54,6 +54,8 @@ class BoardLink {
   // Before the loop. Each waits for the answer, for a bounded time; false: there was none.
   virtual bool read(std::uint16_t address, std::span<std::uint32_t> into) = 0;
   virtual bool write(RegisterWrite one) = 0;
+  // What on this machine is in the way of answers; "": nothing that it knows.
+  virtual std::string why_silent() const { return ""; }
   virtual bool card_name(std::string& name) = 0;  // "": this way to the board has none
   // Before the loop. Throws std::length_error when it does not fit into a datagram.
   virtual void lay_out(const TickLayout& layout) = 0;

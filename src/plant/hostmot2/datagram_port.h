@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "settings.h"
 #include "signal/monotonic_clock.h"
 
 namespace kadans::hostmot2 {
@@ -27,20 +28,24 @@ class DatagramPort {
   // Before the loop: sleeps until one has come, at most until then.
   virtual void await(std::int64_t until_ns) noexcept = 0;
   virtual std::int64_t now_ns() const noexcept = 0;
+  // Before the loop: what on this machine is in the way of answers; "": nothing that it knows.
+  virtual std::string why_silent() const { return ""; }
 };
 
 // Of the system, on CLOCK_MONOTONIC.
 class UdpPort final : public DatagramPort {
  public:
-  explicit UdpPort(const std::string& place);  // "192.168.1.121:27181". Throws InputError.
+  explicit UdpPort(BoardSettings board);  // throws InputError at the board's place
   ~UdpPort() override;
   bool send(Octets datagram) noexcept override;
   std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
   void await(std::int64_t until_ns) noexcept override;
   std::int64_t now_ns() const noexcept override { return monotonic_ns(); }
+  std::string why_silent() const override;
 
  private:
-  int descriptor_;
+  BoardSettings board_;
+  int descriptor_ = -1;
 };
 
 }  // namespace kadans::hostmot2

@@ -36,7 +36,7 @@ HostMot2Plant::HostMot2Plant(HostMot2Settings settings, PlantSite site, std::vec
   repair_.resize(boards_.size());
   const double period_s = 1e-9 * static_cast<double>(site_.layout.period_ns);
   const double bus_period_s = settings_.period_s > 0 ? settings_.period_s : period_s;
-  divisor_ = static_cast<std::uint32_t>(std::max(1L, std::lround(bus_period_s / period_s)));
+  divisor_ = settings_.bus_divisor(site_.layout.period_ns);
   if (std::abs(bus_period_s - divisor_ * period_s) > 1e-9)
     throw InputError(
         {.file = site_.file, .message = "plant.hm2-eth.period_s must be a whole multiple of the control period"});
@@ -111,8 +111,9 @@ void HostMot2Plant::read(SensorFrame& sensors) noexcept {
   counts_ = {};
   for (std::size_t i = 0; i < boards_.size(); ++i) {
     const bool bitten = boards_[i].bitten();
-    // The first one of all came in open().
+    // The first one of all came in open(). On a busy machine it has grown old when the loop begins: it is asked again.
     if (!driven_) {
+      if (seconds_between(boards_[i].time_ns(), sensors.time_ns) > settings_.watchdog_s) boards_[i].send();
       fresh_[i] = boards_[i].collect() || fresh_[i];
     } else {
       fresh_[i] = asked_ && boards_[i].collect();

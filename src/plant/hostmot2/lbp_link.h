@@ -27,6 +27,7 @@ class LbpLink final : public BoardLink {
   bool read(std::uint16_t address, std::span<std::uint32_t> into) override;
   bool write(RegisterWrite one) override;
   bool card_name(std::string& name) override;
+  std::string why_silent() const override { return port_->why_silent(); }
   void lay_out(const TickLayout& layout) override;
 
   void send(std::span<const std::uint32_t> words) noexcept override;

@@ -27,6 +27,8 @@ std::string text_of(std::uint32_t address) {
   return text.data();
 }
 
+}  // namespace
+
 PlantType::Finding examine_card(const BoardSettings& board) {
   const auto found = [&](bool good, const std::string& is, const std::string& how) {
     return PlantType::Finding{.topic = "board " + board.name,
@@ -54,8 +56,6 @@ PlantType::Finding examine_card(const BoardSettings& board) {
                "give the card to it an address there, such as `sudo ip address add " + host.substr(0, host.rfind('.')) +
                    ".1/24 dev eth0`");
 }
-
-}  // namespace
 
 std::vector<PlantType::Finding> examine_boards(const HostMot2Settings& settings, std::int64_t control_period_ns) {
   std::vector<PlantType::Finding> findings;

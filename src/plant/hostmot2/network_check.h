@@ -7,6 +7,7 @@
 
 namespace kadans::hostmot2 {
 
+PlantType::Finding examine_card(const BoardSettings& board);  // of one on Ethernet
 std::vector<PlantType::Finding> examine_boards(const HostMot2Settings& settings, std::int64_t control_period_ns);
 
 }  // namespace kadans::hostmot2

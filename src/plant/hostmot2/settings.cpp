@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "signal/nearest_name.h"
 
@@ -248,6 +249,16 @@ std::string board_place(const std::string& address) {
 
 std::size_t HostMot2Settings::board_number(const std::string& name) const noexcept {
   return static_cast<std::size_t>(std::ranges::find(boards, name, &BoardSettings::name) - boards.begin());
+}
+
+std::uint32_t HostMot2Settings::bus_divisor(std::int64_t control_period_ns) const noexcept {
+  return static_cast<std::uint32_t>(std::max(1L, std::lround(1e9 * period_s / static_cast<double>(control_period_ns))));
+}
+
+void HostMot2Settings::require_ethernet() const {
+  for (const BoardSettings& board : boards) {
+    if (!board.resource.empty()) throw InputError({.message = "board '" + board.name + "' is no board on Ethernet"});
+  }
 }
 
 void HostMot2Settings::move_boards(const std::string& first_address) {

@@ -87,8 +87,12 @@ struct HostMot2Settings {
   void fields(PlantFields& f);
   // The board's place in `boards`; their number where none has the name.
   std::size_t board_number(const std::string& name) const noexcept;
+  // The boards are asked in every so many control ticks.
+  std::uint32_t bus_divisor(std::int64_t control_period_ns) const noexcept;
   // The same boards, at this address and those that follow it.
   void move_boards(const std::string& first_address);
+  // Throws InputError where one is no board on Ethernet: those alone have emulators.
+  void require_ethernet() const;
 };
 
 inline constexpr std::uint16_t lbp_udp_port = 27181;

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "emulator/board_server.h"
+#include "emulator/board_world.h"
 #include "hostmot2_plant.h"
 #include "lbp_link.h"
 #include "mapped_link.h"
@@ -24,7 +25,7 @@ class HostMot2EthernetType final : public PlantType {
         links.push_back(std::make_unique<hostmot2::MappedLink>(board.resource));
         continue;
       }
-      auto port = std::make_unique<hostmot2::UdpPort>(hostmot2::board_place(board.address));
+      auto port = std::make_unique<hostmot2::UdpPort>(board);
       links.push_back(std::make_unique<hostmot2::LbpLink>(std::move(port), std::llround(1e9 * settings.patience_s),
                                                           std::llround(1e9 * settings.reply_wait_s)));
     }
@@ -33,6 +34,15 @@ class HostMot2EthernetType final : public PlantType {
   bool is_protocol() const noexcept override { return true; }
   std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const override {
     return std::make_unique<hostmot2::BoardServer>(settings_at(site, "--listen", listen), site);
+  }
+  bool has_wired_world() const noexcept override { return true; }
+  std::unique_ptr<World> make_wired_world(std::unique_ptr<World> model, const PlantSite& site,
+                                          const std::vector<EmulatedFault>& faults) const override {
+    const hostmot2::HostMot2Settings settings = settings_at(site, "", "");
+    settings.require_ethernet();
+    auto world = std::make_unique<hostmot2::BoardWorld>(std::move(model), settings, settings, site);
+    world->plan_faults(faults);
+    return world;
   }
   std::vector<Finding> examine(const PlantSite& site) const override {
     return settings_.boards.empty() ? std::vector<Finding>()

@@ -1,13 +1,33 @@
+#include <utility>
+
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "datagram_port.h"
+#include "kadans/signal/input_error.h"
+#include "network_check.h"
 #include "plant/socket_address.h"
 
 namespace kadans::hostmot2 {
 
-UdpPort::UdpPort(const std::string& place) : descriptor_(connected_socket(place)) {}
+UdpPort::UdpPort(BoardSettings board) : board_(std::move(board)) {
+  const std::string place = board_place(board_.address);
+  try {
+    descriptor_ = connected_socket(place);
+  } catch (const InputError& error) {
+    const std::string why = why_silent();
+    InputProblem problem = board_.place;
+    problem.message =
+        "board '" + board_.name + "' cannot be reached: " + (why.empty() ? error.problems().front().message : why);
+    throw InputError(problem);
+  }
+}
+
+std::string UdpPort::why_silent() const {
+  const PlantType::Finding card = examine_card(board_);
+  return card.good ? "" : card.is + ": " + card.how;
+}
 
 UdpPort::~UdpPort() { close(descriptor_); }
 

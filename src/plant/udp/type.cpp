@@ -4,6 +4,7 @@
 #include "kadans/signal/input_error.h"
 #include "plant_server.h"
 #include "udp_plant.h"
+#include "udp_world.h"
 
 namespace kadans {
 namespace {
@@ -44,6 +45,13 @@ class UdpType final : public PlantType {
     UdpSettings settings = settings_;
     settings.damping_Nms_per_rad = site.damping_Nms_per_rad;
     return std::make_unique<PlantServer>(settings, site.layout, DatagramSocket::listening(listen));
+  }
+  bool has_wired_world() const noexcept override { return true; }
+  std::unique_ptr<World> make_wired_world(std::unique_ptr<World> model, const PlantSite& site,
+                                          const std::vector<EmulatedFault>& faults) const override {
+    auto world = std::make_unique<UdpWorld>(std::move(model), settings_, site.layout);
+    world->plan_faults(faults);
+    return world;
   }
 
  private:

@@ -89,6 +89,8 @@ class FaultyPlant final : public OneRobotWorld {
     supply_faults_.clear();
   }
 
+  void declare_signals(SignalTable& table) const override { robot_.declare_signals(table); }
+  std::vector<PlantCount> link_counts() const override { return robot_.link_counts(); }
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
   void step(std::int64_t dt_ns) override { world_.step(dt_ns); }

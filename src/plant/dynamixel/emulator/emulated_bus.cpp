@@ -174,6 +174,7 @@ EmulatedBus::Message EmulatedBus::one(EmulatedServo& servo, bool broadcast, cons
 }
 
 void EmulatedBus::sync_read(const Message& body, bool fast) {
+  ++sync_reads_;
   if (body.size() < 6) return;
   const unsigned address = word(body, 1), count = word(body, 3);
   const std::size_t asked = body.size() - 5;

@@ -38,6 +38,7 @@ class EmulatedBus {
 
   void set_usb_latency(std::int64_t latency_ns) noexcept { usb_latency_ns_ = latency_ns; }
   std::uint64_t instructions() const noexcept { return instructions_; }
+  std::uint64_t sync_reads() const noexcept { return sync_reads_; }  // fast ones, too
   std::uint64_t not_understood() const noexcept { return not_understood_; }
   std::int64_t busy_ns() const noexcept { return busy_ns_; }  // how long bytes were on the wire, in all
 
@@ -66,7 +67,7 @@ class EmulatedBus {
   std::int64_t free_ns_ = INT64_MIN / 2;   // when the wire is free again
   std::int64_t asked_ns_ = INT64_MIN / 2;  // when the instruction that is answered was over
   std::deque<Arrival> answers_;
-  std::uint64_t instructions_ = 0, not_understood_ = 0;
+  std::uint64_t instructions_ = 0, sync_reads_ = 0, not_understood_ = 0;
   std::int64_t busy_ns_ = 0;
 };
 

@@ -7,7 +7,10 @@
 namespace kadans::dynamixel {
 
 ServoServer::ServoServer(const DynamixelSettings& settings, const PlantSite& site, const std::string& listen)
-    : DriveServer(site.layout.period_ns), listen_(listen), robot_(settings, site, site.seed) {
+    : DriveServer(site.layout.period_ns,
+                  static_cast<std::uint32_t>(bus_period_ns(settings, site.layout.period_ns) / site.layout.period_ns)),
+      listen_(listen),
+      robot_(settings, site, site.seed) {
   for (const PortSettings& port : settings.ports)
     terminals_.emplace_back(settings.ports.size() == 1 ? listen : listen + "-" + port.name, "--listen");
 }
@@ -38,6 +41,12 @@ std::uint64_t ServoServer::heard() const noexcept {
   std::uint64_t heard = 0;
   for (const auto& bus : robot_.buses()) heard += bus->instructions();
   return heard;
+}
+
+std::uint64_t ServoServer::cycles() const noexcept {
+  std::uint64_t most = 0;
+  for (const auto& bus : robot_.buses()) most = std::max(most, bus->sync_reads());
+  return most;
 }
 
 std::vector<PlantCount> ServoServer::link_counts() const {

@@ -24,6 +24,7 @@ class ServoServer final : public DriveServer {
   std::vector<int> descriptors() const override;
   std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
   std::uint64_t heard() const noexcept override;
+  std::uint64_t cycles() const noexcept override;
   EmulatedDrives& drives() noexcept override { return robot_; }
 
   std::string listen_;

@@ -11,12 +11,12 @@
 namespace kadans::hostmot2 {
 
 BoardServer::BoardServer(const HostMot2Settings& settings, const PlantSite& site)
-    : DriveServer(site.layout.period_ns), machine_(settings, site, site.seed), peers_(settings.boards.size()) {
+    : DriveServer(site.layout.period_ns, settings.bus_divisor(site.layout.period_ns)),
+      machine_(settings, site, site.seed),
+      peers_(settings.boards.size()) {
   try {
-    for (const BoardSettings& board : settings.boards) {
-      if (!board.resource.empty()) throw InputError({.message = "board '" + board.name + "' is no board on Ethernet"});
-      sockets_.push_back(listening_socket(board_place(board.address)));
-    }
+    settings.require_ethernet();
+    for (const BoardSettings& board : settings.boards) sockets_.push_back(listening_socket(board_place(board.address)));
   } catch (const InputError& error) {
     for (const int one : sockets_) close(one);
     throw InputError({.file = "--listen", .message = error.problems().front().message});
@@ -56,6 +56,13 @@ std::uint64_t BoardServer::heard() const noexcept {
   for (const EmulatedWire& wire : machine_.wires())
     heard += wire.responder.datagrams() - wire.responder.not_understood();
   return heard;
+}
+
+// Each board gets a datagram in a cycle; one whose cable is out does not hear it, but it was sent.
+std::uint64_t BoardServer::cycles() const noexcept {
+  std::uint64_t most = 0;
+  for (const EmulatedWire& wire : machine_.wires()) most = std::max(most, wire.sent_to());
+  return most;
 }
 
 std::vector<PlantCount> BoardServer::link_counts() const {

@@ -23,6 +23,7 @@ class BoardServer final : public DriveServer {
   std::vector<int> descriptors() const override { return sockets_; }
   std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
   std::uint64_t heard() const noexcept override;
+  std::uint64_t cycles() const noexcept override;
   EmulatedDrives& drives() noexcept override { return machine_; }
 
   EmulatedMachine machine_;

@@ -167,12 +167,14 @@ void EmulatedMachine::pass(std::int64_t dt_ns) noexcept {
   for (EmulatedBoard& board : boards_) board.pass(dt_ns);
 }
 
+void EmulatedMachine::switch_power(std::size_t board) noexcept {
+  boards_[board].switch_power();
+  wires_[board].responder.switch_power();
+  wires_[board].drop_replies();
+}
+
 void EmulatedMachine::switch_power() noexcept {
-  for (EmulatedBoard& board : boards_) board.switch_power();
-  for (EmulatedWire& wire : wires_) {
-    wire.responder.switch_power();
-    wire.drop_replies();
-  }
+  for (std::size_t i = 0; i < boards_.size(); ++i) switch_power(i);
   for (const Wired& w : wired_) {
     // Its joint is put back to the jig before its power comes on.
     if (w.is.home == Home::power_on) boards_[w.board].restore_origin(w.is.encoder);
@@ -198,7 +200,7 @@ void EmulatedMachine::befall(const EmulatedFault& fault, bool begins) noexcept {
     if (fault.kind == "cable_out") wires_[i].pulled = begins;
     if (!begins) continue;
     if (fault.kind == "watchdog_bites") boards_[i].bite();
-    if (fault.kind == "board_reboots") boards_[i].switch_power();
+    if (fault.kind == "board_reboots") switch_power(i);
   }
 }
 

@@ -60,6 +60,7 @@ class EmulatedMachine final : public EmulatedDrives {
     InputWiring is;
     bool active = false;
   };
+  void switch_power(std::size_t board) noexcept;
   double duty(const Wired& wired) const noexcept;
   bool output(std::size_t board, const OptionalPin& pin) const noexcept;
   void input(std::size_t board, const OptionalPin& pin, bool active) noexcept;

@@ -13,6 +13,7 @@ void EmulatedWire::send(const std::vector<std::uint8_t>& bytes, std::int64_t now
 }
 
 void EmulatedWire::receive(std::span<const std::uint8_t> datagram, std::int64_t now_ns) {
+  ++sent_to_;
   if (pulled || happens(faults.lost)) return;
   const int times = happens(faults.duplicated) ? 2 : 1;
   for (int i = 0; i < times; ++i) {

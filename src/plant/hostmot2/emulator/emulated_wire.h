@@ -37,6 +37,7 @@ class EmulatedWire {
   // The next reply that the host has now; empty: none.
   std::vector<std::uint8_t> take(std::int64_t now_ns);
   void drop_replies() noexcept { replies_.clear(); }
+  std::uint64_t sent_to() const noexcept { return sent_to_; }  // datagrams of the host, those that were lost, too
 
  private:
   struct Reply {
@@ -48,6 +49,7 @@ class EmulatedWire {
 
   RandomStream random_;
   std::deque<Reply> replies_;  // by their times
+  std::uint64_t sent_to_ = 0;
 };
 
 }  // namespace kadans::hostmot2

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace kadans::imu {
 namespace {
@@ -162,6 +164,34 @@ std::size_t EmulatedImu::take(std::span<std::uint8_t> into, std::int64_t now_ns)
     line_.pop_front();
   }
   return count;
+}
+
+EmulatedImu::Settings device_of(const SerialImuSettings& settings) {
+  EmulatedImu::Settings is{.old = settings.protocol == Protocol::mtdata,
+                           .delay_ns = std::llround(1e9 * settings.delay_s),
+                           .rate_max_Hz = std::max(settings.rate_Hz, 100U)};
+  if (!settings.id.empty()) is.id = static_cast<std::uint32_t>(std::stoul(settings.id, nullptr, 16));
+  return is;
+}
+
+void check_imu_fault(const EmulatedFault& fault) {
+  const bool share = fault.kind == "bytes_lost" || fault.kind == "bytes_corrupt";
+  if (!share && fault.kind != "cable_out")
+    throw std::invalid_argument("no fault '" + fault.kind +
+                                "' of the IMU; there are bytes_lost, bytes_corrupt, cable_out");
+  if (share && !(fault.size > 0 && fault.size <= 1)) throw std::invalid_argument(fault.kind + ": a share is 0..1");
+}
+
+void befall(EmulatedImu& device, const std::vector<EmulatedFault>& faults, double time_s) noexcept {
+  if (faults.empty()) return;
+  device.faults = {};
+  device.silent = false;
+  for (const EmulatedFault& fault : faults) {
+    if (!(time_s >= fault.from_s && time_s < fault.until_s)) continue;
+    if (fault.kind == "bytes_lost") device.faults.lost = fault.size;
+    if (fault.kind == "bytes_corrupt") device.faults.corrupt = fault.size;
+    if (fault.kind == "cable_out") device.silent = true;
+  }
 }
 
 }  // namespace kadans::imu

@@ -13,6 +13,7 @@
 
 #include "kadans/signal/frames.h"
 #include "kadans/signal/random.h"
+#include "plant/imu/settings.h"
 
 namespace kadans::imu {
 
@@ -72,5 +73,13 @@ class EmulatedImu {
   Vec3 gyro_rad_s_{}, acceleration_m_s2_{0, 0, 9.81};
   std::uint64_t understood_ = 0;
 };
+
+// The device that a robot's configuration names.
+EmulatedImu::Settings device_of(const SerialImuSettings& settings);
+
+// Faults "of imu": bytes_lost, bytes_corrupt, cable_out. Throws std::invalid_argument that says what is wrong.
+void check_imu_fault(const EmulatedFault& fault);
+// Lets those of this time befall it.
+void befall(EmulatedImu& device, const std::vector<EmulatedFault>& faults, double time_s) noexcept;
 
 }  // namespace kadans::imu

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include <poll.h>
@@ -17,14 +15,6 @@ namespace {
 
 constexpr int device_priority = 85;                  // it measures whatever else this machine does
 constexpr std::int64_t device_look_ns = 50'000'000;  // how soon the thread sees that it shall end
-
-EmulatedImu::Settings device_of(const SerialImuSettings& settings) {
-  EmulatedImu::Settings is{.old = settings.protocol == Protocol::mtdata,
-                           .delay_ns = std::llround(1e9 * settings.delay_s),
-                           .rate_max_Hz = std::max(settings.rate_Hz, 100U)};
-  if (!settings.id.empty()) is.id = static_cast<std::uint32_t>(std::stoul(settings.id, nullptr, 16));
-  return is;
-}
 
 }  // namespace
 
@@ -70,23 +60,8 @@ void ImuServer::plan_faults(const std::vector<EmulatedFault>& faults) {
       drives_->plan_faults({fault});
       continue;
     }
-    const bool share = fault.kind == "bytes_lost" || fault.kind == "bytes_corrupt";
-    if (!share && fault.kind != "cable_out")
-      throw std::invalid_argument("no fault '" + fault.kind +
-                                  "' of the IMU; there are bytes_lost, bytes_corrupt, cable_out");
-    if (share && !(fault.size > 0 && fault.size <= 1)) throw std::invalid_argument(fault.kind + ": a share is 0..1");
+    check_imu_fault(fault);
     faults_.push_back(fault);
-  }
-}
-
-void ImuServer::let_faults_happen(double time_s) noexcept {
-  device_.faults = {};
-  device_.silent = false;
-  for (const EmulatedFault& fault : faults_) {
-    if (!(time_s >= fault.from_s && time_s < fault.until_s)) continue;
-    if (fault.kind == "bytes_lost") device_.faults.lost = fault.size;
-    if (fault.kind == "bytes_corrupt") device_.faults.corrupt = fault.size;
-    if (fault.kind == "cable_out") device_.silent = true;
   }
 }
 
@@ -95,7 +70,7 @@ bool ImuServer::beat(World& world, std::uint32_t periods) {
   SensorFrame sensors;
   world.robot(0).read(sensors);
   const std::lock_guard lock(mutex_);
-  let_faults_happen(1e-9 * static_cast<double>(sensors.time_ns));
+  befall(device_, faults_, 1e-9 * static_cast<double>(sensors.time_ns));
   device_.feels(rotate_inverse(to_base_, sensors.imu.angular_velocity_rad_s),
                 rotate_inverse(to_base_, sensors.imu.acceleration_m_s2));
   return on;

@@ -35,7 +35,6 @@ class ImuServer final : public PlantEmulator {
 
  private:
   void serve() noexcept;
-  void let_faults_happen(double time_s) noexcept;
 
   std::unique_ptr<PlantEmulator> drives_;
   std::vector<EmulatedFault> faults_;

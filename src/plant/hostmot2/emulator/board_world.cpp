@@ -1,0 +1,116 @@
+#include "board_world.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "plant/hostmot2/mapped_link.h"
+
+namespace kadans::hostmot2 {
+namespace {
+
+// A card on PCI answers at once; its register file does so here at each write outside of the tick's.
+class VirtualCard final : public MappedLink {
+ public:
+  VirtualCard(const std::string& path, RegisterFile& file) : MappedLink(path), file_(file) {}
+  bool write(RegisterWrite one) override {
+    const bool good = MappedLink::write(one);
+    answer();
+    return good;
+  }
+  void write_all(std::span<const RegisterWrite> writes) noexcept override {
+    MappedLink::write_all(writes);
+    answer();
+  }
+
+ private:
+  void answer() noexcept {
+    file_.take();
+    file_.show();
+  }
+  RegisterFile& file_;
+};
+
+constexpr std::int64_t virtual_patience_ns = 50'000'000;
+
+}  // namespace
+
+bool VirtualCable::send(Octets datagram) noexcept {
+  sent = datagram.size();
+  if (holds) {
+    std::copy_n(datagram.begin(), sent, held_.begin());
+    return true;
+  }
+  passed_.pass(datagram, now_);
+  wire_.receive(datagram, now_);
+  return true;
+}
+
+std::size_t VirtualCable::receive(std::span<std::uint8_t> into, std::int64_t) noexcept {
+  if (holds) {
+    std::copy_n(held_.begin(), std::min(answered_, into.size()), into.begin());
+    return std::exchange(answered_, 0);
+  }
+  const std::vector<std::uint8_t> bytes = wire_.take(now_);
+  std::copy_n(bytes.begin(), std::min(bytes.size(), into.size()), into.begin());
+  if (!bytes.empty()) {
+    passed_.pass(bytes, now_);
+    received = bytes.size();
+  }
+  return bytes.size();
+}
+
+void VirtualCable::await(std::int64_t until_ns) noexcept { now_ = std::max(now_, std::min(until_ns, wire_.due_ns())); }
+
+void VirtualCable::answer() {
+  wire_.receive({held_.data(), sent}, now_);
+  const std::vector<std::uint8_t> bytes = wire_.take(now_);
+  std::ranges::copy(bytes, held_.begin());
+  answered_ = bytes.size();
+}
+
+BoardWorld::BoardWorld(std::unique_ptr<World> model, const HostMot2Settings& settings, const HostMot2Settings& there,
+                       const PlantSite& site)
+    : WiredWorld(std::move(model)), machine_(there, site, site.seed), wired_feet_(!settings.feet.empty()) {
+  std::vector<std::unique_ptr<BoardLink>> links;
+  for (std::size_t i = 0; i < settings.boards.size(); ++i) {
+    const std::string& resource = settings.boards[i].resource;
+    if (!resource.empty()) {
+      files_.push_back(std::make_unique<RegisterFile>(machine_.board(i), resource));
+      links.push_back(std::make_unique<VirtualCard>(resource, *files_.back()));
+      continue;
+    }
+    auto cable = std::make_unique<VirtualCable>(machine_.wire(i));
+    cables_.push_back(cable.get());
+    links.push_back(std::make_unique<LbpLink>(std::move(cable), virtual_patience_ns, 0));
+  }
+  plant_ = std::make_unique<HostMot2Plant>(settings, site, std::move(links));
+  machine_.look(inner());
+  for (const auto& file : files_) file->show();
+}
+
+void BoardWorld::set_time(std::int64_t now_ns) noexcept {
+  for (VirtualCable* cable : cables_) cable->set(now_ns);
+}
+
+void BoardWorld::take(SensorFrame& sensors) noexcept {
+  const auto feet = sensors.feet;
+  plant_->read(sensors);
+  if (!wired_feet_) sensors.feet = feet;
+}
+
+void BoardWorld::begin_step() {
+  for (const auto& file : files_) file->take();
+}
+
+void BoardWorld::end_step() {
+  machine_.look(inner());
+  for (const auto& file : files_) file->show();
+}
+
+std::uint64_t BoardWorld::passed() const noexcept {
+  StateHash all;
+  for (const VirtualCable* cable : cables_) all.add(cable->passed());
+  return all.value();
+}
+
+}  // namespace kadans::hostmot2

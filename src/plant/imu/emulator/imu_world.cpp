@@ -1,0 +1,75 @@
+#include "imu_world.h"
+
+#include <utility>
+
+#include "kadans/model/kinematics.h"
+
+namespace kadans::imu {
+namespace {
+
+constexpr std::int64_t found_before_ns = 100'000'000;  // the device is found before the time begins
+
+}  // namespace
+
+class ImuWorld::Beside final : public Plant {
+ public:
+  explicit Beside(ImuWorld& world) noexcept : world_(world), drives_(world.robot_->robot(0)) {}
+  void declare_signals(SignalTable& table) const override { drives_.declare_signals(table); }
+  bool open(bool (*)() noexcept) override { return true; }  // it is open already
+  void close() noexcept override { drives_.close(); }
+  std::vector<PlantCount> link_counts() const override { return drives_.link_counts(); }
+  void read(SensorFrame& sensors) noexcept override {
+    drives_.read(sensors);
+    world_.feel(sensors);
+  }
+  void write(const ActuationFrame& actuation) noexcept override { drives_.write(actuation); }
+
+ private:
+  ImuWorld& world_;
+  Plant& drives_;
+};
+
+ImuWorld::ImuWorld(std::unique_ptr<World> robot, const SerialImuSettings& settings, const Quat& to_base,
+                   const std::vector<EmulatedFault>& faults, std::uint64_t seed)
+    : robot_(std::move(robot)), faults_(faults), to_base_(to_base), device_(device_of(settings), seed) {
+  for (const EmulatedFault& fault : faults) check_imu_fault(fault);
+  auto line = std::make_unique<ImuLine>(device_);
+  line_ = line.get();
+  line_->set(-found_before_ns);
+  plant_ = std::make_unique<ImuPlant>(std::make_unique<Beside>(*this), settings, to_base, std::move(line),
+                                      ImuPlant::Threads::none);
+}
+
+bool ImuWorld::open(bool (*give_up)() noexcept) {
+  started_ = true;
+  if (!robot_->robot(0).open(give_up)) return false;
+  SensorFrame sensors;
+  robot_->robot(0).read(sensors);
+  feel(sensors);
+  return plant_->open(give_up);
+}
+
+void ImuWorld::feel(const SensorFrame& sensors) noexcept {
+  if (time_ns_ > 0) device_.pass(time_ns_);  // what was due until now it has measured
+  device_.feels(rotate_inverse(to_base_, sensors.imu.angular_velocity_rad_s),
+                rotate_inverse(to_base_, sensors.imu.acceleration_m_s2));
+}
+
+void ImuWorld::read(SensorFrame& sensors) noexcept {
+  if (!started_) (void)open();
+  line_->set(time_ns_);
+  plant_->read(sensors);
+}
+
+void ImuWorld::step(std::int64_t dt_ns) {
+  befall(device_, faults_, 1e-9 * static_cast<double>(time_ns_));
+  robot_->step(dt_ns);
+  time_ns_ += dt_ns;
+}
+
+void ImuWorld::hash(StateHash& hash) const noexcept {
+  robot_->hash(hash);
+  hash.add(line_->passed());
+}
+
+}  // namespace kadans::imu

@@ -1,0 +1,55 @@
+// A world of one robot with an IMU on a serial line beside whatever drives it, on virtual time.
+//
+// One owner, one thread at a time.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "emulated_imu.h"
+#include "imu_line.h"
+#include "kadans/plant/plant_type.h"
+#include "kadans/plant/world.h"
+#include "plant/imu/imu_plant.h"
+
+namespace kadans::imu {
+
+class ImuWorld : public OneRobotWorld {
+ public:
+  // The device measures what the IMU in `robot`'s frames does; `to_base` turns its axes into the base's. Throws
+  // std::invalid_argument for faults that it cannot have; they are by this world's time.
+  ImuWorld(std::unique_ptr<World> robot, const SerialImuSettings& settings, const Quat& to_base,
+           const std::vector<EmulatedFault>& faults = {}, std::uint64_t seed = 1);
+
+  // As the robot's own. Without it the first read does so.
+  bool open(bool (*give_up)() noexcept = nullptr) override;
+  void declare_signals(SignalTable& table) const override { plant_->declare_signals(table); }
+  std::vector<PlantCount> link_counts() const override { return plant_->link_counts(); }
+  void read(SensorFrame& sensors) noexcept override;
+  void write(const ActuationFrame& actuation) noexcept override { plant_->write(actuation); }
+  void push(std::size_t link, const Vec3& force_N, const Vec3& point_m) override {
+    robot_->robot(0).push(link, force_N, point_m);
+  }
+  void step(std::int64_t dt_ns) override;
+  const PlantTruth& truth() const noexcept override { return robot_->robot(0).truth(); }
+  void hash(StateHash& hash) const noexcept override;
+
+  EmulatedImu& device() noexcept { return device_; }
+
+ private:
+  // The robot's own drives, as a plant; what it reads is also what the device feels.
+  class Beside;
+
+  void feel(const SensorFrame& sensors) noexcept;
+
+  std::unique_ptr<World> robot_;
+  std::vector<EmulatedFault> faults_;
+  Quat to_base_;
+  EmulatedImu device_;
+  ImuLine* line_;
+  std::unique_ptr<ImuPlant> plant_;
+  std::int64_t time_ns_ = 0;
+  bool started_ = false;
+};
+
+}  // namespace kadans::imu
