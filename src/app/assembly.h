@@ -90,6 +90,7 @@ class Assembly {
   void watch_behaviors() { host_->watch(); }
   RunParts parts() { return parts_in(*lockstep_); }
   const ScenarioConfig& scenario() const noexcept { return scenario_; }
+  const WorldSettings& world_settings() const noexcept { return variant_.plant.world; }  // of this run
   const std::vector<std::unique_ptr<Assembly>>& others() const noexcept { return others_; }
   ControlEngine& control() noexcept { return *control_; }
   ControlSets& sets() noexcept { return *sets_; }

@@ -154,6 +154,24 @@ Json parameters_of(const Catalog& catalog) {
   return parameters;
 }
 
+// Where they are at the start; those that move have signals world.<name>.x_m and so on.
+Json world_of(const WorldSettings& world) {
+  Json objects = Json::array();
+  for (const WorldObject& object : world.objects) {
+    Json one{{"name", object.name}, {"position_m", vector_of(object.pose.position_m)}};
+    if (const auto* ball = std::get_if<WorldBall>(&object.shape)) one["radius_m"] = ball->radius_m;
+    if (const auto* pendulum = std::get_if<WorldPendulum>(&object.shape)) one["radius_m"] = pendulum->radius_m;
+    for (const SolidBox& box : solid_boxes(object)) {
+      const auto& [w, x, y, z] = box.pose.orientation;
+      one["boxes"].push_back({{"size_m", vector_of(box.size_m)},
+                              {"position_m", vector_of(box.pose.position_m)},
+                              {"orientation_xyzw", {x, y, z, w}}});
+    }
+    objects.push_back(std::move(one));
+  }
+  return objects;
+}
+
 }  // namespace
 
 Json guard_json(const GuardSource& guard) { return {{"file", guard.file}, {"line", guard.line}, {"text", guard.text}}; }
@@ -180,11 +198,13 @@ void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t
   if (!texts.description.empty()) (void)record.describe_parts(texts.description, time_ns);
 }
 
-std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host) {
+std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host,
+                            const WorldSettings& world) {
   const Json description{{"robot", robot_of(robot)},
                          {"sets", sets_of(catalog)},
                          {"objects", objects_of(robot, catalog)},
                          {"parameters", parameters_of(catalog)},
+                         {"world", world_of(world)},
                          {"behaviors", behaviors_of(host)}};
   return json_text(description);
 }

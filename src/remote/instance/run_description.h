@@ -1,6 +1,6 @@
 // Describes a run for viewers as one JSON text: the robot's name and feet, control sets with their objects, parameters
-// with unit and range, and the charts of the behaviors. Their states have the same numbers as the signal
-// behavior.<name>.state. A record and a live server send the text on /description.
+// with unit and range, the objects of the world as balls and boxes, and the charts of the behaviors. Their states have
+// the same numbers as the signal behavior.<name>.state. A record and a live server send the text on /description.
 //
 // It is made from the tables; this code knows no concrete control object or behavior.
 #pragma once
@@ -37,7 +37,8 @@ void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t
 
 // Call it before the loop or between two behavior ticks, because it reads the values of parameters and the charts.
 // Without a host (behaviors in a process of their own) the charts are left out.
-std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host);
+std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host,
+                            const WorldSettings& world);
 // The array "behaviors" of that text alone, which changes when other behaviors or new versions play. Call it between
 // two behavior ticks.
 std::string behaviors_description(const ScriptHost* host);

@@ -4,6 +4,7 @@ import { Vector3 } from 'three';
 import { BalanceMarks } from './balance_marks.js';
 import { GazeMark } from './gaze_mark.js';
 import { RobotModel } from './robot_model.js';
+import { WorldObjects } from './world_objects.js';
 
 const beside = new Vector3(0.9, 2.4, 0.5); // where robot and what it looks at are both seen
 
@@ -14,7 +15,7 @@ export class Show {
 
   // Of a description only what is drawn: behaviors come and go in it.
   take(session) {
-    const key = JSON.stringify([session.description?.robot, session.description?.objects]);
+    const key = JSON.stringify([session.description?.robot, session.description?.objects, session.description?.world]);
     const same = this.session === session && this.urdf === session.urdf && this.others?.length === session.others.size;
     if (same && (this.description === session.description || this.key === key)) return;
     this.clear();
@@ -32,13 +33,14 @@ export class Show {
     });
     this.marks = new BalanceMarks(session.description?.robot?.feet ?? []);
     this.gazes = (session.description?.objects ?? []).filter((object) => object.type === 'gaze').map((object) => new GazeMark(this.stage, object, this.model, () => this.sender()));
+    this.world = new WorldObjects(session.description?.world ?? []);
     this.marks.root.visible = this.stage.fine;
     this.stage.scene.add(...this.roots());
     this.framed = same_robot && this.framed;
   }
 
   roots() {
-    return [this.model.root, this.marks.root, ...[...this.gazes, ...this.others].map((part) => part.root)];
+    return [this.model.root, this.marks.root, this.world.root, ...[...this.gazes, ...this.others].map((part) => part.root)];
   }
 
   // Once it is known how large the robot is and where it is.
@@ -80,6 +82,7 @@ export class Show {
       if (!this.framed) this.frame();
       this.marks.update(this.session, t, this.model, shown);
       for (const other of this.others) other.pose(this.session, t);
+      this.world.update(this.session, t);
       for (const gaze of this.gazes) gaze.update(this.session, t);
       this.stage.follow(this.model.root.position);
     }
