@@ -281,17 +281,26 @@ std::vector<Carried> carried(const RobotModel& model, const Body& body) {
   return all;
 }
 
+// With two ticks of delay at 1 kHz and a velocity filtered at 100 Hz stiffness / inertia of 28000 is the edge of
+// stability: half of that. With a longer delay, the filter's among it, all of it is slower by as much.
+double loop_lag_s(const JointLoop& loop) {
+  return loop.delay_s + std::numbers::sqrt2 / (2 * std::numbers::pi * loop.velocity_cutoff_Hz);
+}
+double loop_speed(const JointLoop& loop) { return loop_lag_s({}) / loop_lag_s(loop); }
+
 }  // namespace
 
 StandingPose find_stance(const RobotModel& model) { return StanceSearch(model).run(); }
 
-std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance) {
+double stiffest_per_s2(const JointLoop& loop) { return 14000 * loop_speed(loop) * loop_speed(loop); }
+
+std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance,
+                                   const std::vector<JointLoop>& loops) {
   // A rotor that its motor's whole torque brings to 2500 rad/s2 is typical of drives of legs and arms; E.
   constexpr double rotor_per_Nm = 1.0 / 2500;
-  // At 1 kHz with two ticks of delay and a velocity filtered at 100 Hz stiffness / inertia of 28000 is the edge of
-  // stability, damping / inertia of 270: half of that.
-  constexpr double stiffest = 14000, most_damped = 135;
+  constexpr double most_damped = 135;  // damping / inertia, half of the edge with the delay of 14000
   constexpr double own_bandwidth = 225, sag_rad = 0.04, over_load = 3;  // (15 rad/s)^2
+  constexpr double stuck_rad = 0.005;                                   // where friction holds it, at most
   Body body(model);
   body.place(stance.stand);
   const std::vector<Carried> all = carried(model, body);
@@ -312,10 +321,13 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
         joint.rotor_inertia_kg_m2 > 0 ? joint.rotor_inertia_kg_m2 : std::max(1e-4, rotor_per_Nm * joint.effort_max_Nm);
     if (!std::isfinite(hold.rotor_inertia_kg_m2) || joint.effort_max_Nm > 1e5) hold.rotor_inertia_kg_m2 = 0.01;
     const auto at_joint = static_cast<Eigen::Index>(i);
-    const double inertia = body.dynamics().mass_matrix()(at_joint, at_joint) + hold.rotor_inertia_kg_m2;
+    const JointLoop loop = loops.empty() ? JointLoop{} : loops[i];
+    const double inertia = loop.inertia_kg_m2 > 0
+                               ? loop.inertia_kg_m2
+                               : body.dynamics().mass_matrix()(at_joint, at_joint) + hold.rotor_inertia_kg_m2;
     const Vector3d at = body.place_of(i);
     hold.load_Nm_per_rad = slides ? 0 : g_m_s2 * (hung.moment - hung.mass_kg * at).norm();
-    double wanted = std::max(over_load * hold.load_Nm_per_rad, own_bandwidth * inertia);
+    double wanted = std::max({over_load * hold.load_Nm_per_rad, own_bandwidth * inertia, loop.friction_Nm / stuck_rad});
     if (slides) wanted = std::max(wanted, hung.mass_kg * g_m_s2 / 0.005);
     const auto foot = slides ? foot_of.end() : foot_of.find(i);
     const bool leg = foot != foot_of.end();
@@ -326,11 +338,11 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
       hold.load_Nm_per_rad = std::max(hold.load_Nm_per_rad, standing);
       wanted = std::max({wanted, over_load * standing, torque_Nm / sag_rad});
     }
-    hold.stiffness_Nm_per_rad = std::min(wanted, stiffest * inertia);
+    hold.stiffness_Nm_per_rad = std::min(wanted, stiffest_per_s2(loop) * inertia);
     hold.weak = hold.stiffness_Nm_per_rad < 1.2 * hold.load_Nm_per_rad;
     const double critical = 1.4 * std::sqrt(hold.stiffness_Nm_per_rad * inertia);
     const double damping = leg ? std::max(critical, 0.03 * hold.stiffness_Nm_per_rad) : critical;
-    hold.damping_Nms_per_rad = std::min(damping, most_damped * inertia);
+    hold.damping_Nms_per_rad = std::min(damping, most_damped * loop_speed(loop) * inertia);
   }
   return holds;
 }
