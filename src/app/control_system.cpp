@@ -108,16 +108,14 @@ std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
   std::vector<DriveLaw> laws;
   for (std::size_t i = 0; i < config.model.joints.size(); ++i) {
     const DriveSettings& drive = config.plant.drives[i];
-    const double own_Hz = i < estimate.joint_velocity_cutoff_Hz.size() ? estimate.joint_velocity_cutoff_Hz[i] : 0;
     const std::uint32_t divisor = i < estimate.sample_divisor.size() ? estimate.sample_divisor[i] : 1;
-    laws.push_back(
-        {.effort_max_Nm = config.safety.joints[i].effort_max_Nm,
-         .position_gain_Nm_per_rad = drive.position_gain_Nm_per_rad,
-         .velocity_gain_Nms_per_rad = drive.velocity_gain_Nms_per_rad,
-         .velocity_delay_s = VelocityFilter::delay_s({.cutoff_Hz = own_Hz > 0 ? own_Hz : estimate.velocity_cutoff_Hz,
-                                                      .dt_s = divisor * config.engine.control_period_s}),
-         .spring_Nm_per_rad = drive.spring_Nm_per_rad,
-         .rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2});
+    laws.push_back({.effort_max_Nm = config.safety.joints[i].effort_max_Nm,
+                    .position_gain_Nm_per_rad = drive.position_gain_Nm_per_rad,
+                    .velocity_gain_Nms_per_rad = drive.velocity_gain_Nms_per_rad,
+                    .velocity_delay_s = VelocityFilter::delay_s(
+                        {.cutoff_Hz = estimate.cutoff_Hz(i), .dt_s = divisor * config.engine.control_period_s}),
+                    .spring_Nm_per_rad = drive.spring_Nm_per_rad,
+                    .rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2});
   }
   for (const Transmission& transmission : config.model.transmissions) {
     if (transmission.coupled()) add_both_drives(transmission, config.plant.drives, laws);

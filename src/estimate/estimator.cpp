@@ -217,14 +217,12 @@ void Estimator::add_joints(const RobotModel& model, const EstimateSettings& sett
   check_size(settings.sample_divisor, "sample_divisor", model);
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const std::string owner = "joint '" + model.joints[i].name + "'";
-    const double own_cutoff_Hz = of_joint(settings.joint_velocity_cutoff_Hz, i, 0.0);
     const double spring_Nm_per_rad = of_joint(settings.spring_Nm_per_rad, i, 0.0);
     const std::uint32_t divisor = of_joint(settings.sample_divisor, i, std::uint32_t{1});
     if (!(spring_Nm_per_rad >= 0 && std::isfinite(spring_Nm_per_rad)))
       refuse(owner + ": spring_Nm_per_rad = " + std::to_string(spring_Nm_per_rad) + " must be >= 0");
     if (divisor == 0) refuse(owner + ": sample_divisor = 0 must be >= 1");
-    const VelocityFilter::Config velocity{.cutoff_Hz = own_cutoff_Hz == 0 ? settings.velocity_cutoff_Hz : own_cutoff_Hz,
-                                          .dt_s = divisor * dt_s};
+    const VelocityFilter::Config velocity{.cutoff_Hz = settings.cutoff_Hz(i), .dt_s = divisor * dt_s};
     joints_.push_back({.velocity = make<VelocityFilter>(velocity, owner + ": velocity"),
                        .spring_Nm_per_rad = spring_Nm_per_rad,
                        .last_sequence = 0,

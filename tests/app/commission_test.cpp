@@ -1,6 +1,6 @@
 // `kadans commission` on JIWIY, through boards and through servos, on virtual time: each mistake in the wiring is found
 // and named, and what is written is what was found.
-#include "commission_bench.h"
+#include "commission_project.h"
 
 namespace commission_test {
 
@@ -8,64 +8,6 @@ using namespace kadans;
 using namespace kadans::program;
 using namespace kadans::commission_bench;
 namespace fs = std::filesystem;
-
-namespace {
-
-constexpr double five_degrees = 5 * 3.14159265358979 / 180;
-
-struct Bus {
-  const char *type, *robot;
-};
-constexpr Bus boards{"hm2-eth", "config/jiwiy/anything_io.json"}, servos{"dynamixel", "config/jiwiy/servos.json"};
-
-// A project in which the robot is wired as `robot` says, and described by mine.json.
-struct Project {
-  explicit Project(const Bus& bus)
-      : folder(project_copy("commission")), mine(folder / "config/jiwiy/mine.json"), right(folder / bus.robot) {
-    fs::copy_file(right, mine, fs::copy_options::overwrite_existing);
-    settings = {.robot = mine.string(), .plant = bus.type, .steps = {"names", "direction"}};
-    truth = {.type = bus.type, .robot = right.string()};
-  }
-  void change(const std::string& from, const std::string& to) { REQUIRE(edit(mine, from, to)); }
-  void swap(const std::string& one, const std::string& other) {
-    change(one, "<one>");
-    change(other, one);
-    change("<one>", other);
-  }
-  const Commissioned& commissioned() {
-    go(all, settings, truth);
-    return all;
-  }
-  // The same but for the fields that were added, which say what is the case without them.
-  bool is_right() const {
-    std::string text = read(mine);
-    for (const char* added :
-         {", \"reversed\": false", ",\n          \"reversed\": false", ",\n          \"pwm_reversed\": false"}) {
-      for (std::size_t at = text.find(added); at != std::string::npos; at = text.find(added))
-        text.erase(at, std::string_view(added).size());
-    }
-    return text == read(right);
-  }
-
-  fs::path folder, mine, right;
-  CommissionSettings settings;
-  Truth truth;
-  Commissioned all;
-};
-
-void check_safe(const Seen& seen) {
-  CHECK(seen.away_rad < five_degrees);
-  CHECK(seen.torque_share < 0.1001);
-  CHECK(seen.torque_share > 0);
-}
-
-void check_good(const Commissioned& all) {
-  for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);
-  CHECK(!all.report.ended_early);
-  check_safe(all.seen);
-}
-
-}  // namespace
 
 TEST_CASE("A robot that is wired as its configuration says is left as it is") {
   for (const Bus& bus : {boards, servos}) {
@@ -245,6 +187,36 @@ TEST_CASE("A zero is found at a jig and at a hard stop, and written so that the 
     CHECK(has(read(project.mine), "\"zero_pulse\": 204"));
     CHECK(all.person.was_told("joint 'pan': its zero was wrong by 8.8 degrees"));
     CHECK(all.seen.torque_share < 0.1001);
+  }
+}
+
+TEST_CASE("A zero is found by a switch and by an index, which the drive looks for while the key is held") {
+  for (const bool by_switch : {false, true}) {
+    CAPTURE(by_switch);
+    Project project(boards);
+    project.change("\"enable\": \"20\"",
+                   std::string("\"enable\": \"20\", \"home_rad_s\": 0.1, \"home_rad\": 0.25, ") +
+                       (by_switch ? R"("home": "switch", "home_switch": "22")" : R"("home": "index")"));
+    project.truth.boards = [&](hostmot2::HostMot2Settings& there) {
+      there.drives[0].home = by_switch ? hostmot2::Home::home_switch : hostmot2::Home::index;
+      if (by_switch) there.drives[0].home_switch = hostmot2::PinSettings{.number = 22};
+      there.drives[0].home_rad = 0.06;
+    };
+    project.all.person.says = {{"pan", "home"}};
+    project.settings.steps = {"zero"};
+    project.settings.joints = {"pan"};
+    const Commissioned& all = project.commissioned();
+    for (const std::string& one : all.report.problems) CHECK_MESSAGE(one.empty(), one);
+    CHECK(all.person.was_told(by_switch ? "joint 'pan' has found its \"switch\""
+                                        : "joint 'pan' has found its \"index\""));
+    CHECK(all.person.was_told("joint 'pan': its zero was wrong by 10."));
+    const std::string text = read(project.mine);
+    const std::size_t at = text.find("\"home_rad\": ") + 12;
+    CHECK(std::abs(std::stod(text.substr(at)) - 0.06) < 0.001);
+    check_safe(all.seen);
+    project.settings.again = true;
+    project.all.person.heard.clear();
+    CHECK(project.commissioned().person.was_told("joint 'pan': its zero is right"));
   }
 }
 

@@ -114,13 +114,15 @@ TEST_CASE("A jog gives no torque beyond an end, with a fault, in silence, or wit
     jog.key(-1, now_ns);
     jog.step(sensors, now_ns, actuation);
   }
-  CHECK(jog.stopped() == Jog::Stop::silent);
+  CHECK(jog.stopped() == Jog::Stop::drive);
+  CHECK(jog.drive_stopped() == PushedJoint::Stop::silent);
   CHECK(actuation.joints[0].mode == ActuationMode::off);
   Jog other({.joint = 0, .torque_Nm = 1, .lower_rad = -1, .upper_rad = 1});
   sensors.joints[0].drive = DriveState::fault;
   other.key(1, now_ns);
   other.step(sensors, now_ns, actuation);
-  CHECK(other.stopped() == Jog::Stop::fault);
+  CHECK(other.stopped() == Jog::Stop::drive);
+  CHECK(other.drive_stopped() == PushedJoint::Stop::fault);
   CHECK(actuation.joints[0].mode == ActuationMode::off);
   CHECK(effort_at(std::nan(""), -1) == 0);
 }

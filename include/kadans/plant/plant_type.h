@@ -116,6 +116,29 @@ class PlantEmulator {
   virtual std::vector<PlantCount> link_counts() const = 0;
 };
 
+// Where a type's configuration says how a drive is wired: names of fields under plant.TYPE.SECTION.DRIVE. What `kadans
+// commission` finds out, it writes there. "": the type has no such field.
+struct DriveWiringFields {
+  std::string_view section;
+  std::vector<std::string_view> both{};     // of what motor and encoder share
+  std::vector<std::string_view> motor{};    // where the motor is wired to
+  std::vector<std::string_view> encoder{};  // where the encoder is; none: motor and encoder are one device
+  std::string_view motor_reversed{}, encoder_reversed{};
+  std::string_view home{};                     // how the drive itself looks for its zero
+  std::string_view zero{};                     // where the zero is ...
+  double zero_default = 0, zero_unit_rad = 1;  // ... and what it counts
+  double zero_turn = 0;                        // a zero in pulses of a turn wraps; 0: it does not
+};
+// The fields of one drive that say how strong it is, with their values.
+struct DriveConstants {
+  struct Field {
+    std::string_view name{};  // "": there is none
+    double value = 0;
+  };
+  Field scale{};                 // at rest the drive's torque is proportional to it
+  Field stiffness{}, damping{};  // gains of its position mode where that is closed by the plant: Nm/rad, Nms/rad
+};
+
 // A type of plant, with the settings that one robot's configuration gives to it.
 class PlantType {
  public:
@@ -150,6 +173,13 @@ class PlantType {
   };
   virtual std::vector<Finding> examine(const PlantSite& site) const {
     (void)site;
+    return {};
+  }
+
+  // nullptr: it has no wiring to find out.
+  virtual const DriveWiringFields* wiring() const { return nullptr; }
+  virtual DriveConstants constants_of(std::string_view drive) const {
+    (void)drive;
     return {};
   }
 

@@ -430,6 +430,13 @@ void slow_down(const Eigen::MatrixXd& mass, double most, Eigen::VectorXd& gains)
   }
 }
 
+// With two ticks of delay at 1 kHz and a velocity filtered at 100 Hz stiffness / inertia of 28000 is the edge of
+// stability: half of that. With a longer delay, the filter's among it, all of it is slower by as much.
+double loop_lag_s(const JointLoop& loop) {
+  return loop.delay_s + std::numbers::sqrt2 / (2 * std::numbers::pi * loop.velocity_cutoff_Hz);
+}
+double loop_speed(const JointLoop& loop) { return loop_lag_s({}) / loop_lag_s(loop); }
+
 }  // namespace
 
 StandingPose find_stance(const RobotModel& model) {
@@ -439,14 +446,16 @@ StandingPose find_stance(const RobotModel& model) {
   return stance;
 }
 
-std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance) {
+double stiffest_per_s2(const JointLoop& loop) { return 14000 * loop_speed(loop) * loop_speed(loop); }
+
+std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance,
+                                   const std::vector<JointLoop>& loops) {
   // A rotor that its motor's whole torque brings to 2500 rad/s2 is typical of drives of legs and arms; E.
   constexpr double rotor_per_Nm = 1.0 / 2500, implausible_Nm = 5000;
-  // At 1 kHz with two ticks of delay and a velocity filtered at 100 Hz stiffness / inertia of 28000 is the edge of
-  // stability, damping / inertia of 270: half of that.
-  constexpr double stiffest = 14000, most_damped = 135;
+  constexpr double most_damped = 135;  // damping / inertia, half of the edge with the delay of 14000
   constexpr double most_stiffness = 50000, most_damping = 5000;         // that joint_pid takes
   constexpr double own_bandwidth = 225, sag_rad = 0.04, over_load = 3;  // (15 rad/s)^2
+  constexpr double stuck_rad = 0.005;                                   // where friction holds it, at most
   Body body(model);
   body.place(stance.stand);
   Eigen::MatrixXd mass = mass_of_joints(model, stance);
@@ -466,15 +475,17 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
     const Carried& hung = all[i + 1];
     const bool slides = joint.type == JointType::prismatic;
     const auto at_joint = static_cast<Eigen::Index>(i);
+    const JointLoop loop = loops.empty() ? JointLoop{} : loops[i];
     // A torque that no motor of the size has says nothing of its rotor.
     const double by_torque =
         joint.effort_max_Nm < implausible_Nm ? rotor_per_Nm * joint.effort_max_Nm : mass(at_joint, at_joint);
     hold.rotor_inertia_kg_m2 =
         joint.rotor_inertia_kg_m2 > 0 ? joint.rotor_inertia_kg_m2 : std::clamp(by_torque, 1e-4, 10.0);
-    const double inertia = mass(at_joint, at_joint) += hold.rotor_inertia_kg_m2;
+    mass(at_joint, at_joint) += hold.rotor_inertia_kg_m2;
+    const double inertia = loop.inertia_kg_m2 > 0 ? loop.inertia_kg_m2 : mass(at_joint, at_joint);
     const Vector3d at = body.place_of(i);
     hold.load_Nm_per_rad = slides ? 0 : g_m_s2 * (hung.moment - hung.mass_kg * at).norm();
-    double wanted = std::max(over_load * hold.load_Nm_per_rad, own_bandwidth * inertia);
+    double wanted = std::max({over_load * hold.load_Nm_per_rad, own_bandwidth * inertia, loop.friction_Nm / stuck_rad});
     if (slides) wanted = std::max(wanted, hung.mass_kg * g_m_s2 / 0.005);
     const auto foot = slides ? foot_of.end() : foot_of.find(i);
     const bool leg = foot != foot_of.end();
@@ -485,12 +496,15 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
       hold.load_Nm_per_rad = std::max(hold.load_Nm_per_rad, standing);
       wanted = std::max({wanted, over_load * standing, torque_Nm / sag_rad});
     }
-    stiffness[at_joint] = std::min({wanted, stiffest * inertia, most_stiffness});
+    stiffness[at_joint] = std::min({wanted, stiffest_per_s2(loop) * inertia, most_stiffness});
     const double critical = 1.4 * std::sqrt(stiffness[at_joint] * inertia);
-    damping[at_joint] = std::min(leg ? std::max(critical, 0.03 * stiffness[at_joint]) : critical, most_damping);
+    damping[at_joint] = std::min({leg ? std::max(critical, 0.03 * stiffness[at_joint]) : critical,
+                                  most_damped * loop_speed(loop) * inertia, most_damping});
   }
-  slow_down(mass, stiffest, stiffness);
-  slow_down(mass, most_damped, damping);
+  if (loops.empty()) {  // what was measured was measured joint by joint
+    slow_down(mass, stiffest_per_s2({}), stiffness);
+    slow_down(mass, most_damped, damping);
+  }
   for (std::size_t i = 0; i < holds.size(); ++i) {
     const auto at_joint = static_cast<Eigen::Index>(i);
     holds[i].stiffness_Nm_per_rad = stiffness[at_joint];

@@ -1,5 +1,6 @@
 // How a robot that nobody has configured yet stands, and how stiffly its joints must be held for that: what `kadans new
-// robot` writes. All from the URDF: kinematics, masses, shapes, limits of torque.
+// robot` writes, and what `kadans commission` proposes when it has measured a joint. From the URDF: kinematics, masses,
+// shapes, limits of torque.
 #pragma once
 
 #include <array>
@@ -40,10 +41,21 @@ struct JointHold {
   double stiffness_Nm_per_rad = 0, damping_Nms_per_rad = 0;  // N/m and Ns/m of a slider
   double rotor_inertia_kg_m2 = 0;                            // kg of a slider; the URDF's, or estimated
   double load_Nm_per_rad = 0;                                // how much gravity takes from the stiffness, at most
-  bool weak = false;                                         // a delay of two ticks does not allow twice the load
+  bool weak = false;                                         // its delay does not allow 1.2 times the load
 };
 
-// One a joint; zeros where there is no motor.
-std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance);
+// What is known of a joint's loop. The delay is that from the tick that computes an effort to the one that reads what
+// it did; the low pass is that of the velocity (estimate/velocity_filter.h).
+struct JointLoop {
+  double inertia_kg_m2 = 0;  // with its rotor; 0: the model's
+  double friction_Nm = 0;    // dry
+  double delay_s = 0.002, velocity_cutoff_Hz = 100;
+};
+// The stiffest that this delay allows: half of what it takes to swing, 1/s2 (times the inertia).
+double stiffest_per_s2(const JointLoop& loop);
+
+// One a joint; zeros where there is no motor. `loops`: one a joint, or none for those that nobody has measured.
+std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& stance,
+                                   const std::vector<JointLoop>& loops = {});
 
 }  // namespace kadans

@@ -22,7 +22,7 @@ class Jog {
     double lower_rad = 0, upper_rad = 0;  // no torque beyond them
     std::int64_t hold_ns = 150'000'000;   // how long a key counts: terminals repeat those that are held
   };
-  enum class Stop : std::uint8_t { none, fault, silent, too_fast };
+  enum class Stop : std::uint8_t { none, drive, too_fast };
 
   explicit Jog(const Settings& settings) noexcept : settings_(settings) {}
 
@@ -39,8 +39,7 @@ class Jog {
     for (std::size_t i = 0; i < sensors.joint_count; ++i) actuation.joints[i] = {};
     actuation.joint_count = sensors.joint_count;
     if (now_ns >= until_ns_) direction_ = 0;
-    if (joint.drive == DriveState::fault) stop_ = Stop::fault;
-    if (watch_.silent()) stop_ = Stop::silent;
+    if (watch_.stopped() != PushedJoint::Stop::none) stop_ = Stop::drive;
     if (std::abs(velocity_rad_s) > runaway * settings_.velocity_max_rad_s) stop_ = Stop::too_fast;
     if (sensors.emergency) direction_ = 0;
     if (stop_ != Stop::none || direction_ == 0) return;
@@ -52,6 +51,7 @@ class Jog {
                                          .mode = ActuationMode::effort};
   }
   Stop stopped() const noexcept { return stop_; }
+  PushedJoint::Stop drive_stopped() const noexcept { return watch_.stopped(); }
   bool pushes() const noexcept { return direction_ != 0 && stop_ == Stop::none; }
 
  private:

@@ -73,7 +73,7 @@ class JogRun {
       if (key != '\0') jog.key(key == 'l' ? 1 : key == 'h' ? -1 : 0, now_ns);
       jog.step(sensors_, now_ns, actuation_);
       bench_->write(actuation_);
-      if (jog.stopped() != Jog::Stop::none) return why(jog.stopped());
+      if (jog.stopped() != Jog::Stop::none) return why(jog);
       if (keys.is_terminal() && now_ns - told_ns >= told_every_ns) {
         told_ns = now_ns;
         std::fprintf(stderr, "\r%9.4f rad  %-8s", last_rad_, jog.pushes() ? "pushes" : "free");
@@ -81,14 +81,11 @@ class JogRun {
     }
   }
 
-  std::string why(Jog::Stop stop) {
+  std::string why(const Jog& jog) {
     failed_ = true;
-    const JointSample& joint = sensors_.joints[settings_.joint];
-    if (stop == Jog::Stop::silent) return "stopped: it tells nothing any more";
-    if (stop == Jog::Stop::too_fast) return "stopped: it moves faster than it is pushed";
-    std::string words = "stopped: its drive has a fault, code " + std::to_string(joint.code);
-    if (bench_->words() != nullptr) words += ": " + std::string(bench_->words()(joint.code));
-    return words;
+    if (jog.stopped() == Jog::Stop::too_fast) return "stopped: it moves faster than it is pushed";
+    return "stopped: its drive " +
+           stop_words(jog.drive_stopped(), sensors_.joints[settings_.joint].code, bench_->words());
   }
 
   const JogOptions& options_;

@@ -2,9 +2,11 @@
 // anything. One owner, one thread; nothing allocates or throws.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
+#include <string>
 
+#include "kadans/signal/fault.h"
 #include "kadans/signal/frames.h"
 
 namespace kadans {
@@ -13,21 +15,26 @@ class PushedJoint {
  public:
   void look(const JointSample& joint, std::int64_t frame_ns) noexcept {
     const std::int64_t time_ns = joint.time_ns != 0 ? joint.time_ns : frame_ns;
+    since_s_ = 0;
+    fault_ = joint.drive == DriveState::fault;
     if (joint.sequence == sequence_) {
       ++silent_ticks_;
       return;
     }
     silent_ticks_ = 0;
-    const double dt_s = seconds_between(last_ns_, time_ns);
-    if (started_ && dt_s > 0)
-      velocity_rad_s_ += smoothing * ((joint.position_rad - last_rad_) / dt_s - velocity_rad_s_);
+    if (started_) since_s_ = std::max(0.0, seconds_between(last_ns_, time_ns));
+    if (since_s_ > 0) velocity_rad_s_ += smoothing * ((joint.position_rad - last_rad_) / since_s_ - velocity_rad_s_);
     started_ = true;
     sequence_ = joint.sequence;
     last_ns_ = time_ns;
     last_rad_ = joint.position_rad;
   }
   double velocity_rad_s() const noexcept { return velocity_rad_s_; }
-  bool silent() const noexcept { return silent_ticks_ > silent_ticks_max; }
+  double since_s() const noexcept { return since_s_; }  // from the reading before to this one; 0: it is not new
+  enum class Stop : std::uint8_t { none, fault, silent };
+  Stop stopped() const noexcept {
+    return silent_ticks_ > silent_ticks_max ? Stop::silent : fault_ ? Stop::fault : Stop::none;
+  }
 
  private:
   static constexpr double smoothing = 0.1;
@@ -36,8 +43,14 @@ class PushedJoint {
   int silent_ticks_ = 0;
   std::int64_t last_ns_ = 0;
   std::uint32_t sequence_ = 0;
-  bool started_ = false;
-  double last_rad_ = 0, velocity_rad_s_ = 0;
+  bool started_ = false, fault_ = false;
+  double last_rad_ = 0, velocity_rad_s_ = 0, since_s_ = 0;
 };
+
+// Why a drive stopped, behind its name.
+inline std::string stop_words(PushedJoint::Stop stop, std::uint32_t code, DriveWords words) {
+  if (stop != PushedJoint::Stop::fault) return "tells nothing any more";
+  return "has a fault, code " + std::to_string(code) + (words == nullptr ? "" : ": " + std::string(words(code)));
+}
 
 }  // namespace kadans

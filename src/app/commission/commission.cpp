@@ -12,9 +12,11 @@ namespace {
 struct StepEntry {
   const char* name;
   void (*run)(CommissionStep&);
+  bool by_drives = false;  // it pushes drives; the others joints, though two drives move two of them
 };
-constexpr StepEntry step_entries[] = {
-    {"names", find_names}, {"direction", find_directions}, {"zero", find_zeros}, {"limits", find_limits}};
+constexpr StepEntry step_entries[] = {{"names", find_names, true}, {"direction", find_directions, true},
+                                      {"zero", find_zeros},        {"limits", find_limits},
+                                      {"scale", find_scales},      {"gains", find_gains}};
 
 // The joints that have a motor, of those that were asked for.
 std::vector<std::size_t> joints_of(const RobotConfig& robot, const std::vector<std::string>& wanted) {
@@ -33,31 +35,26 @@ std::vector<std::size_t> joints_of(const RobotConfig& robot, const std::vector<s
   return joints;
 }
 
-void refuse_couplings(const RobotConfig& robot) {
-  for (const Transmission& one : robot.model.transmissions) {
-    if (one.coupled())
-      throw InputError({.file = robot.file,
-                        .message = "its drives move joints in pairs (transmissions): such joints are not commissioned "
-                                   "by this command; `kadans jog` moves them"});
-  }
-}
-
 // Opens the drives and does one step. False: the program shall end.
 bool run_step(const StepEntry& entry, const CommissionSettings& settings, Person& person, const OpenDrives& open,
               Progress& progress, CommissionReport& report) {
   const Robot robot = read_robot(settings.robot);
-  refuse_couplings(robot.config);
-  Wiring wiring(wiring_fields(settings.plant, robot.config.name), settings.robot);
+  Wiring wiring(plant_type_named(robot.config, "--plant", {settings.plant, {}}), robot.config.model, settings.robot);
   std::vector<std::size_t> joints = joints_of(robot.config, settings.joints);
   std::erase_if(joints, [&](std::size_t j) { return progress.done(entry.name, robot.config.model.joints[j].name); });
   if (joints.empty()) return true;
   person.hear("== " + std::string(entry.name));
   const OpenBench drives = open(robot);
   if (!drives.bench) return false;
-  BenchSession session(
-      *drives.bench, person, robot.config.model,
-      {.share = settings.share, .period_s = robot.config.engine.control_period_s, .words = drives.words});
-  CommissionStep step{session, robot.config, wiring, progress, entry.name, joints, report.problems};
+  std::vector<double> drive_effort_max_Nm;
+  for (const DriveSettings& drive : robot.config.plant.drives) drive_effort_max_Nm.push_back(drive.torque_max_Nm);
+  BenchSession session(*drives.bench, person, robot.config.model,
+                       {.share = settings.share,
+                        .period_s = robot.config.engine.control_period_s,
+                        .words = drives.words,
+                        .drive_effort_max_Nm = drive_effort_max_Nm});
+  if (entry.by_drives) session.by_drives();
+  CommissionStep step{session, robot, robot.config, wiring, progress, entry.name, joints, report.problems};
   entry.run(step);
   return true;
 }

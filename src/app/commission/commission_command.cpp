@@ -19,25 +19,28 @@ namespace kadans {
 namespace {
 
 // The only type of plant with wiring that the robot's configuration describes.
-std::string wired_plant(const std::string& robot) {
-  const JsonValue json = parse_based_json(read_input_file(robot), robot).value;
+std::string wired_plant(const std::string& file) {
+  const Robot robot = read_robot(file);
+  const JsonValue json = parse_based_json(read_input_file(file), file).value;
   const JsonMember* const plant = json.find("plant");
   std::vector<std::string> types;
-  for (const char* type : {"hm2-eth", "dynamixel"}) {
-    if (plant != nullptr && plant->value.find(type) != nullptr) types.emplace_back(type);
+  for (const auto& type : robot.config.plant_types) {
+    if (type->wiring() != nullptr && plant != nullptr && plant->value.find(type->name()) != nullptr)
+      types.emplace_back(type->name());
   }
   if (types.size() == 1) return types.front();
-  throw InputError({.file = robot,
-                    .message = types.empty() ? "describes no drives on a bus: plant.hm2-eth (docs/hostmot2.md) or "
-                                               "plant.dynamixel (docs/dynamixel.md)"
-                                             : "describes drives on two buses: --plant says which"});
+  throw InputError({.file = file,
+                    .message = types.empty() ? "describes no drives on a bus, such as plant.hm2-eth "
+                                               "(docs/hostmot2.md) or plant.dynamixel (docs/dynamixel.md)"
+                                             : "describes drives on several buses: --plant says which"});
 }
 
 }  // namespace
 
 void add_commission(CLI::App& app, CommissionOptions& options) {
   CLI::App* command = app.add_subcommand(
-      "commission", "Find out which drive is which joint, its signs and more, and write it into the configuration");
+      "commission",
+      "Find out which drive is which joint, its signs, zero, limits, scale and gains, and write them down");
   command->add_option("robot", options.robot, "The robot's configuration (JSON); what is found is written into it")
       ->required()
       ->type_name("FILE");

@@ -14,7 +14,8 @@ namespace kadans {
 
 struct CommissionStep {
   BenchSession& session;
-  const RobotConfig& robot;
+  const Robot& files;
+  const RobotConfig& robot;  // of these files
   Wiring& wiring;
   Progress& progress;
   std::string_view name;            // of the step
@@ -22,6 +23,10 @@ struct CommissionStep {
   std::vector<std::string>& problems;
 
   const std::string& joint_name(std::size_t joint) const { return robot.model.joints[joint].name; }
+  // What is pushed in this joint's place when drives are: named by the joint where that has a drive of its own.
+  const std::string& drive_name(std::size_t joint) const {
+    return coupling_of(robot.model, joint) != nullptr ? wiring.drive_name(joint_name(joint)) : joint_name(joint);
+  }
   double number_at(std::size_t joint, std::string_view field, double otherwise) const {
     return wiring.number(joint_name(joint), field, otherwise);
   }
@@ -41,11 +46,18 @@ void find_directions(CommissionStep& step);
 void find_zeros(CommissionStep& step);
 // How far a joint may go: it is moved by hand.
 void find_limits(CommissionStep& step);
+// How strong its drive is: by the command that carries a known load, up and down.
+void find_scales(CommissionStep& step);
+// Its inertia, friction and delay by a swing, the gains that follow, and whether a small step with them goes well.
+void find_gains(CommissionStep& step);
 
 // The least inertia that each joint's drive may feel: the others move as they like. With the rotors, at the pose 0.
-std::vector<double> inertias_kg_m2(const RobotConfig& robot);
-// "counter-clockwise, seen from above": how a joint turns in its positive direction, at the pose 0.
+// `by_drives`: that of the drives, where two move two joints.
+std::vector<double> inertias_kg_m2(const RobotConfig& robot, bool by_drives = false);
+// "counter-clockwise, seen from above": how a joint turns in its positive direction, at the pose 0. Of a drive that
+// moves two joints what each of them does.
 std::string positive_turn(const RobotModel& model, std::size_t joint);
+std::string positive_turn_of_drive(const RobotModel& model, std::size_t joint);
 std::string degrees_text(double rad);  // "1.2 degrees"
 
 }  // namespace kadans

@@ -1,9 +1,9 @@
 // In which direction a joint's motor and its encoder turn.
 #include <cmath>
 
+#include "app/bench/lead.h"
+#include "app/bench/wiggle.h"
 #include "commission_steps.h"
-#include "lead.h"
-#include "wiggle.h"
 
 namespace kadans {
 namespace {
@@ -60,7 +60,9 @@ void flip(CommissionStep& step, const std::string& joint, std::string_view field
 
 void find_direction(CommissionStep& step, std::size_t joint, double inertia_kg_m2) {
   BenchSession& session = step.session;
-  const std::string name = step.joint_name(joint);
+  const std::string name = step.drive_name(joint);
+  const bool coupled = coupling_of(step.robot.model, joint) != nullptr;
+  const std::string called = (coupled ? "drive '" : "joint '") + name + "'";
   const double most_Nm = session.effort_max_Nm(joint);
   Turn turn(joint,
             {.joint = joint,
@@ -69,25 +71,25 @@ void find_direction(CommissionStep& step, std::size_t joint, double inertia_kg_m
              .effort_max_Nm = most_Nm,
              .joints = step.robot.model.joints.size()},
             {.joint = joint, .inertia_kg_m2 = inertia_kg_m2, .effort_max_Nm = most_Nm, .way_rad = way_rad});
-  const std::string positive = positive_turn(step.robot.model, joint);
-  const auto stop = session.hold({.about = Question::About::positive,
-                                  .joint = name,
-                                  .text = "Joint '" + name + "' trembles and then turns by " + degrees_text(way_rad) +
-                                          " while a key is held: look whether it turns " + positive},
-                                 joint, turn);
-  if (stop != BenchSession::Stop::none) return step.problem("joint '" + name + "': " + session.why(stop));
+  const std::string positive = positive_turn_of_drive(step.robot.model, joint);
+  const std::string stop =
+      session.hold({.about = Question::About::positive,
+                    .joint = name,
+                    .text = (coupled ? "Drive '" : "Joint '") + name + "' trembles and then turns by " +
+                            degrees_text(way_rad) + " while a key is held: look whether it turns " + positive},
+                   joint, turn);
+  if (!stop.empty()) return step.problem(called + ": " + stop);
   if (turn.relation() == 0)
     return step.problem(
-        "joint '" + name +
-        "' was pushed, and its encoder did not answer: it is dead, or a brake that is stuck holds the joint");
+        called + " was pushed, and its encoder did not answer: it is dead, or a brake that is stuck holds the joint");
   if (std::abs(turn.went_rad()) < way_rad / 3)
-    return step.problem("joint '" + name + "' turned by " + degrees_text(turn.went_rad()) +
+    return step.problem(called + " turned by " + degrees_text(turn.went_rad()) +
                         " only: something is in its way, or it needs a greater --share");
   const std::string answer = session.ask({.about = Question::About::positive,
                                           .joint = name,
-                                          .text = "Did joint '" + name + "' turn " + positive + "?",
+                                          .text = "Did " + called + " turn " + positive + "?",
                                           .answers = {"yes", "no"}});
-  const WiringFields& fields = step.wiring.fields();
+  const DriveWiringFields& fields = step.wiring.fields();
   const double encoder = (answer == "yes") == (turn.went_rad() > 0) ? 1 : -1, motor = encoder * turn.relation();
   if (fields.encoder_reversed == fields.motor_reversed) {
     if (encoder != motor)
@@ -99,13 +101,14 @@ void find_direction(CommissionStep& step, std::size_t joint, double inertia_kg_m
   }
   step.wiring.write();
   step.done(joint, encoder > 0 && motor > 0 ? "right" : "corrected");
-  session.tell("joint '" + name + "': a positive effort turns it " + positive + ", and its encoder counts up");
+  session.tell(called + ": a positive effort turns " + (coupled ? "" : "it ") + positive +
+               ", and its encoder counts up");
 }
 
 }  // namespace
 
 void find_directions(CommissionStep& step) {
-  const std::vector<double> inertia_kg_m2 = inertias_kg_m2(step.robot);
+  const std::vector<double> inertia_kg_m2 = inertias_kg_m2(step.robot, true);
   for (const std::size_t joint : step.joints) find_direction(step, joint, inertia_kg_m2[joint]);
 }
 

@@ -11,7 +11,7 @@
 
 namespace kadans {
 
-std::vector<double> inertias_kg_m2(const RobotConfig& robot) {
+std::vector<double> inertias_kg_m2(const RobotConfig& robot, bool by_drives) {
   const std::size_t count = robot.model.joints.size();
   Dynamics::Config config;
   for (const DriveSettings& drive : robot.plant.drives) config.rotor_inertia_kg_m2.push_back(drive.rotor_inertia_kg_m2);
@@ -25,14 +25,26 @@ std::vector<double> inertias_kg_m2(const RobotConfig& robot) {
     const auto k = static_cast<Eigen::Index>(i);
     inertia_kg_m2[i] = 1 / free(k, k);
   }
+  for (const Transmission& pair : robot.model.transmissions) {
+    if (!by_drives || !pair.coupled()) continue;
+    const auto a = static_cast<Eigen::Index>(pair.joints()[0]), b = static_cast<Eigen::Index>(pair.joints()[1]);
+    for (std::size_t drive = 0; drive < 2; ++drive) {
+      const double to_a = pair.drive_per_joint(drive, 0), to_b = pair.drive_per_joint(drive, 1);
+      inertia_kg_m2[pair.joints()[drive]] =
+          1 / (to_a * to_a * free(a, a) + 2 * to_a * to_b * free(a, b) + to_b * to_b * free(b, b));
+    }
+  }
   return inertia_kg_m2;
 }
 
-std::string positive_turn(const RobotModel& model, std::size_t joint) {
+namespace {
+
+std::string turn_text(const RobotModel& model, std::size_t joint, double sign) {
   Quat turned = model.joints[joint].origin.orientation;
   for (std::size_t link = model.joints[joint].parent; link > 0; link = model.joints[link - 1].parent)
     turned = multiply(model.joints[link - 1].origin.orientation, turned);
-  const Vec3 axis = rotate(turned, model.joints[joint].axis);
+  Vec3 axis = rotate(turned, model.joints[joint].axis);
+  for (double& part : axis) part *= sign;
   struct View {
     Vec3 from;
     const char* words;
@@ -52,6 +64,24 @@ std::string positive_turn(const RobotModel& model, std::size_t joint) {
   if (model.joints[joint].type == JointType::prismatic)
     return std::string("towards what is seen from ") + nearest->words;
   return std::string("counter-clockwise, seen from ") + nearest->words;
+}
+
+}  // namespace
+
+std::string positive_turn(const RobotModel& model, std::size_t joint) { return turn_text(model, joint, 1); }
+
+std::string positive_turn_of_drive(const RobotModel& model, std::size_t joint) {
+  const Transmission* const pair = coupling_of(model, joint);
+  if (pair == nullptr) return positive_turn(model, joint);
+  const std::size_t drive = pair->joints()[0] == joint ? 0 : 1;
+  std::string text;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double way = pair->drive_per_joint(drive, k);
+    if (way == 0) continue;
+    text += (text.empty() ? "joint '" : " and joint '") + model.joints[pair->joints()[k]].name + "' " +
+            turn_text(model, pair->joints()[k], way > 0 ? 1 : -1);
+  }
+  return text;
 }
 
 std::string degrees_text(double rad) {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <map>
 
+#include "app/bench/wiggle.h"
 #include "commission_steps.h"
 #include "signal/number_text.h"
-#include "wiggle.h"
 
 namespace kadans {
 namespace {
@@ -18,13 +18,26 @@ struct Moved {
 };
 
 // Its own encoder where that answers nearly as far as any other: other joints may swing with it.
-std::size_t answering(const Wiggle& wiggle, std::size_t own, std::size_t joints) {
+// Of a drive that is coupled with another one the two are compared: what one pushes turns both.
+std::size_t answering(const CommissionStep& step, const Wiggle& wiggle, std::size_t own) {
+  const std::size_t joints = step.robot.model.joints.size();
   const auto& answers = wiggle.answers_rad();
   std::size_t most = own;
   for (std::size_t i = 0; i < joints; ++i) {
     if (std::abs(answers[i]) > std::abs(answers[most])) most = i;
   }
+  const Transmission* const pair = coupling_of(step.robot.model, own);
+  if (pair != nullptr && pair == coupling_of(step.robot.model, most)) return most;
   return std::abs(answers[own]) > 0.5 * std::abs(answers[most]) ? own : most;
+}
+
+// Two drives move two joints, and one of these stood still: then both drives turn as far.
+bool alike(const CommissionStep& step, const Wiggle& wiggle, std::size_t own) {
+  const Transmission* const pair = coupling_of(step.robot.model, own);
+  if (pair == nullptr || !wiggle.seen()) return false;
+  const double one = std::abs(wiggle.answers_rad()[pair->joints()[0]]);
+  const double other = std::abs(wiggle.answers_rad()[pair->joints()[1]]);
+  return std::min(one, other) > 0.75 * std::max(one, other);
 }
 
 std::string what_holds(const CommissionStep& step, const std::string& drive, const Wiggle& wiggle) {
@@ -46,31 +59,40 @@ std::string what_holds(const CommissionStep& step, const std::string& drive, con
 bool name_drive(CommissionStep& step, std::size_t drive, const std::vector<double>& inertia_kg_m2,
                 std::map<std::string, Moved>& moved) {
   BenchSession& session = step.session;
-  const std::string name = step.joint_name(drive);
+  const std::string name = step.drive_name(drive);
   const std::size_t joints = step.robot.model.joints.size();
   Wiggle wiggle({.inertia_kg_m2 = inertia_kg_m2[drive],
                  .least_inertia_kg_m2 = *std::ranges::min_element(inertia_kg_m2),
                  .effort_max_Nm = session.effort_max_Nm(drive),
                  .joints = joints});
-  const auto stop = session.hold({.about = Question::About::which_joint,
-                                  .joint = name,
-                                  .text = "Drive '" + name + "' (" + step.wiring.told(name) +
-                                          ") wiggles while a key is held: look which joint moves"},
-                                 drive, wiggle);
-  if (stop != BenchSession::Stop::none) {
-    step.problem("drive '" + name + "': " + session.why(stop));
+  const std::string stop = session.hold({.about = Question::About::which_joint,
+                                         .joint = name,
+                                         .text = "Drive '" + name + "' (" + step.wiring.told(name) +
+                                                 ") wiggles while a key is held: look which joint moves"},
+                                        drive, wiggle);
+  if (!stop.empty()) {
+    step.problem("drive '" + name + "': " + stop);
     return false;
   }
   Question which{.about = Question::About::which_joint, .joint = name, .text = "Which joint moved?", .answers = {}};
   for (std::size_t i = 0; i < joints; ++i) {
-    if (!step.robot.model.joints[i].passive()) which.answers.push_back(step.joint_name(i));
+    if (step.robot.model.joints[i].passive()) continue;
+    which.answers.push_back(step.drive_name(i));
+    if (coupling_of(step.robot.model, i) != nullptr)
+      which.text += " '" + step.drive_name(i) + "': " + positive_turn_of_drive(step.robot.model, i) +
+                    ", or all of it the other way.";
   }
   which.answers.emplace_back(nothing_moved);
   const std::string joint = session.ask(which);
-  const std::size_t seen_by = answering(wiggle, drive, joints);
+  if (alike(step, wiggle, drive)) {
+    step.problem("drive '" + name + "' turned one of its two joints alone, so that it cannot be told from the other " +
+                 "drive: bring both joints to where they are free");
+    return false;
+  }
+  const std::size_t seen_by = answering(step, wiggle, drive);
   if (joint == nothing_moved) {
     if (wiggle.seen()) {
-      step.problem("drive '" + name + "' was pushed and nothing moved, but encoder '" + step.joint_name(seen_by) +
+      step.problem("drive '" + name + "' was pushed and nothing moved, but encoder '" + step.drive_name(seen_by) +
                    "' turned by " + degrees_text(wiggle.answers_rad()[seen_by]) +
                    ": the motor turns without its joint; look at the coupling between them");
     } else {
@@ -89,9 +111,11 @@ bool name_drive(CommissionStep& step, std::size_t drive, const std::vector<doubl
                  "': one of these answers is wrong");
     return false;
   }
-  moved[name] = {joint, step.joint_name(seen_by)};
-  step.done(drive, joint + " " + step.joint_name(seen_by));
-  session.tell("drive '" + name + "' moves joint '" + joint + "', seen by encoder '" + step.joint_name(seen_by) + "'");
+  moved[name] = {joint, step.drive_name(seen_by)};
+  step.done(drive, joint + " " + step.drive_name(seen_by));
+  const bool coupled = coupling_of(step.robot.model, drive) != nullptr;
+  session.tell("drive '" + name + (coupled ? "' turns as '" : "' moves joint '") + joint + (coupled ? "' shall" : "'") +
+               ", seen by encoder '" + step.drive_name(seen_by) + "'");
   return true;
 }
 
@@ -112,7 +136,7 @@ bool take_fields(CommissionStep& step, const Wiring& before, const std::vector<s
 }
 
 bool write_names(CommissionStep& step, const std::map<std::string, Moved>& moved) {
-  const WiringFields& fields = step.wiring.fields();
+  const DriveWiringFields& fields = step.wiring.fields();
   const Wiring before = step.wiring;
   std::vector<std::string> sentences;
   for (const auto& [drive, its] : moved) {
@@ -147,13 +171,13 @@ bool write_names(CommissionStep& step, const std::map<std::string, Moved>& moved
 }  // namespace
 
 void find_names(CommissionStep& step) {
-  const std::vector<double> inertia_kg_m2 = inertias_kg_m2(step.robot);
+  const std::vector<double> inertia_kg_m2 = inertias_kg_m2(step.robot, true);
   std::map<std::string, Moved> moved;
   bool all = true;
   for (std::size_t i = 0; i < step.robot.model.joints.size(); ++i) {
-    const std::string& name = step.joint_name(i);
-    if (!step.progress.done(step.name, name)) continue;
-    const std::string found = step.progress.found(step.name, name);
+    const std::string& name = step.drive_name(i);
+    if (!step.progress.done(step.name, step.joint_name(i))) continue;
+    const std::string found = step.progress.found(step.name, step.joint_name(i));
     const std::size_t blank = found.find(' ');
     moved[name] = {found.substr(0, blank), found.substr(std::min(found.size(), blank + 1))};
   }

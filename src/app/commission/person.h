@@ -14,7 +14,10 @@ struct Question {
     positive,     // did `joint` turn in its positive direction?
     method,       // how is `joint` to be measured?
     number,       // a quantity of `joint`
-    ready         // `joint` is as the text says
+    ready,        // `joint` is as the text says
+    load,         // `joint` is held by hand, and let go while the key is held
+    agreed,       // is what was found to be written?
+    gains         // which of them?
   };
   About about = About::ready;
   std::string joint;

@@ -1,8 +1,6 @@
 #include "wiring.h"
 
 #include <algorithm>
-#include <array>
-#include <numbers>
 
 #include "app/assembly.h"
 #include "config/scenario/based_on.h"
@@ -12,42 +10,15 @@
 namespace kadans {
 namespace {
 
-const std::array<WiringFields, 2>& known_wirings() {
-  static const std::array<WiringFields, 2> known{{{"hm2-eth",
-                                                   "drives",
-                                                   {"board"},
-                                                   {"pwm", "output", "enable", "brake", "fault"},
-                                                   {"encoder", "low", "high", "home_switch"},
-                                                   "pwm_reversed",
-                                                   "reversed",
-                                                   "home",
-                                                   "home_rad",
-                                                   0,
-                                                   1,
-                                                   0},
-                                                  {"dynamixel",
-                                                   "servos",
-                                                   {"port", "id", "model"},
-                                                   {},
-                                                   {},
-                                                   "reversed",
-                                                   "reversed",
-                                                   "",
-                                                   "zero_pulse",
-                                                   2048,
-                                                   2 * std::numbers::pi / 4096,
-                                                   4096}}};
-  return known;
-}
-
-const JsonValue* at_path(const JsonValue& root, const std::vector<std::string>& path) {
-  const JsonValue* here = &root;
-  for (const std::string& key : path) {
-    const JsonMember* const found = here->find(key);
-    if (found == nullptr) return nullptr;
-    here = &found->value;
+const DriveWiringFields& fields_of(const PlantType& type) {
+  if (const DriveWiringFields* const fields = type.wiring()) return *fields;
+  std::string known;
+  for (const auto& one : plant_types()) {
+    if (one->wiring() != nullptr) known += (known.empty() ? "" : ", ") + std::string(one->name());
   }
-  return here;
+  throw InputError(
+      {.file = "--plant",
+       .message = "'" + std::string(type.name()) + "' has no wiring to find out; such types of plant have: " + known});
 }
 
 std::string json_of(const JsonValue& value) {
@@ -57,37 +28,43 @@ std::string json_of(const JsonValue& value) {
 
 }  // namespace
 
-const WiringFields& wiring_fields(const std::string& type, const std::string& robot) {
-  const auto found = std::ranges::find(known_wirings(), type, &WiringFields::type);
-  if (found != known_wirings().end()) return *found;
-  throw InputError({.file = "--plant",
-                    .message = "'" + type + "' has no wiring to find out; " + robot +
-                               " is commissioned through hm2-eth or dynamixel"});
-}
-
-Wiring::Wiring(const WiringFields& fields, std::string file)
-    : fields_(fields),
+Wiring::Wiring(const PlantType& type, const RobotModel& model, std::string file)
+    : type_(type),
+      fields_(fields_of(type)),
       file_(std::move(file)),
       text_(read_input_file(file_)),
-      merged_(parse_based_json(text_, file_).value) {}
+      merged_(parse_based_json(text_, file_).value) {
+  const std::vector<std::string> names = model.drive_names();
+  for (std::size_t i = 0; i < names.size(); ++i) drives_[model.joints[i].name] = {.name = names[i]};
+  for (const Transmission& one : model.transmissions) {
+    if (!one.coupled()) drives_[model.joints[one.joints()[0]].name].per_joint = one.drive_per_joint(0, 0);
+    for (const std::string& drive : one.drives()) drives_.try_emplace(drive, Drive{.name = drive});
+  }
+}
 
-std::string Wiring::value(const std::string& drive, std::string_view field) const {
-  const JsonValue* const found =
-      at_path(merged_, {"plant", std::string(fields_.type), std::string(fields_.section), drive, std::string(field)});
+const JsonValue* Wiring::find(const std::string& joint, std::string_view field) const {
+  return find_at(merged_, path_of(joint, field));
+}
+
+std::vector<std::string> Wiring::path_of(const std::string& joint, std::string_view field) const {
+  return {"plant", std::string(type_.name()), std::string(fields_.section), drive_name(joint), std::string(field)};
+}
+
+std::string Wiring::value(const std::string& joint, std::string_view field) const {
+  const JsonValue* const found = find(joint, field);
   return found == nullptr ? "" : json_of(*found);
 }
 
-double Wiring::number(const std::string& drive, std::string_view field, double otherwise) const {
-  const JsonValue* const found =
-      at_path(merged_, {"plant", std::string(fields_.type), std::string(fields_.section), drive, std::string(field)});
+double Wiring::number(const std::string& joint, std::string_view field, double otherwise) const {
+  const JsonValue* const found = find(joint, field);
   return found == nullptr || found->kind != JsonValue::Kind::number ? otherwise : found->number;
 }
 
-std::string Wiring::told(const std::string& drive) const {
+std::string Wiring::told(const std::string& joint) const {
   std::string text;
   for (const auto* group : {&fields_.both, &fields_.motor, &fields_.encoder}) {
     for (const std::string_view field : *group) {
-      const std::string is = value(drive, field);
+      const std::string is = value(joint, field);
       if (!is.empty()) text += (text.empty() ? "" : ", ") + std::string(field) + " " + is;
     }
   }
@@ -95,16 +72,12 @@ std::string Wiring::told(const std::string& drive) const {
   return text;
 }
 
-void Wiring::set(const std::string& drive, std::string_view field, std::string value) {
-  set({"plant", std::string(fields_.type), std::string(fields_.section), drive, std::string(field)}, std::move(value));
-}
-
 void Wiring::write() {
   if (edits_.empty()) return;
   const std::string edited = edit_json(text_, file_, edits_);
   const JsonValue merged = parse_based_json(edited, file_).value;
   for (const JsonEdit& edit : edits_) {
-    const JsonValue* const is = at_path(merged, edit.path);
+    const JsonValue* const is = find_at(merged, edit.path);
     if (is == nullptr || json_of(*is) != edit.value)
       throw InputError({.file = file_, .message = "'" + edit.path.back() + "' could not be written"});
   }

@@ -1,53 +1,65 @@
-// What a robot's configuration says about each drive's wiring, and what commissioning writes there: the fields that a
-// type of plant has for it.
+// What a robot's configuration says about each drive's wiring, and what commissioning writes there: the fields that the
+// type of plant has for it (PlantType::wiring).
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "config/json/json_edit.h"
 #include "config/json/json_value.h"
+#include "kadans/model/robot_model.h"
+#include "kadans/plant/plant_type.h"
 
 namespace kadans {
 
-// Names of fields under plant.TYPE.SECTION.DRIVE.
-struct WiringFields {
-  std::string_view type, section;
-  std::vector<std::string_view> both;     // of what motor and encoder share
-  std::vector<std::string_view> motor;    // where the motor is wired to
-  std::vector<std::string_view> encoder;  // where the encoder is; none: motor and encoder are one device
-  std::string_view motor_reversed, encoder_reversed;
-  std::string_view home;           // of a drive that looks for its zero; "": none does
-  std::string_view zero;           // where the zero is ...
-  double zero_default, zero_unit;  // ... of so many radians; of pulses of a turn it wraps
-  double zero_turn;                // 0: it does not
-};
-// Throws InputError for a type of plant that has no wiring to find out.
-const WiringFields& wiring_fields(const std::string& type, const std::string& robot);
-
-// The configuration's text, and what it says together with the files that it is based on.
+// The configuration's text, and what it says together with the files that it is based on. Drives are named by their
+// joints here, or by names of their own.
 class Wiring {
  public:
-  Wiring(const WiringFields& fields, std::string file);  // reads it; throws InputError
+  // Reads it. Throws InputError, also for a type of plant that has no wiring to find out.
+  Wiring(const PlantType& type, const RobotModel& model, std::string file);
 
-  const WiringFields& fields() const noexcept { return fields_; }
+  const DriveWiringFields& fields() const noexcept { return fields_; }
+  DriveConstants constants_of(const std::string& joint) const { return type_.constants_of(drive_name(joint)); }
+  const std::string& drive_name(const std::string& joint) const {
+    const auto found = drives_.find(joint);
+    return found == drives_.end() ? joint : found->second.name;
+  }
+  // Of a gear between them.
+  double drive_per_joint(const std::string& joint) const {
+    const auto found = drives_.find(joint);
+    return found == drives_.end() ? 1 : found->second.per_joint;
+  }
   const std::string& file() const noexcept { return file_; }
   // A field of a drive as JSON; "" where the configuration does not give it.
-  std::string value(const std::string& drive, std::string_view field) const;
-  bool flag(const std::string& drive, std::string_view field) const { return value(drive, field) == "true"; }
-  double number(const std::string& drive, std::string_view field, double otherwise) const;
+  std::string value(const std::string& joint, std::string_view field) const;
+  bool flag(const std::string& joint, std::string_view field) const { return value(joint, field) == "true"; }
+  double number(const std::string& joint, std::string_view field, double otherwise) const;
+  std::vector<std::string> path_of(const std::string& joint, std::string_view field) const;
   // "encoder 0, pwm 0, enable 20"
-  std::string told(const std::string& drive) const;
+  std::string told(const std::string& joint) const;
 
-  void set(const std::string& drive, std::string_view field, std::string value);
+  void set(const std::string& joint, std::string_view field, std::string value) {
+    set(path_of(joint, field), std::move(value));
+  }
   void set(std::vector<std::string> path, std::string value) { edits_.push_back({std::move(path), std::move(value)}); }
   // Writes what was set, durably, and reads it back. Throws InputError, and writes nothing, when the edited text is not
   // a valid configuration, or does not say what was set.
   void write();
 
  private:
-  const WiringFields& fields_;
+  const JsonValue* find(const std::string& joint, std::string_view field) const;
+
+  struct Drive {
+    std::string name;
+    double per_joint = 1;
+  };
+
+  const PlantType& type_;
+  const DriveWiringFields& fields_;
+  std::map<std::string, Drive> drives_;  // by joint
   std::string file_, text_;
   JsonValue merged_;
   std::vector<JsonEdit> edits_;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/bench/lead.h"
 #include "commission_steps.h"
-#include "lead.h"
 
 namespace kadans {
 namespace {
@@ -29,29 +29,46 @@ class LookForZero final : public Push {
   const bool& homed_;
 };
 
-// The joint is at true_rad now. Writes where its zero is.
-void write_zero(CommissionStep& step, std::size_t joint, double true_rad) {
-  const WiringFields& fields = step.wiring.fields();
+// The drive in this joint's place stands further than it tells by so much. "\"home_rad\": 0.1"
+std::string move_zero(CommissionStep& step, std::size_t joint, double off_rad) {
+  const DriveWiringFields& fields = step.wiring.fields();
   const std::string name = step.joint_name(joint);
-  const double told_rad = step.session.sight().position_rad[joint], off_rad = true_rad - told_rad;
   const double before = step.number_at(joint, fields.zero, fields.zero_default);
+  std::string now = rad_text(before + off_rad);
+  if (fields.zero_turn > 0) {
+    const double sign = step.wiring.flag(name, fields.encoder_reversed) ? -1 : 1;
+    const double raw = std::round(before - sign * off_rad / fields.zero_unit_rad);
+    now = std::to_string(std::lround(raw - fields.zero_turn * std::floor(raw / fields.zero_turn)));
+  }
+  step.wiring.set(name, fields.zero, now);
+  return "\"" + std::string(fields.zero) + "\": " + now;
+}
+
+// The joint is at true_rad now. Writes where its zero is; where two drives move it, both stand elsewhere than they
+// tell.
+void write_zero(CommissionStep& step, std::size_t joint, double true_rad) {
+  const std::string name = step.joint_name(joint);
+  const double off_rad = true_rad - step.session.sight().position_rad[joint];
   if (std::abs(off_rad) < right_within_rad) {
     step.done(joint, "right");
     return step.session.tell("joint '" + name + "': its zero is right, within " + degrees_text(off_rad));
   }
   std::string now;
-  if (fields.zero_turn > 0) {
-    const double sign = step.wiring.flag(name, fields.encoder_reversed) ? -1 : 1;
-    const double raw = std::round(before - sign * off_rad / fields.zero_unit);
-    now = std::to_string(std::lround(raw - fields.zero_turn * std::floor(raw / fields.zero_turn)));
+  if (const Transmission* const pair = coupling_of(step.robot.model, joint)) {
+    const std::size_t own = pair->joints()[0] == joint ? 0 : 1;
+    for (std::size_t drive = 0; drive < 2; ++drive) {
+      const double per_joint = pair->drive_per_joint(drive, own);
+      if (per_joint == 0) continue;
+      now += (now.empty() ? "'" : ", '") + step.drive_name(pair->joints()[drive]) + "' " +
+             move_zero(step, pair->joints()[drive], per_joint * off_rad);
+    }
   } else {
-    now = rad_text(before + off_rad);
+    now = move_zero(step, joint, step.wiring.drive_per_joint(name) * off_rad);
   }
-  step.wiring.set(name, fields.zero, now);
   step.wiring.write();
   step.done(joint, "corrected");
-  step.session.tell("joint '" + name + "': its zero was wrong by " + degrees_text(off_rad) + ": \"" +
-                    std::string(fields.zero) + "\": " + now + " corrects it");
+  step.session.tell("joint '" + name + "': its zero was wrong by " + degrees_text(off_rad) + ": " + now +
+                    " corrects it");
 }
 
 void at_jig(CommissionStep& step, std::size_t joint) {
@@ -75,12 +92,13 @@ void at_stop(CommissionStep& step, std::size_t joint, double inertia_kg_m2, doub
              .speed_rad_s = 0.2,
              .behind_rad = 0.03,
              .seeks_stop = true});
-  const auto stop = session.hold({.about = Question::About::method,
-                                  .joint = is.name,
-                                  .text = "Joint '" + is.name + "' goes to its " + (direction < 0 ? "lower" : "upper") +
-                                          " stop while a key is held: look that nothing is in its way"},
-                                 joint, lead, true);
-  if (stop != BenchSession::Stop::none) return step.problem("joint '" + is.name + "': " + session.why(stop));
+  const std::string stop =
+      session.hold({.about = Question::About::method,
+                    .joint = is.name,
+                    .text = "Joint '" + is.name + "' goes to its " + (direction < 0 ? "lower" : "upper") +
+                            " stop while a key is held: look that nothing is in its way"},
+                   joint, lead, true);
+  if (!stop.empty()) return step.problem("joint '" + is.name + "': " + stop);
   if (!lead.blocked()) return step.problem("joint '" + is.name + "' did not come to its stop");
   // Where it was pushed into the stop; without torque it may have come back a little.
   const double back_rad = session.sight().position_rad[joint] - lead.last_rad();
@@ -90,21 +108,22 @@ void at_stop(CommissionStep& step, std::size_t joint, double inertia_kg_m2, doub
 void at_home(CommissionStep& step, std::size_t joint) {
   BenchSession& session = step.session;
   const std::string name = step.joint_name(joint);
-  const double most_Nm =
-      step.number_at(joint, "velocity_gain_Nms_per_rad", 0) * std::abs(step.number_at(joint, "home_rad_s", 0.1));
+  const double most_Nm = std::abs(step.number_at(joint, "velocity_gain_Nms_per_rad", 0) *
+                                  step.number_at(joint, "home_rad_s", 0.1) * step.wiring.drive_per_joint(name));
   if (most_Nm > session.effort_max_Nm(joint))
     return step.problem("joint '" + name + "': looking for its zero may take " + rad_text(most_Nm) +
                         " Nm, more than the share: a lower \"home_rad_s\" takes less");
   bool homed = false;
   LookForZero look(homed);
   session.watch_homing(joint, &homed);
-  const auto stop = session.hold({.about = Question::About::method,
-                                  .joint = name,
-                                  .text = "Joint '" + name + "' looks for its " + step.wiring.value(name, "home") +
-                                          " while a key is held: look that nothing is in its way"},
-                                 joint, look, true);
+  const std::string stop =
+      session.hold({.about = Question::About::method,
+                    .joint = name,
+                    .text = "Joint '" + name + "' looks for its " + step.wiring.value(name, "home") +
+                            " while a key is held: look that nothing is in its way"},
+                   joint, look, true);
   session.watch_homing(joint, nullptr);
-  if (stop != BenchSession::Stop::none) return step.problem("joint '" + name + "': " + session.why(stop));
+  if (!stop.empty()) return step.problem("joint '" + name + "': " + stop);
   if (!homed) return step.problem("joint '" + name + "' did not find its zero");
   session.tell("joint '" + name + "' has found its " + step.wiring.value(name, "home"));
   at_jig(step, joint);
@@ -117,7 +136,8 @@ void find_zero(CommissionStep& step, std::size_t joint, double inertia_kg_m2) {
                .text = "How is the zero of joint '" + name + "' found?",
                .answers = {"jig", "lower-stop", "upper-stop", "right"}};
   const std::string home = step.wiring.fields().home.empty() ? "" : step.wiring.value(name, step.wiring.fields().home);
-  if (!home.empty() && home != "\"power_on\"") how.answers.insert(how.answers.begin() + 1, "home");
+  const bool coupled = coupling_of(step.robot.model, joint) != nullptr;
+  if (!coupled && !home.empty() && home != "\"power_on\"") how.answers.insert(how.answers.begin() + 1, "home");
   const std::string method = step.session.ask(how);
   if (method == "right") return step.done(joint, "right");
   if (method == "jig") return at_jig(step, joint);

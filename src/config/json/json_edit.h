@@ -11,14 +11,17 @@
 namespace kadans {
 
 struct JsonEdit {
-  std::vector<std::string> path;  // keys from the root object on
-  std::string value;              // as JSON: 0.5, true, "a word"; of any kind but an object or a list
+  // Keys from the root object on. "[NAME]" is the item of a list whose "name" is NAME: one that is not there is added.
+  std::vector<std::string> path;
+  std::string value;  // as JSON: 0.5, true, "a word"; of any kind but an object or a list
 };
 
 // A value that is there is replaced. One that is not becomes the last of the nearest object on its path that is there,
 // on a line of its own where the one before it has one. `file` only names the text. Throws InputError when the text is
 // no JSON, or when the path leads through a value that is no object or to one that is an object or a list.
 std::string edit_json(std::string text, const std::string& file, const std::vector<JsonEdit>& edits);
+// The value at such a path; nullptr where there is none.
+const JsonValue* find_at(const JsonValue& root, const std::vector<std::string>& path);
 
 // The parts of this, for other edits. Offsets are in bytes.
 std::size_t offset_of(std::string_view text, TextPlace place);

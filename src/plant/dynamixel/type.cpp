@@ -36,6 +36,22 @@ class DynamixelType final : public PlantType {
     return settings_.servos.empty() ? std::vector<Finding>()
                                     : dynamixel::examine_ports(settings_, site.layout.period_ns);
   }
+  const DriveWiringFields* wiring() const override {
+    static const DriveWiringFields fields{.section = "servos",
+                                          .both = {"port", "id", "model"},
+                                          .motor_reversed = "reversed",
+                                          .encoder_reversed = "reversed",
+                                          .zero = "zero_pulse",
+                                          .zero_default = dynamixel::ServoSettings{}.zero_pulse,
+                                          .zero_unit_rad = dynamixel::rad_per_pulse,
+                                          .zero_turn = dynamixel::pulses_per_turn};
+    return &fields;
+  }
+  DriveConstants constants_of(std::string_view drive) const override {
+    const auto found = std::ranges::find(settings_.servos, drive, &dynamixel::ServoSettings::drive);
+    if (found == settings_.servos.end() || !found->model->has_current()) return {};
+    return {.scale = {"Nm_per_A", found->torque_constant_Nm_per_A()}};
+  }
   DriveWords drive_words() const noexcept override { return dynamixel::drive_code_words; }
 
  private:

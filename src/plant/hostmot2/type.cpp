@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "emulator/board_server.h"
@@ -47,6 +48,29 @@ class HostMot2EthernetType final : public PlantType {
   std::vector<Finding> examine(const PlantSite& site) const override {
     return settings_.boards.empty() ? std::vector<Finding>()
                                     : hostmot2::examine_boards(settings_, site.layout.period_ns);
+  }
+  const DriveWiringFields* wiring() const override {
+    static const DriveWiringFields fields{.section = "drives",
+                                          .both = {"board"},
+                                          .motor = {"pwm", "output", "enable", "brake", "fault"},
+                                          .encoder = {"encoder", "low", "high", "home_switch"},
+                                          .motor_reversed = "pwm_reversed",
+                                          .encoder_reversed = "reversed",
+                                          .home = "home",
+                                          .zero = "home_rad"};
+    return &fields;
+  }
+  DriveConstants constants_of(std::string_view drive) const override {
+    using Kind = hostmot2::AmplifierSettings::Kind;
+    const auto found = std::ranges::find(settings_.drives, drive, &hostmot2::DriveWiring::drive);
+    if (found == settings_.drives.end() || !found->pwm) return {};
+    const hostmot2::AmplifierSettings& is = found->amplifier;
+    DriveConstants all{.scale = {"amplifier_full", is.full}};
+    if (is.kind == Kind::voltage) all.scale = {"Nm_per_A", is.Nm_per_A};
+    if (is.kind == Kind::velocity) return all;  // its loops are its own
+    all.stiffness = {"position_gain_Nm_per_rad", found->position_gain_Nm_per_rad};
+    all.damping = {"velocity_gain_Nms_per_rad", found->velocity_gain_Nms_per_rad};
+    return all;
   }
   DriveWords drive_words() const noexcept override { return hostmot2::drive_code_words; }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "kadans/signal/capacity.h"
@@ -14,6 +15,7 @@ namespace kadans {
 struct BenchSight {
   double time_s = 0, dt_s = 0;                                                   // since the session began; of a tick
   std::array<double, max_joints> position_rad{}, velocity_rad_s{}, effort_Nm{};  // effort: as the drives tell it
+  std::array<double, max_joints> since_s{};  // from the reading before to this one; 0: it is not new
 };
 
 class Push {
@@ -24,6 +26,8 @@ class Push {
   // The effort that its drive is asked for in this tick.
   virtual double step(const BenchSight& sight) = 0;
   virtual bool complete() const { return false; }
+  // Why the joint must be let go at once; "": it need not.
+  virtual std::string_view aborted() const { return ""; }
 };
 
 }  // namespace kadans

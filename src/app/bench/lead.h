@@ -50,9 +50,15 @@ class Lead final : public Push {
         std::clamp(stiffness * error_rad + damping * faster_rad_s + integral_Nm_, -s.effort_max_Nm, s.effort_max_Nm);
     return s.relation * effort_Nm_;
   }
+  // Goes on to another place, without letting go; rad from where it stood at its begin.
+  void go_on(double way_rad) noexcept {
+    settings_.way_rad = way_rad;
+    stayed_s_ = 0;
+  }
   bool complete() const override { return stayed_s_ >= settings_.stays_s || (settings_.seeks_stop && blocked()); }
   bool blocked() const noexcept { return behind_s_ > 0.7; }  // it does not follow
   double last_rad() const noexcept { return last_rad_; }     // where it was in the last tick
+  double place_rad() const noexcept { return place_rad_ - start_rad_; }
   // How far its encoder went.
   double went_rad(const BenchSight& sight) const noexcept { return sight.position_rad[settings_.joint] - start_rad_; }
 
