@@ -61,6 +61,7 @@ class TypingPerson final : public Person {
   VirtualBench* bench = nullptr;
   Seen* seen = nullptr;
   std::vector<std::string> heard;
+  std::int64_t from_ns = 0;                                             // when it was last asked to hold
   std::int64_t held_ns = -1, torque_held_ns = -1, torque_away_ns = -1;  // last key of the first hold; last torques
   bool quits = false, hangs_up = false;
 
@@ -77,11 +78,11 @@ class TypingPerson final : public Person {
   void ask_to_hold(const Question& question) override {
     heard.push_back(question.text);
     there_.ask_to_hold(question);
-    from_ns_ = bench->now_ns();
+    from_ns = bench->now_ns();
   }
   std::optional<std::string> answer(std::int64_t now_ns) override { return there_.answer(now_ns); }
   Hand hand(std::int64_t now_ns, bool complete) override {
-    const std::int64_t passed_ns = now_ns - from_ns_;
+    const std::int64_t passed_ns = now_ns - from_ns;
     const bool away = passed_ns > 1500 * ms && passed_ns < 3000 * ms;
     if (held_ns < 0 && away) held_ns = last_key_ns_;
     if (away && hangs_up) terminal_.hang_up();
@@ -99,7 +100,7 @@ class TypingPerson final : public Person {
  private:
   Terminal& terminal_;
   TerminalPerson there_;
-  std::int64_t from_ns_ = 0, last_key_ns_ = 0;
+  std::int64_t last_key_ns_ = 0;
 };
 
 CommissionReport typed(Project& project, TypingPerson& person) {
@@ -150,7 +151,7 @@ TEST_CASE("At a terminal q ends, and so does a terminal that is gone, without to
     person.quits = !hangs_up;
     person.hangs_up = hangs_up;
     CHECK(typed(project, person).ended_early);
-    CHECK(project.all.seen.torque_until_ns <= 1500 * ms + 155 * ms);
+    CHECK(project.all.seen.torque_until_ns <= person.from_ns + 1500 * ms + 155 * ms);
     CHECK(!std::filesystem::exists(project.mine.string() + ".commission"));
   }
 }

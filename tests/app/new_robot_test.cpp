@@ -116,7 +116,7 @@ return k.behavior "weighs" {
         assert(s.feet[name].contact, name)
         all_N = all_N + s.feet[name].force_N
       end
-      assert(math.abs(all_N - 141.3) < 4, all_N)  -- 14.4 kg
+      assert(math.abs(all_N - 141.3) < 8, all_N)  -- 14.4 kg, and noise of sensors that push no less than 0
     end,
     { on = "run.done", to = "done" },
   },

@@ -40,7 +40,8 @@ std::vector<double> ends_of(const Distribution& distribution) {
   return {distribution.at(0), distribution.at(1)};
 }
 
-void verify_ranges(const ExperimentConfig& plan, const ScenarioConfig& scenario, const Robot& robot, Problems& problems) {
+void verify_ranges(const ExperimentConfig& plan, const ScenarioConfig& scenario, const Robot& robot,
+                   Problems& problems) {
   const auto system = make_control_system(robot);
   PlantVariant variant = plant_variant(scenario, robot.config);
   Quantities quantities(variant, system->catalog);
