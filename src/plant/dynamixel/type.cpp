@@ -42,7 +42,7 @@ class DynamixelType final : public PlantType {
                                           .motor_reversed = "reversed",
                                           .encoder_reversed = "reversed",
                                           .zero = "zero_pulse",
-                                          .zero_default = dynamixel::ServoSettings{}.zero_pulse,
+                                          .zero_default = static_cast<double>(dynamixel::ServoSettings{}.zero_pulse),
                                           .zero_unit_rad = dynamixel::rad_per_pulse,
                                           .zero_turn = dynamixel::pulses_per_turn};
     return &fields;
