@@ -155,7 +155,8 @@ TEST_CASE("A package is where it is said to be, where ROS says, or where a packa
 }
 
 TEST_CASE(
-    "An SRDF says which links need not collide; links that are not there are told, mistakes refused with their place") {
+    "An SRDF says which links need not collide, tells links that are not there, and is refused with the place of a "
+    "mistake") {
   const test::TemporaryFolder folder;
   const RobotModel model = read(duo_with("", ""));
   const auto read_pairs = [&](const std::string& body, std::vector<InputProblem>* warnings = nullptr) {
@@ -172,8 +173,8 @@ TEST_CASE(
   CHECK(warnings[0].line == 4);
   CHECK(warnings[0].message == "the robot has no link 'camera': this pair is not used");
   CHECK_THROWS_WITH_AS((void)read_pairs("<disable_collisions link1=\"base\"/>"),
-                       doctest::Contains("duo.srdf:2:2: <disable_collisions> needs"), InputError);
+                       doctest::Contains("duo.srdf:2:1: <disable_collisions> has no attribute 'link2'"), InputError);
   CHECK_THROWS_WITH_AS((void)read_srdf(folder.write("list.srdf", "<links/>"), model),
-                       doctest::Contains("list.srdf:1:2: the root element is <links>, an SRDF's is <robot>"),
+                       doctest::Contains("list.srdf:1:1: the root element is <links>, an SRDF's is <robot>"),
                        InputError);
 }
