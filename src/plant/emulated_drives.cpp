@@ -1,11 +1,12 @@
 #include "emulated_drives.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "signal/nearest_name.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 
@@ -40,12 +41,10 @@ EmulatedFault emulated_fault(const std::string& text) {
   fault.kind = what.substr(0, colon);
   if (colon != std::string::npos) fault.of = what.substr(colon + 1);
   const auto number = [&](std::size_t from, std::size_t until) {
-    double value = 0;
-    const char* const end = text.data() + std::min(until, text.size());
-    const auto [rest, error] = std::from_chars(text.data() + from, end, value);
-    if (error != std::errc() || rest != end || !(std::abs(value) <= 1e6))
-      throw std::invalid_argument("'" + text.substr(from, until - from) + "' is no number");
-    return value;
+    const std::string part = text.substr(from, until - from);
+    const std::optional<double> value = number_of<double>(part);
+    if (!value || !(std::abs(*value) <= 1e6)) throw std::invalid_argument("'" + part + "' is no number");
+    return *value;
   };
   if (at == std::string::npos) throw std::invalid_argument("says no time: @ and seconds");
   const std::size_t equals = std::min(text.find('=', at), text.size()), plus = std::min(text.find('+', at), equals);

@@ -1,12 +1,12 @@
 // What a joint's inertia, friction and delay are, and which gains follow from them.
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "app/author/stance.h"
 #include "app/bench/small_step.h"
 #include "app/bench/swing.h"
 #include "commission_steps.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -35,11 +35,7 @@ constexpr std::array<GainLaw, 3> gain_laws{{{"kp_Nm_per_rad", "kd_Nms_per_rad", 
                                             {"stiffness_Nm_per_rad", "damping_Nms_per_rad", false},
                                             {"kp_per_s2", "kd_per_s", true}}};
 
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string text_of(double value) { return printed("%.3g", value); }
 std::string told(const Gains& gains) {
   return text_of(gains.stiffness_Nm_per_rad) + " Nm/rad and " + text_of(gains.damping_Nms_per_rad) + " Nms/rad";
 }

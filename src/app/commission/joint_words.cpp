@@ -1,13 +1,13 @@
 // What the model says about joints, for people.
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <Eigen/LU>
 
 #include "commission_steps.h"
 #include "kadans/model/dynamics.h"
 #include "kadans/model/kinematics.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 
@@ -84,10 +84,6 @@ std::string positive_turn_of_drive(const RobotModel& model, std::size_t joint) {
   return text;
 }
 
-std::string degrees_text(double rad) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f degrees", std::abs(rad) * 57.29577951308232);
-  return text;
-}
+std::string degrees_text(double rad) { return printed("%.1f degrees", std::abs(rad) * 57.29577951308232); }
 
 }  // namespace kadans

@@ -1,10 +1,10 @@
 // How strong a joint's drive is: the command that carries a known load.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "app/bench/lead.h"
 #include "commission_steps.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -57,12 +57,6 @@ class Carry final : public Push {
   std::array<Way, 2> ways_{};
 };
 
-std::string text_of(double value, const char* format) {
-  char text[48];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 // The torque of the load that the person has; nothing when there is none.
 std::optional<double> ask_load_Nm(CommissionStep& step, std::size_t joint) {
   BenchSession& session = step.session;
@@ -100,7 +94,7 @@ bool carry(CommissionStep& step, std::size_t joint, Carry& carry, bool loaded) {
   if (!stop.empty()) {
     step.problem("joint '" + name + "': " + stop);
   } else if (carry.too_weak()) {
-    step.problem("joint '" + name + "' is not carried by " + text_of(session.effort_max_Nm(joint), "%.3g Nm") +
+    step.problem("joint '" + name + "' is not carried by " + printed("%.3g Nm", session.effort_max_Nm(joint)) +
                  ", as its scale is now: take a lighter load, or a greater --share");
   } else if (!carry.complete()) {
     step.problem("joint '" + name + "' was not carried up and down: hold the key for longer");
@@ -126,9 +120,9 @@ void find_scale(CommissionStep& step, std::size_t joint, double inertia_kg_m2) {
   if (!load_Nm) return step.done(joint, "skipped");
   const double most_Nm = session.effort_max_Nm(joint);
   if (!(*load_Nm >= least_share * most_Nm && *load_Nm <= 0.9 * most_Nm))
-    return step.problem("joint '" + name + "': a load of " + text_of(*load_Nm, "%.3g Nm") + " is no good here: from " +
-                        text_of(least_share * most_Nm, "%.3g Nm") + ", which can be measured, to " +
-                        text_of(0.9 * most_Nm, "%.3g Nm") + ", which --share allows");
+    return step.problem("joint '" + name + "': a load of " + printed("%.3g Nm", *load_Nm) + " is no good here: from " +
+                        printed("%.3g Nm", least_share * most_Nm) + ", which can be measured, to " +
+                        printed("%.3g Nm", 0.9 * most_Nm) + ", which --share allows");
   const Lead::Settings lead{.joint = joint,
                             .inertia_kg_m2 = inertia_kg_m2,
                             .effort_max_Nm = most_Nm,
@@ -139,9 +133,9 @@ void find_scale(CommissionStep& step, std::size_t joint, double inertia_kg_m2) {
   Carry empty(lead), loaded(lead);
   if (!carry(step, joint, empty, false) || !carry(step, joint, loaded, true)) return;
   const double needed_Nm = std::abs(loaded.effort_Nm() - empty.effort_Nm());
-  const std::string measured = "joint '" + name + "' carries " + text_of(*load_Nm, "%.3g Nm") + " with a command of " +
-                               text_of(needed_Nm, "%.3g Nm") +
-                               " (friction: " + text_of(loaded.friction_Nm(), "%.3g Nm") + ")";
+  const std::string measured = "joint '" + name + "' carries " + printed("%.3g Nm", *load_Nm) + " with a command of " +
+                               printed("%.3g Nm", needed_Nm) +
+                               " (friction: " + printed("%.3g Nm", loaded.friction_Nm()) + ")";
   if (!(needed_Nm > *load_Nm / wrong_at_most && needed_Nm < *load_Nm * wrong_at_most))
     return step.problem(measured +
                         ": that is no wrong scale; look at the load, its lever, and what else holds the joint");
@@ -150,13 +144,13 @@ void find_scale(CommissionStep& step, std::size_t joint, double inertia_kg_m2) {
     session.tell(measured + ": the scale of its amplifier is right");
     return step.done(joint, "right");
   }
-  const std::string now = text_of(scale.value * factor, "%.4g");
+  const std::string now = printed("%.4g", scale.value * factor);
   const std::string field = "\"" + std::string(scale.name) + "\": " + now;
   const std::string answer =
       session.ask({.about = Question::About::agreed,
                    .joint = name,
                    .text = measured + ": the scale of its amplifier is wrong by " +
-                           text_of(100 * std::abs(factor - 1), "%.3g %%") + "; is " + field + " to be written?",
+                           printed("%.3g %%", 100 * std::abs(factor - 1)) + "; is " + field + " to be written?",
                    .answers = {"yes", "no"}});
   if (answer == "no") return step.done(joint, "kept");
   step.wiring.set(name, scale.name, now);

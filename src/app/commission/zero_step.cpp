@@ -1,10 +1,10 @@
 // Where a joint's zero is, and how far it may go.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "app/bench/lead.h"
 #include "commission_steps.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -12,11 +12,7 @@ namespace {
 constexpr double rad_of_degree = 0.017453292519943295;
 constexpr double right_within_rad = 0.003, soft_margin_rad = 2 * rad_of_degree, least_range_rad = 5 * rad_of_degree;
 
-std::string rad_text(double rad) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", std::round(rad * 1e4) / 1e4 + 0.0);
-  return text;
-}
+std::string rad_text(double rad) { return printed("%.4g", std::round(rad * 1e4) / 1e4 + 0.0); }
 
 // It asks for nothing: the drive itself looks for its zero, once that is ordered.
 class LookForZero final : public Push {

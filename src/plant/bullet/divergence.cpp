@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "convert.h"
 #include "kadans/model/dynamics.h"
+#include "signal/number_text.h"
 
 namespace kadans::bullet {
 namespace {
@@ -15,12 +15,6 @@ constexpr double speed_max_rad_s = 1000, slide_max_m_s = 100, base_max_m_s = 100
 constexpr double memory_steps = 20;        // over which changes of a torque's sign are smoothed
 constexpr double often = 0.3;              // a torque that changes its sign in so many of the steps
 constexpr double fastest_per_step = 1000;  // rad/s: what a joint's torque does to it in a step, if its inertia is small
-
-std::string printed(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 }  // namespace
 
