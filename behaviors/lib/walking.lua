@@ -2,6 +2,11 @@
 -- sentence, and nothing is clamped.
 local walk = {}
 
+-- An angle as what is turned by it, from -pi to pi; a value as far as this bound allows.
+local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
+local function within(value, most) return math.max(-most, math.min(most, value)) end
+walk.angle, walk.within = angle, within
+
 -- The fastest that it walks, alone: together the shares of these may not exceed 1.5.
 local fastest = { forward_m_s = 0.6, backward_m_s = 0.2, left_m_s = 0.15, turn_rad_s = 0.8 }
 
@@ -12,6 +17,13 @@ local function shares(way)
     left_m_s = math.abs(way.left_m_s or 0) / fastest.left_m_s,
     turn_rad_s = math.abs(way.turn_rad_s or 0) / fastest.turn_rad_s,
   }
+end
+
+-- Takes the pose from which it sets out; in `run` only.
+function walk.set_out(m, settle_s)
+  m.posture:set_gains("stiff")
+  m.posture:move("set_out", { time_s = settle_s })
+  m:wait(settle_s)
 end
 
 -- Walks at { forward_m_s =, left_m_s =, turn_rad_s = } from now on; what is left out is 0. True, or nil and a sentence.
@@ -68,7 +80,7 @@ kick.foot_m, kick.before_m, kick.beside_m = 0.235, 0.07, 0.09
 -- it by roll_m_s2 (0.28). The object kicks within a step, as soon as its steps bring a foot to the ball. To be called
 -- again when the ball is seen better. True, or nil and a sentence.
 function walk.kick(m, ball, rad, far_m, roll_m_s2)
-  local turned = math.atan2(math.sin(rad - walk.at(m).heading_rad), math.cos(rad - walk.at(m).heading_rad))
+  local turned = angle(rad - walk.at(m).heading_rad)
   if not (math.abs(turned) <= kick.rad) then
     return nil, string.format("it does not kick %.2f rad to the side, at most %.2f", turned, kick.rad)
   end
@@ -77,7 +89,7 @@ function walk.kick(m, ball, rad, far_m, roll_m_s2)
   end
   m.walk:set("kick_x_m", ball.x_m)
   m.walk:set("kick_y_m", ball.y_m)
-  m.walk:set("kick_rad", math.atan2(math.sin(rad), math.cos(rad)))
+  m.walk:set("kick_rad", angle(rad))
   if m.walk:setpoint("kick_m_s") > 0 then return true end
   m.walk:set("kick_m_s", math.min(kick.foot_max_m_s, math.sqrt(2 * (roll_m_s2 or 0.28) * far_m) / kick.rolls))
   return true
@@ -86,9 +98,6 @@ end
 -- Whether it still is to kick; not in the tick of walk.kick. walk.keep takes the kick back.
 function walk.kicks(m) return m.walk:setpoint("kick_m_s") > 0 end
 function walk.keep(m) m.walk:set("kick_m_s", 0) end
-
-local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
-local function within(value, most) return math.max(-most, math.min(most, value)) end
 
 -- In each tick: a step of the way to { x_m =, y_m =, heading_rad = }; true when it is there. It turns toward a place that is far,
 -- walks there, and turns as it shall stand.

@@ -17,13 +17,10 @@ local P = k.params {
 local around_m = 0.6  -- radius of the way around the ball
 local there_m = 0.3   -- a ball that is so far beyond the target is there: what is seen is noisy
 
-local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
-local function within(value, most) return math.max(-most, math.min(most, value)) end
-
 -- Walks toward a place, facing it.
 local function toward(m, at, x_m, y_m)
-  local turn_rad = angle(math.atan2(y_m - at.y_m, x_m - at.x_m) - at.heading_rad)
-  walk.go(m, walk.slowed { forward_m_s = 0.35 * math.max(0, math.cos(turn_rad)) ^ 3, turn_rad_s = within(1.5 * turn_rad, 0.6) })
+  local turn_rad = walk.angle(math.atan2(y_m - at.y_m, x_m - at.x_m) - at.heading_rad)
+  walk.go(m, walk.slowed { forward_m_s = 0.35 * math.max(0, math.cos(turn_rad)) ^ 3, turn_rad_s = walk.within(1.5 * turn_rad, 0.6) })
 end
 
 local function approach(m, b)
@@ -40,7 +37,7 @@ local function approach(m, b)
       toward(m, at, place.x_m, place.y_m)
     else
       walk.beside(m, place)
-      if off_m < 0.2 and math.abs(angle(rad - at.heading_rad)) < 0.3 then
+      if off_m < 0.2 and math.abs(walk.angle(rad - at.heading_rad)) < 0.3 then
         local far_m = math.sqrt((P.target_x_m - b.x_m) ^ 2 + (P.target_y_m - b.y_m) ^ 2) + P.beyond_m
         walk.kick(m, b, rad, math.min(far_m, 4.5), P.roll_m_s2)
       end
@@ -49,7 +46,7 @@ local function approach(m, b)
   end
   walk.keep(m)
   local from_rad = math.atan2(left, behind)  -- about the ball, 0 behind it
-  local to_rad = from_rad - within(from_rad, 0.8)
+  local to_rad = from_rad - walk.within(from_rad, 0.8)
   local c, n = math.cos(to_rad), math.sin(to_rad)
   toward(m, at, b.x_m - around_m * (c * ux + n * uy), b.y_m - around_m * (c * uy - n * ux))
 end
@@ -70,7 +67,7 @@ end
 -- Turns to where the ball was last.
 local function search(m)
   local at, b = walk.at(m), m.vars.known
-  local turn_rad = b.x_m and angle(math.atan2(b.y_m - at.y_m, b.x_m - at.x_m) - at.heading_rad) or 1
+  local turn_rad = b.x_m and walk.angle(math.atan2(b.y_m - at.y_m, b.x_m - at.x_m) - at.heading_rad) or 1
   walk.go(m, { turn_rad_s = turn_rad > 0 and 0.6 or -0.6 })
 end
 
@@ -83,11 +80,7 @@ return k.behavior "go_to_ball" {
   vars     = { known = {}, side = 1, sees = false, there = false, armed = false, kicked = false, stands = false },
 
   k.state "set_out" {
-    run = function(m)
-      m.posture:set_gains("stiff")
-      m.posture:move("set_out", { time_s = P.settle_s })
-      m:wait(P.settle_s)
-    end,
+    run = function(m) walk.set_out(m, P.settle_s) end,
     { on = "run.done", to = "search" },
   },
   k.state "search" {

@@ -19,11 +19,7 @@ return k.behavior "walk" {
   initial  = "set_out",
 
   k.state "set_out" {
-    run = function(m)
-      m.posture:set_gains("stiff")
-      m.posture:move("set_out", { time_s = P.settle_s })
-      m:wait(P.settle_s)
-    end,
+    run = function(m) walk.set_out(m, P.settle_s) end,
     { on = "run.done", to = "go" },
     { when = lies, to = "fallen", why = "lies" },
   },
