@@ -147,9 +147,9 @@ Assembly::Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, Ru
       robot_(read_robot(scenario.robot, scenario.plugins)) {
   control_system_ = make_control_system(robot_);
   robot_.config.engine.joystick = has_joystick(scenario, robot_.config);
-  robot_.config.engine.sight = !scenario.sight.ball.name.empty();
   try {
     vary();
+    robot_.config.engine.sight = variant_.sees;
   } catch (const std::invalid_argument& error) {
     throw InputError({.file = robot_.config.file, .message = error.what()});
   }

@@ -224,22 +224,17 @@ Json balance_json(const RobotModel& model, const StandingPose& stance) {
 
 // The motors of what hangs from the base: all of a robot that is held, else those that are in no leg.
 Json hanging_joints(const RobotModel& model, const StandingPose& stance, const Json& motors) {
-  std::set<std::string> legs;
-  for (const StandingFoot& foot : stance.held ? std::vector<StandingFoot>() : stance.feet) {
-    for (std::size_t link = foot.link; link > 0; link = model.joints[link - 1].parent)
-      legs.insert(model.joints[link - 1].name);
-  }
-  Json hanging = Json::array();
-  for (const auto& joint : motors) {
-    if (!legs.contains(joint.get<std::string>())) hanging.push_back(joint);
+  Json hanging = motors;
+  for (const StandingFoot& foot : stance.stands_on()) {
+    for (const std::size_t joint : foot.leg) std::erase(hanging.get_ref<Json::array_t&>(), model.joints[joint].name);
   }
   return hanging;
 }
 
 bool balances(const StandingPose& stance, std::size_t joint) {
-  return !stance.held && stance.feet.size() == 2 && std::ranges::any_of(stance.feet, [joint](const StandingFoot& foot) {
-    return std::ranges::find(foot.bearing, joint) != foot.bearing.end();
-  });
+  return stance.stands_on().size() == 2 && std::ranges::any_of(stance.feet, [joint](const StandingFoot& foot) {
+           return std::ranges::find(foot.bearing, joint) != foot.bearing.end();
+         });
 }
 
 Json robot_json(const RobotDescription& robot, const std::string& name, const StandingPose& stance,
@@ -280,7 +275,7 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
   if (const Json hanging = hanging_joints(model, stance, motors); !hanging.empty())
     sum_up({{"name", "weight"}, {"type", "gravity_compensation"}, {"joints", hanging}},
            "Holds its joints, and carries the weight of what hangs.");
-  if (!bolted && stance.feet.size() == 2)
+  if (stance.stands_on().size() == 2)
     sum_up(balance_json(model, stance), "Holds its joints, and keeps its centre of mass over its soles.");
   Json plant = {{"drives", drives}, {"fixed_base", bolted}, {"self_collision", true}};
   Json safety = Json::object();

@@ -149,8 +149,6 @@ class Body {
   std::vector<std::vector<Vec3>> tips_;
 };
 
-bool moves(const Joint& joint) { return !joint.passive(); }
-
 struct Leg {
   std::size_t foot;                 // link
   std::vector<std::size_t> joints;  // from the base on
@@ -171,7 +169,7 @@ class StanceSearch {
     if (legs_.size() < 2) {
       stance.stand = stance.low = position_;
       for (std::size_t i = 0; i < position_.size(); ++i) {
-        if (!moves(model_.joints[i])) continue;
+        if (model_.joints[i].passive()) continue;
         const double aside = within(i, position_[i] + 0.3, 0.1);
         stance.low[i] = aside > position_[i] + 0.1 ? aside : within(i, position_[i] - 0.3, 0.1);
       }
@@ -186,9 +184,10 @@ class StanceSearch {
       StandingFoot& foot = stance.feet.emplace_back();
       foot.link = leg.foot;
       foot.name = model_.links[leg.foot].name;
+      foot.leg = leg.joints;
       foot.corners_m = body_.sole_corners(leg.foot);
       for (const std::size_t joint : leg.joints) {
-        if (moves(model_.joints[joint]) && std::abs(body_.axis(joint).z()) < 0.7) foot.bearing.push_back(joint);
+        if (!model_.joints[joint].passive() && std::abs(body_.axis(joint).z()) < 0.7) foot.bearing.push_back(joint);
       }
       const Vector3d frame = body_.point(leg.foot, {});
       foot.toe_m = body_.point(leg.foot, foot.corners_m[2]).x() - frame.x();
@@ -327,7 +326,7 @@ class StanceSearch {
       }
       for (const std::size_t i : leg.joints) {
         const Joint& joint = model_.joints[i];
-        if (!body_.swings(i) || !moves(joint)) continue;
+        if (!body_.swings(i) || joint.passive()) continue;
         if (joint.upper_rad > -much * joint.lower_rad) position_[i] = within(i, std::max(position_[i], bent_rad), 0.02);
         if (-joint.lower_rad > much * joint.upper_rad)
           position_[i] = within(i, std::min(position_[i], -bent_rad), 0.02);
@@ -366,7 +365,7 @@ class StanceSearch {
     all.bottomRows<3>() *= turn_m;
     for (Eigen::Index k = 0; k < count; ++k) {
       const std::size_t joint = leg.joints[static_cast<std::size_t>(k)];
-      if (moves(model_.joints[joint])) slope.col(k) = all.col(static_cast<Eigen::Index>(joint));
+      if (!model_.joints[joint].passive()) slope.col(k) = all.col(static_cast<Eigen::Index>(joint));
     }
     const Eigen::MatrixXd square = slope.transpose() * slope + damping * Eigen::MatrixXd::Identity(count, count);
     const Eigen::VectorXd way = square.ldlt().solve(slope.transpose() * error);
@@ -464,13 +463,13 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
   // What each foot carries.
   const double weight_N = g_m_s2 * model.mass_kg() / std::max(1.0, static_cast<double>(stance.feet.size()));
   std::map<std::size_t, std::size_t> foot_of;  // by joint of a leg
-  for (const StandingFoot& foot : stance.held ? std::vector<StandingFoot>() : stance.feet) {
-    for (std::size_t link = foot.link; link > 0; link = model.joints[link - 1].parent) foot_of[link - 1] = foot.link;
+  for (const StandingFoot& foot : stance.stands_on()) {
+    for (const std::size_t joint : foot.leg) foot_of[joint] = foot.link;
   }
   std::vector<JointHold> holds(model.joints.size());
   for (std::size_t i = 0; i < holds.size(); ++i) {
     const Joint& joint = model.joints[i];
-    if (!moves(joint)) continue;
+    if (joint.passive()) continue;
     JointHold& hold = holds[i];
     const Carried& hung = all[i + 1];
     const bool slides = joint.type == JointType::prismatic;
@@ -509,7 +508,7 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
     const auto at_joint = static_cast<Eigen::Index>(i);
     holds[i].stiffness_Nm_per_rad = stiffness[at_joint];
     holds[i].damping_Nms_per_rad = damping[at_joint];
-    holds[i].weak = moves(model.joints[i]) && stiffness[at_joint] < 1.2 * holds[i].load_Nm_per_rad;
+    holds[i].weak = stiffness[at_joint] < 1.2 * holds[i].load_Nm_per_rad;
   }
   return holds;
 }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct StandingFoot {
   std::size_t link = 0;
   std::string name;                 // left, right; front_left ...; else the link's
   std::array<Vec3, 4> corners_m{};  // of the sole, in the link's frame: heel inner, heel outer, toe inner, toe outer
-  // What balances it: the joints of its leg that turn about axes that lie, and the sole about the link's frame, along
+  std::vector<std::size_t> leg;     // its joints, from the base on
+  // What balances it: the joints of the leg that turn about axes that lie, and the sole about the link's frame, along
   // the robot's axes.
   std::vector<std::size_t> bearing;
   double toe_m = 0, heel_m = 0, below_m = 0;
@@ -30,6 +32,11 @@ struct StandingPose {
   std::vector<double> low;         // lower, or for a robot that is bolted down a little aside
   double height_m = 0;             // of the base's frame over the ground, in `stand`; clear of it when held
   double com_m = 0;                // of the centre of mass over the feet's frames, in `stand`
+
+  // What it stands on; nothing when it is held.
+  std::span<const StandingFoot> stands_on() const noexcept {
+    return held ? std::span<const StandingFoot>() : std::span(feet);
+  }
 };
 
 // A robot with at least two links at its ends that are the lowest of all, and a base that is well above them, stands on

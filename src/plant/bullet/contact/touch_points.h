@@ -70,8 +70,8 @@ struct PlacedBox {
 TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b);
 
 // The combined properties of two surfaces: friction is the product, restitution the greater of both, softness that of
-// the one that is soft. A body that
-// bounces has a contact only when it touches: if the solver held it back before, it would lose speed before the bounce.
+// the one that is soft. A body that bounces has a contact only when it touches: if the solver held it back before, it
+// would lose speed before the bounce.
 class ContactSurface {
  public:
   ContactSurface(const btCollisionObject& a, const btCollisionObject& b)
