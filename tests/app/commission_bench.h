@@ -17,8 +17,8 @@
 
 #include "app/commission/bench_session.h"
 #include "app/commission/commission.h"
-#include "plant/dynamixel_world.h"
-#include "plant/hostmot2_world.h"
+#include "plant/dynamixel/emulator/servo_world.h"
+#include "plant/hostmot2/emulator/board_world.h"
 #include "plant/json_plant_fields.h"
 #include "program.h"
 
@@ -81,7 +81,7 @@ class VirtualBench final : public Bench {
       const auto settings = wiring_in<hostmot2::HostMot2Settings>(robot.config.file, "hm2-eth");
       auto there = wiring_in<hostmot2::HostMot2Settings>(truth.robot, "hm2-eth");
       if (truth.boards) truth.boards(there);
-      auto machine = std::make_unique<test::HostMot2World>(std::move(model), settings, there, site);
+      auto machine = std::make_unique<hostmot2::BoardWorld>(std::move(model), settings, there, site);
       machine->start();
       drives_ = &machine->machine();
       world_ = std::move(machine);
@@ -89,7 +89,7 @@ class VirtualBench final : public Bench {
       const auto settings = wiring_in<dynamixel::DynamixelSettings>(robot.config.file, "dynamixel");
       auto there = wiring_in<dynamixel::DynamixelSettings>(truth.robot, "dynamixel");
       if (truth.servo_settings) truth.servo_settings(there);
-      auto servos = std::make_unique<test::DynamixelWorld>(std::move(model), settings, site, &there);
+      auto servos = std::make_unique<dynamixel::ServoWorld>(std::move(model), settings, site, &there);
       if (truth.servos) truth.servos(servos->servos());
       servos->start();
       drives_ = &servos->servos();

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "kadans/testing/allocation_count.h"
-#include "plant/dynamixel_world.h"
+#include "plant/dynamixel/emulator/servo_world.h"
 #include "plant/hostmot2_bench.h"
 #include "program.h"
 
@@ -78,7 +78,7 @@ TEST_CASE("A joint is pushed while a key is held and let go after, on boards, se
     settings.servos = {
         {.drive = "hip", .port = "bus", .id = 1, .model = dynamixel::find_model("XM430-W210")},
         {.drive = "knee", .port = "bus", .id = 2, .model = dynamixel::find_model("XM430-W210"), .reversed = true}};
-    test::DynamixelWorld world(
+    dynamixel::ServoWorld world(
         std::make_unique<IdealWorld>(test::two_joints(), PlantSettings{.position_rad = {0.1, -0.2}}), settings,
         PlantSite{.file = "robot.json", .layout = {.robot = "walker", .joints = {"hip", "knee"}}});
     check_jog(world);

@@ -4,8 +4,8 @@
 
 #include "engine/bench.h"
 #include "kadans/signal/input_error.h"
-#include "plant/dynamixel_world.h"
-#include "plant/hostmot2_world.h"
+#include "plant/dynamixel/emulator/servo_world.h"
+#include "plant/hostmot2/emulator/board_world.h"
 #include "plant/imu/emulator/imu_world.h"
 
 namespace contract_bus_test {
@@ -92,7 +92,7 @@ dynamixel::DynamixelSettings servo_settings() {
   return settings;
 }
 
-struct Servos : BusRobot<test::DynamixelWorld> {
+struct Servos : BusRobot<dynamixel::ServoWorld> {
   explicit Servos(double lowest_V = 0) : BusRobot(dynamixel::drive_code_words, lowest_V, servo_settings(), site()) {}
 };
 
@@ -114,17 +114,17 @@ hostmot2::HostMot2Settings board_settings() {
   return settings;
 }
 
-struct Boards : BusRobot<test::HostMot2World> {
+struct Boards : BusRobot<hostmot2::BoardWorld> {
   Boards() : BusRobot(hostmot2::drive_code_words, 0, board_settings(), board_settings(), site()) {}
 };
 
 // The same boards with an IMU on a serial line beside them.
 struct BoardsBesideImu : imu::ImuWorld {
   explicit BoardsBesideImu(std::unique_ptr<World> model)
-      : BoardsBesideImu(new test::HostMot2World(std::move(model), board_settings(), board_settings(), site())) {}
-  explicit BoardsBesideImu(test::HostMot2World* made)
+      : BoardsBesideImu(new hostmot2::BoardWorld(std::move(model), board_settings(), board_settings(), site())) {}
+  explicit BoardsBesideImu(hostmot2::BoardWorld* made)
       : ImuWorld(std::unique_ptr<World>(made), {.device = "the line"}, {1, 0, 0, 0}), boards(*made) {}
-  test::HostMot2World& boards;
+  hostmot2::BoardWorld& boards;
 };
 
 }  // namespace
@@ -218,7 +218,7 @@ TEST_CASE(
   };
   const auto model = [] { return std::make_unique<IdealWorld>(bench::robot(), bench::plant_settings()); };
   SUBCASE("servos") {
-    test::DynamixelWorld world(model(), servo_settings(), site());
+    dynamixel::ServoWorld world(model(), servo_settings(), site());
     world.servos().servo(0) = dynamixel::EmulatedServo({.id = 1, .model = 1020, .baud_code = 5});
     CHECK(refused(world, [&] { world.start(); }).find("is XM430-W350, the configuration says XM430-W210") !=
           std::string::npos);
@@ -226,7 +226,7 @@ TEST_CASE(
   SUBCASE("boards") {
     hostmot2::HostMot2Settings there = board_settings();
     there.boards[1].card = "7I92";
-    test::HostMot2World world(model(), board_settings(), there, site());
+    hostmot2::BoardWorld world(model(), board_settings(), there, site());
     CHECK(refused(world, [&] {
             world.start();
           }).find("board 'lower' at 192.168.1.122 is a 7I92, the configuration says 7I96") != std::string::npos);
@@ -234,7 +234,7 @@ TEST_CASE(
   SUBCASE("firmware") {
     hostmot2::HostMot2Settings wanted = board_settings();
     wanted.drives[1].encoder = 3;
-    test::HostMot2World world(model(), wanted, board_settings(), site());
+    hostmot2::BoardWorld world(model(), wanted, board_settings(), site());
     CHECK(refused(world, [&] { world.start(); }).find("has no encoder 3: its firmware has") != std::string::npos);
   }
 }
@@ -250,8 +250,8 @@ TEST_CASE("that joint alone is off, latched: it let go by itself" * description(
 TEST_CASE("after safety.supply.time_s it is the fault supply_low" *
           description("servos measure a supply below safety.supply")) {
   const SafetySettings watched = Servos::watched(nullptr, 13);
-  test::DynamixelWorld world(std::make_unique<IdealWorld>(bench::robot(), bench::plant_settings()), servo_settings(),
-                             site());
+  dynamixel::ServoWorld world(std::make_unique<IdealWorld>(bench::robot(), bench::plant_settings()), servo_settings(),
+                              site());
   const RobotModel model = bench::robot();
   EngineSettings settings;
   Catalog catalog;

@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "dynamixel_world.h"
 #include "kadans/plant/ideal_world.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/testing/allocation_count.h"
+#include "plant/dynamixel/emulator/servo_world.h"
 #include "two_joints.h"
 
 namespace kadans::dynamixel {
@@ -61,7 +61,7 @@ struct Bench {
     return "";
   }
 
-  test::DynamixelWorld world;
+  dynamixel::ServoWorld world;
   ActuationFrame actuation;
   SensorFrame sensors;
 };

@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include "hostmot2_world.h"
 #include "kadans/plant/ideal_world.h"
 #include "kadans/signal/input_error.h"
+#include "plant/hostmot2/emulator/board_world.h"
 #include "two_joints.h"
 
 namespace kadans::hostmot2::bench {
@@ -85,7 +85,7 @@ struct Bench {
   }
   EmulatedBoard& board() { return world.machine().board(0); }
 
-  test::HostMot2World world;
+  hostmot2::BoardWorld world;
   ActuationFrame actuation;
   SensorFrame sensors;
 };
