@@ -27,6 +27,10 @@ std::string text_of(std::uint32_t address) {
   return text.data();
 }
 
+// IFF_LOWER_UP of linux/if.h, which cannot be included beside net/if.h: there is a cable with something at its other end.
+// IFF_RUNNING follows it, up to a second later.
+constexpr unsigned carrier = 1U << 16;
+
 }  // namespace
 
 PlantType::Finding examine_card(const BoardSettings& board) {
@@ -48,7 +52,7 @@ PlantType::Finding examine_card(const BoardSettings& board) {
     const std::string card = std::string(at->ifa_name) + " (" + text_of(ipv4(at->ifa_addr)) + ")";
     if ((at->ifa_flags & IFF_UP) == 0)
       return found(false, card + " is down", std::string("sudo ip link set ") + at->ifa_name + " up");
-    if ((at->ifa_flags & IFF_RUNNING) == 0)
+    if ((at->ifa_flags & carrier) == 0)
       return found(false, card + " has no cable in, or nothing is powered at its other end", "plug the cable in");
     return found(true, card + " is in its network", "");
   }
