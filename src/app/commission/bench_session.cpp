@@ -155,7 +155,7 @@ std::string BenchSession::look_for_stop(std::size_t joint, bool far) const {
   }
   const PushedJoint::Stop stop = watches_[joint].stopped();
   if (stop == PushedJoint::Stop::none) return "";
-  return "drive '" + model_.joints[joint].name + "' " + stop_words(stop, sensors_.joints[joint].code, settings_.words);
+  return "it " + stop_words(stop, sensors_.joints[joint].code, settings_.words);
 }
 
 std::string BenchSession::hold(const Question& question, std::size_t joint, Push& push, bool far) {
