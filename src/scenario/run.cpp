@@ -80,8 +80,17 @@ class Run {
     for (RunObserver* observer : observers_) observer->tick(time_s, row);
     const RunMark mark{parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()};
     for (RunObserver* observer : observers_) observer->between_ticks(mark);
+    take_residual(time_s);
     take_faults(parts_, 0);
     for (std::size_t i = 0; i < parts_.others.size(); ++i) take_faults(parts_.others[i], i + 1);
+  }
+
+  void take_residual(double time_s) {
+    const double residual_m_s = parts_.robot.truth().residual_m_s;
+    if (residual_m_s > residual_trusted_m_s) ++result_.unsettled_steps;
+    if (residual_m_s <= result_.residual_max_m_s) return;
+    result_.residual_max_m_s = residual_m_s;
+    result_.residual_max_at_s = time_s;
   }
 
   void take_faults(const RunParts& robot, std::size_t index) {

@@ -102,6 +102,9 @@ struct RunFault : Fault {
   ToldFault told;  // of a further robot with its name: "left.l_knee", or "left" alone
 };
 
+// The forces of a step in which contacts and joints were left open by more, m/s or rad/s, are not to be trusted.
+inline constexpr double residual_trusted_m_s = 0.01;
+
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -114,6 +117,8 @@ struct RunResult {
   double realtime_factor = 0;
   std::uint64_t control_ticks = 0, behavior_ticks = 0;
   std::uint64_t state_hash = 0;
+  std::uint64_t unsettled_steps = 0;  // which left more open than residual_trusted_m_s
+  double residual_max_m_s = 0, residual_max_at_s = 0;
   TickCost tick;
   std::uint64_t commands_sent = 0, commands_refused = 0;
   std::vector<RunFault> faults;  // of all robots, in the order of time, at most fault_log_capacity of each in a tick

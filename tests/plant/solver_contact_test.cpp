@@ -139,6 +139,42 @@ TEST_CASE("A limp TULip that is let fall never has more energy than it began wit
   }
 }
 
+TEST_CASE("A TULip that collapses under a tonne does not rebound, and its motors keep to their lines") {
+  Robot robot = tulip(Drives::rigid);
+  robot.settings.world.payloads = {
+      {.name = "tonne", .link = "torso", .point_m = {0, 0, 0.1}, .mass_kg = 990, .from_s = 0.2}};
+  BulletWorld plant(robot.model, robot.settings, 1);
+  JointHold hold(robot);
+  double up_m_s = 0, motor_excess_Nm = 0, residual_at_rest_m_s = 0;
+  for (int i = 0; i < 2500; ++i) {
+    hold.tick(plant);
+    const PlantTruth& truth = plant.truth();
+    if (i > 500) up_m_s = std::max(up_m_s, truth.base_velocity_m_s[2]);
+    if (i > 2000) residual_at_rest_m_s = std::max(residual_at_rest_m_s, truth.residual_m_s);
+    for (std::size_t j = 0; j < truth.joint_count; ++j)
+      motor_excess_Nm = std::max(motor_excess_Nm, std::abs(truth.motor_torque_Nm[j]) - truth.motor_torque_max_Nm[j]);
+  }
+  CHECK(up_m_s < 0.1);
+  CHECK(motor_excess_Nm < 0.01);
+  CHECK(residual_at_rest_m_s <= 1e-3);
+}
+
+TEST_CASE("Contacts that would go around in a circle are settled: a limp TULip's tumbles leave next to nothing open") {
+  std::size_t steps = 0, open = 0;
+  for (const double lean_rad : {0.3, -0.4, 1.5}) {
+    Robot robot = tulip(Drives::rigid);
+    for (DriveSettings& drive : robot.settings.drives) drive = {};
+    robot.settings.stand_on_ground = false;
+    robot.settings.base = {.position_m = {0, 0, 1.1}, .orientation = normalized({1, 0.3 * lean_rad, lean_rad / 2, 0})};
+    BulletWorld plant(robot.model, robot.settings, 1);
+    for (int i = 0; i < 3000; ++i, ++steps) {
+      plant.step(ms);
+      if (plant.truth().residual_m_s > 1e-3) ++open;
+    }
+  }
+  CHECK(open < steps / 100);
+}
+
 TEST_CASE("Servos that reach their torque limit stay there, and servos that do not hold their law") {
   Robot robot = pendulum(1, 0.5, 0.3);
   robot.settings.gravity_m_s2 = {0, 0, -g};

@@ -50,6 +50,7 @@ struct PlantTruth {
   LinkSet touching_links;           // that press on the ground, an object or another robot
   std::uint32_t contact_count = 0;  // points of the robot that press on something
   double self_penetration_m = 0;    // largest overlap of two links that may collide
+  double residual_m_s = 0;          // what the solver left open: by how much its last iteration changed a velocity
 };
 
 class TruthSource {

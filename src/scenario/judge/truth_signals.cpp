@@ -57,6 +57,10 @@ void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
   table.add({"plant.limits.speed_share", "", "Largest joint velocity as a share of its limit."}, &state_.speed_share);
   table.add({"plant.limits.overspeed_s", "s", "Time for which a joint has now been faster than its limit."},
             &state_.overspeed_s);
+  table.add({"plant.solver.residual_m_s", "m/s",
+             "Velocity by which the step's contacts and joints were not settled; beyond 0.01 its forces are not to be "
+             "trusted."},
+            &state_.residual_m_s);
   table.add({"reference.base.height_m", "m", "Height of the base with every joint at its set-point."},
             &state_.reference_height_m);
   table.add({"reference.base.error_m", "m", "Height of the base minus that of the set-points."},
@@ -152,6 +156,7 @@ void TruthSignals::update(double time_s, std::span<const double> row) noexcept {
   state_.height_m = truth.base.position_m[2];
   state_.tilt_rad = std::atan2(std::hypot(up[0], up[1]), up[2]);
   state_.yaw_rad = roll_pitch_yaw(truth.base.orientation)[2];
+  state_.residual_m_s = plant_.truth().residual_m_s;
   state_.speed_m_s = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   const double dt_s = last_s_ ? time_s - *last_s_ : 0;
   last_s_ = time_s;

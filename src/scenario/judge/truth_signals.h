@@ -112,6 +112,7 @@ class TruthSignals {
   struct State {
     double height_m = 0, x_m = 0, y_m = 0, tilt_rad = 0, yaw_rad = 0, speed_m_s = 0, jump_m = 0;
     double position_rad = 0, motor_torque_share = 0, torque_share = 0, speed_share = 0, overspeed_s = 0;
+    double residual_m_s = 0;
     double reference_height_m = 0, reference_error_m = 0;
   };
   struct FootState {

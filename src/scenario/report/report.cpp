@@ -95,6 +95,12 @@ class TextReport {
                key(fault) + "\n";
     }
     if (result.faults.size() > shown) text_ += printed("  ... and %zu more faults\n", result.faults.size() - shown);
+    if (result.unsettled_steps > 0)
+      text_ += printed(
+          "  warning: contacts and joints were not settled in %llu steps, the worst at %.3f s by %.2g m/s: forces "
+          "there "
+          "are not to be trusted (plant.solver.residual_m_s; more plant.solver_iterations)\n",
+          static_cast<unsigned long long>(result.unsettled_steps), result.residual_max_at_s, result.residual_max_m_s);
   }
 
   void figures() {
@@ -175,6 +181,9 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   json["behavior_ticks"] = result.behavior_ticks;
   json["state_hash"] = hash_text(result.state_hash);
   json["tick_ns"] = {{"median", result.tick.median_ns}, {"p99", result.tick.p99_ns}, {"max", result.tick.max_ns}};
+  json["solver"] = {{"unsettled_steps", result.unsettled_steps},
+                    {"residual_max_m_s", result.residual_max_m_s},
+                    {"residual_max_at_s", result.residual_max_at_s}};
   json["queue"] = {{"sent", result.commands_sent}, {"refused", result.commands_refused}};
   json["faults"] = Json::array();
   for (const RunFault& fault : result.faults) json["faults"].push_back(fault_json(fault, fault.told));

@@ -21,7 +21,6 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     performDiscreteCollisionDetection();
     getSolverInfo().m_timeStep = dt_s;
     if (!own_solver()) accelerate(dt_s);
-    getSolverInfo().m_numIterations = iterations_ * (against_limit(dt_s) ? limit_iterations_factor : 1);
   }
 
   void solve() {
@@ -50,13 +49,6 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
 
   void use(const TreeSolver& solver) { tree_solver_ = &solver; }
 
-  void set_iterations(int iterations) { iterations_ = iterations; }
-
-  void add_rows(JointRows& rows) {
-    addMultiBodyConstraint(&rows);
-    rows_.push_back(&rows);
-  }
-
   void update_frames() {
     for (int i = 0; i < m_multiBodies.size(); ++i) update_frames(*m_multiBodies[i]);
   }
@@ -64,10 +56,6 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
  private:
   // Which takes the free motion along with the contacts.
   bool own_solver() const { return tree_solver_ != nullptr && tree_solver_->covers(); }
-
-  bool against_limit(double dt_s) const {
-    return std::any_of(rows_.begin(), rows_.end(), [dt_s](const JointRows* rows) { return rows->against_limit(dt_s); });
-  }
 
   void accelerate(double dt_s) {
     for (int i = 0; i < m_multiBodies.size(); ++i) {
@@ -107,10 +95,8 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     bool stays;
   };
 
-  int iterations_ = 10;
   const TreeSolver* tree_solver_ = nullptr;
   std::vector<Driven> driven_;  // in the next step
-  std::vector<JointRows*> rows_;
 };
 
 namespace {
@@ -145,7 +131,7 @@ ContactWorld::ContactWorld(const Options& options, PairMask& mask)
   info.m_splitImpulse = false;
   info.m_solverMode |=
       SOLVER_DISABLE_IMPLICIT_CONE_FRICTION | SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_USE_ARTICULATED_WARMSTARTING;
-  world_->set_iterations(options.solver_iterations);
+  info.m_numIterations = options.solver_iterations;
   info.m_minimumSolverBatchSize = 0;
   info.m_leastSquaresResidualThreshold = 0;
   ground_.setWorldTransform(options.ground);
@@ -185,7 +171,7 @@ void ContactWorld::add(btCollisionObject& collider, bool fixed) {
 }
 
 void ContactWorld::add(JointRows& rows) {
-  world_->add_rows(rows);
+  world_->addMultiBodyConstraint(&rows);
   tree_solver_.add(rows);
 }
 

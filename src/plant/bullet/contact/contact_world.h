@@ -5,9 +5,7 @@
 // - friction cone off, two fixed friction directions: standing feet do not creep;
 // - islands unused (one robot is one island), nothing sleeps: the order of the solver is the same every run. Pairs keep
 //   the order they came in, which a new world repeats; Bullet's option to sort them allocates in every step;
-// - the solver starts from the last step's impulses and runs all its iterations (residual threshold 0); in a step in
-//   which a joint runs into its limit it runs limit_iterations_factor times as many, because a light foot between the
-//   ground and an ankle's limit is where the iteration converges slowest.
+// - the solver starts from the last step's impulses; Bullet's own runs all its iterations (residual threshold 0).
 // A step follows btDiscreteDynamicsWorld's own order, without what only islands and continuous collision need:
 // collide, accelerate (articulated body algorithm), solve contacts and rows, move, update the frames once.
 // Not thread-safe; one world a robot (robot_contacts.h).
@@ -30,8 +28,6 @@
 #include "shapes.h"
 
 namespace kadans::bullet {
-
-inline constexpr int limit_iterations_factor = 5;
 
 class SteppedWorld;
 
@@ -78,6 +74,7 @@ class ContactWorld {
   std::vector<const btCollisionObject*> colliders() const;         // without the ground
   double normal_impulse(const btCollisionObject& collider) const;  // of all its contacts in the last step
   int manifold_count() const;                                      // with those of the last step that cross
+  double residual_m_s() const { return tree_solver_.residual(); }  // tree_solver.h
   const btPersistentManifold& manifold(int index) const;
 
  private:

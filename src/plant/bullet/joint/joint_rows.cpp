@@ -9,7 +9,6 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double limit_return_rad_s = 0.5;
-constexpr double hard_approach_rad_s = 1, excess_rad = 0.002;  // see against_limit
 constexpr double limit_margin_rad = 0.05;  // nearer than this, or than a few steps' way, the limit's row is there
 
 }  // namespace
@@ -40,12 +39,6 @@ void JointRows::set_friction(double impulse_max) {
 void JointRows::set_tie(double wanted_rad_s) {
   active_[friction] = true;
   laws_[friction] = {.lower = -infinite, .upper = infinite, .stiff = true, .wanted_rad_s = wanted_rad_s};
-}
-
-bool JointRows::against_limit(double dt_s) const {
-  const double above = above_lower_rad(), below = below_upper_rad(), velocity = m_bodyA->getJointVel(m_linkA);
-  return std::min(above, below) < -excess_rad || -velocity > above / dt_s + hard_approach_rad_s ||
-         velocity > below / dt_s + hard_approach_rad_s;
 }
 
 void JointRows::activate_limit(double dt_s) {

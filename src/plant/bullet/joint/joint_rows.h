@@ -64,9 +64,6 @@ class JointRows final : public btMultiBodyConstraint {
   bool servo_at_limit() const { return servo_at_limit_; }
   void set_servo_at_limit(bool at_limit) { servo_at_limit_ = at_limit; }
 
-  // Whether the joint runs into its limit or stands beyond it, so that the solver needs more iterations. Call it after
-  // the accelerations and before the solver.
-  bool against_limit(double dt_s) const;
   // What each row did in the last step, as impulses; 0 when it was not active.
   double impulse(Kind kind) const { return active_[kind] ? impulses_at(kind) : 0; }
 

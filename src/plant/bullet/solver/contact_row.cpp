@@ -121,7 +121,7 @@ void ContactRow::apply(const Three& change) {
   }
 }
 
-btScalar ContactRow::iterate(FrictionLaw law) {
+btScalar ContactRow::iterate(FrictionLaw law, btScalar share) {
   Three v = velocity();
   Three wanted{std::max(btScalar(0), impulse_[0] - normal_gain_ * (v[0] + softness_ * impulse_[0])), 0, 0, 0};
   if (wanted[0] == 0 && impulse_[0] == 0) return 0;
@@ -130,7 +130,7 @@ btScalar ContactRow::iterate(FrictionLaw law) {
   v[2] += response_[0][2] * normal_change;
   hold_or_slide(v, point_->m_combinedFriction * wanted[0], law, wanted);
   const Three change{normal_change, wanted[1] - impulse_[1], wanted[2] - impulse_[2], 0};
-  apply(change);
+  apply({share * change[0], share * change[1], share * change[2], 0});
   return std::abs(change[0]) * response_[0][0] + std::abs(change[1]) * response_[1][1] +
          std::abs(change[2]) * response_[2][2];
 }

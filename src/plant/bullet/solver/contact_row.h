@@ -12,7 +12,8 @@
 // impulse. Friction first tries to hold: exactly, in both directions at once. If that takes more than friction *
 // normal, the contact slides: friction takes a step against the sliding velocity, as long as the stiffest direction of
 // A allows, and then goes back onto the cone. When the iterations have converged, the impulse lies on the cone,
-// opposite to the sliding.
+// opposite to the sliding. Friction is no projection onto a fixed set: where it makes the normal impulse grow, a foot
+// wedged in between for example, whole steps may go around in a circle for ever, and shorter ones arrive.
 #pragma once
 
 #include <array>
@@ -72,7 +73,8 @@ class ContactRow {
   ContactRow(btManifoldPoint& point, const ContactBody& first, const ContactBody& second, const ContactTiming& timing,
              RowMemory& memory);
 
-  btScalar iterate(FrictionLaw law);  // returns how much it changed a velocity
+  // Goes this share of the way. Returns how much the whole way changes a velocity.
+  btScalar iterate(FrictionLaw law, btScalar share);
   void finish() const;
 
  private:

@@ -13,6 +13,9 @@ namespace kadans::bullet {
 namespace {
 
 constexpr std::size_t contacts_per_link = 6;  // room from the start, so that hardly any step allocates
+constexpr int iterations_factor = 20;         // of all iterations to those that each step has
+constexpr btScalar residual_wanted_m_s = 1e-3;
+constexpr btScalar shorter_step = 0.7;  // after twice the iterations that each step has
 
 Tree* tree_of(const btMultiBody* body) { return static_cast<Tree*>(body->getUserPointer()); }
 
@@ -79,11 +82,7 @@ void TreeSolver::solve_together(std::span<const Group> groups) {
 }
 
 void TreeSolver::solve(std::span<const Group> groups, bool servo_rows) {
-  int iterations_max = 0;
-  for (const Group& group : groups) {
-    group.solver->begin(group.info->m_timeStep, servo_rows);
-    iterations_max = std::max(iterations_max, group.info->m_numIterations);
-  }
+  for (const Group& group : groups) group.solver->begin(group.info->m_timeStep, servo_rows);
   for (const Group& group : groups) {
     TreeSolver& solver = *group.solver;
     for (Joint& joint : solver.joints_) solver.add_joint_rows(joint);
@@ -91,14 +90,23 @@ void TreeSolver::solve(std::span<const Group> groups, bool servo_rows) {
     solver.add_contacts(group.manifolds, *group.info);
     solver.add_contacts(group.crossing, *group.info);
   }
-  for (int i = 0; i < iterations_max; ++i) {
-    btScalar largest = 0;
-    for (const Group& group : groups) largest = std::max(largest, group.solver->iterate());
-    if (largest <= groups[0].solver->options_.tolerance) break;
-  }
+  iterate(groups);
   for (const Group& group : groups) {
     for (const auto& tree : group.solver->trees_) tree->accelerate();
   }
+}
+
+void TreeSolver::iterate(std::span<const Group> groups) {
+  int each_step = 0;
+  for (const Group& group : groups) each_step = std::max(each_step, group.info->m_numIterations);
+  btScalar largest = 0;
+  for (int i = 0; i < each_step || (i < iterations_factor * each_step && largest > residual_wanted_m_s); ++i) {
+    largest = 0;
+    const btScalar share = i < 2 * each_step ? 1 : shorter_step;
+    for (const Group& group : groups) largest = std::max(largest, group.solver->iterate(share));
+    if (largest <= groups[0].solver->options_.tolerance) break;
+  }
+  for (const Group& group : groups) group.solver->residual_ = largest;
 }
 
 void TreeSolver::begin(btScalar dt_s, bool servo_rows) {
@@ -162,10 +170,10 @@ void TreeSolver::add_contacts(std::span<btPersistentManifold* const> manifolds, 
   }
 }
 
-btScalar TreeSolver::iterate() {
+btScalar TreeSolver::iterate(btScalar share) {
   btScalar largest = 0;
   for (JointRow& row : joint_rows_) largest = std::max(largest, row.iterate());
-  for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction));
+  for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction, share));
   return largest;
 }
 
