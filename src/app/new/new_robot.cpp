@@ -13,6 +13,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/author/robot_description.h"
+#include "app/author/stance.h"
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
@@ -20,11 +22,9 @@
 #include "kadans/model/urdf.h"
 #include "kadans/plant/bullet/bullet_world.h"
 #include "kadans/signal/input_error.h"
-#include "realtime/machine/child_process.h"
-#include "robot_description.h"
+#include "new_files.h"
 #include "signal/input_file.h"
 #include "signal/shell_word.h"
-#include "stance.h"
 
 namespace kadans {
 namespace {
@@ -401,10 +401,7 @@ int run_new_robot(const NewRobotOptions& options) {
   const std::string at = project == "." ? "" : "cd " + shell_word(project.string()) + " && ";
   std::fprintf(stderr, "Run it:  %skadans sim %s    with the behavior: --play sway\n", at.c_str(), shown.c_str());
   if (options.no_run) return exit_passed;
-  ChildProcess run({.words = {"kadans", "sim", fs::absolute(scenario).string(), "--no-record"},
-                    .program = fs::read_symlink("/proc/self/exe").string()});
-  run.wait();
-  return run.exit_code() < 0 ? exit_failed : run.exit_code();
+  return run_kadans({"sim", fs::absolute(scenario).string(), "--no-record"});
 }
 
 }  // namespace kadans
