@@ -175,6 +175,8 @@ struct NewControlObjectOptions {
   std::string name;
   std::string folder = ".";  // the object's folder is made in this folder
   bool plugin = false;
+  std::string from_c;               // folder of C code that a tool has made; "": an example law
+  std::optional<double> period_s{};  // of a step of that code
 };
 struct NewRobotOptions {
   std::string urdf, srdf, name;

@@ -85,6 +85,7 @@ void add_new(CLI::App& app, NewOptions& options) {
   add_new_scenario(*made, options.scenario);
   add_new_sweep(*made, options.sweep);
   add_new_control_object(*made, options.object);
+  add_new_plant(*made, options.plant);
 }
 
 int run_new(const CLI::App& app, const NewOptions& options) {
@@ -93,6 +94,7 @@ int run_new(const CLI::App& app, const NewOptions& options) {
   if (made->got_subcommand("behavior")) return run_new_behavior(options.behavior);
   if (made->got_subcommand("scenario")) return run_new_scenario(options.scenario);
   if (made->got_subcommand("sweep")) return run_new_sweep(options.sweep);
+  if (made->got_subcommand("plant")) return run_new_plant(options.plant);
   return run_new_control_object(options.object);
 }
 

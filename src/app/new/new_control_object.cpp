@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands.h"
+#include "app/option_checks.h"
 #include "app/terminal.h"
 #include "new_files.h"
 
@@ -219,7 +220,6 @@ kadans_plugin(@type@ SOURCES plugin.cpp @type@.cpp)
 
 namespace fs = std::filesystem;
 
-// "KneeDamper" of "knee_damper".
 std::string class_name_of(const std::string& name) {
   std::string result;
   bool begins = true;
@@ -235,6 +235,14 @@ void add_new_control_object(CLI::App& made, NewControlObjectOptions& options) {
   object->add_option("name", options.name, "Name of its type, for example knee_damper")->required()->type_name("NAME");
   object->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
       ->type_name("FOLDER");
+  CLI::Option* from = object
+                          ->add_option("--from-c", options.from_c,
+                                       "Wrap the C code in this folder, made by 20-sim, Simulink Coder or OpenModelica")
+                          ->type_name("FOLDER");
+  object->add_option("--period", options.period_s, "Time between two steps of that code (default: what it says)")
+      ->type_name("S")
+      ->check(number_within(1e-5, 10.0))
+      ->needs(from);
   object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
 }
 
@@ -243,6 +251,7 @@ void add_new_control_object(CLI::App& made, NewControlObjectOptions& options) {
 int run_new_control_object(const NewControlObjectOptions& options) {
   const std::string& type = options.name;
   refuse_bad_name(type, "a control object", "knee_damper");
+  if (!options.from_c.empty()) return run_new_from_c(options, options.plugin ? plugin_template : program_template);
   const std::string class_name = class_name_of(type);
   const auto filled = [&](std::string_view text) {
     return filled_template(text, {{"@type@", type}, {"@Class@", class_name}});

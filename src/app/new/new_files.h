@@ -24,6 +24,8 @@ void write_new_files(const std::vector<std::filesystem::path>& fresh, const std:
 // `what` is for the message: "a scenario".
 void refuse_bad_name(const std::string& name, const std::string& what, const std::string& example);
 
+std::string class_name_of(const std::string& name);  // "KneeDamper" of "knee_damper"
+
 // The text with each "@name@" replaced by what stands beside it.
 std::string filled_template(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values);
 
@@ -37,6 +39,8 @@ int run_kadans(std::vector<std::string> arguments);
 
 void add_new_control_object(CLI::App& made, NewControlObjectOptions& options);
 int run_new_control_object(const NewControlObjectOptions& options);
+// The same around C code that a tool has made; `main_template` is its main.cpp or plugin.cpp.
+int run_new_from_c(const NewControlObjectOptions& options, std::string_view main_template);
 void add_new_robot(CLI::App& made, NewRobotOptions& options);
 // The exit code of its scenario.
 int run_new_robot(const NewRobotOptions& options);
@@ -46,5 +50,7 @@ void add_new_scenario(CLI::App& made, NewPartOptions& options);
 int run_new_scenario(const NewPartOptions& options);
 void add_new_sweep(CLI::App& made, NewPartOptions& options);
 int run_new_sweep(const NewPartOptions& options);
+void add_new_plant(CLI::App& made, NewPlantOptions& options);
+int run_new_plant(const NewPlantOptions& options);
 
 }  // namespace kadans

@@ -227,7 +227,8 @@ void add_new_scenario(CLI::App& made, NewPartOptions& options) {
 
 int run_new_scenario(const NewPartOptions& options) {
   refuse_bad_name(options.name, "a scenario", "nudged");
-  const NewSubject subject = read_subject(options);
+  NewSubject subject = read_subject(options);
+  subject.system.reset();  // of an object there may be one in a program, and the runs have their own
   const fs::path file = subject.project / "config/scenarios" / (options.name + ".json");
   if (fs::exists(file)) write_new_files({file}, {});  // refuses, before the runs
   const Json json{{"name", options.name},

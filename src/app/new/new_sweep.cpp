@@ -65,15 +65,19 @@ bool one_matches(const std::vector<std::string>& names, const std::string& begin
                              [&](const std::string& name) { return name.starts_with(begin) && name.ends_with(end); });
 }
 
-std::string heaviest_link(const RobotModel& model) {
-  return std::ranges::max_element(model.links, {}, [](const Link& link) { return link.inertia.mass_kg; })->name;
+// Of those that move.
+std::string heaviest_link(const NewSubject& subject) {
+  const auto first = subject.model().links.begin() + (subject.stands() ? 0 : 1);
+  return std::ranges::max_element(first, subject.model().links.end(), {},
+                                  [](const Link& link) { return link.inertia.mass_kg; })
+      ->name;
 }
 
 Json varied(const NewSubject& subject, const std::vector<std::string>& names) {
   const auto uniform = [](double from, double to) { return Json{{"uniform", {from, to}}}; };
   Json vary = Json::object();
   if (subject.stands()) vary["ground.friction"] = uniform(0.6, 1.0);
-  vary["link." + heaviest_link(subject.model()) + ".mass_scale"] = uniform(0.95, 1.05);
+  vary["link." + heaviest_link(subject) + ".mass_scale"] = uniform(0.95, 1.05);
   const auto add = [&](const std::string& begin, const std::string& end, Json range) {
     if (!one_matches(names, begin, end)) return;
     range["together"] = true;
@@ -108,9 +112,6 @@ int run_new_sweep(const NewPartOptions& options) {
   std::error_code ignored;
   if (!fs::equivalent(scenario.robot, subject.file(), ignored))
     throw InputError({.file = scenario_file.string(), .message = "is a scenario of another robot, " + scenario.robot});
-  if (!scenario.randomise.empty() || !scenario.robots.empty())
-    throw InputError({.file = scenario_file.string(),
-                      .message = "randomises already, or has several robots: copy a sweep of docs/sweeps.md instead"});
   const fs::path file = subject.project / "config/sweeps" / (options.name + ".json");
   const std::string from_root =
       fs::proximate(fs::weakly_canonical(scenario_file), fs::weakly_canonical(subject.project)).string();
@@ -121,7 +122,11 @@ int run_new_sweep(const NewPartOptions& options) {
   metrics["torque_max"] = {{"kind", "max"}, {"signal", "plant.limits.motor_torque_share"}};
   metrics["speed_max"] = {{"kind", "max"}, {"signal", "plant.limits.speed_share"}};
   if (subject.stands()) metrics["tilt_max_rad"] = {{"kind", "max"}, {"signal", "plant.base.tilt_rad"}};
-  metrics["rest_s"] = {{"kind", "since"}, {"that", "plant.limits.speed_share < 0.1"}};
+  if (scenario.behaviors.empty()) {
+    metrics["time_s"] = {{"kind", "since"}, {"that", "plant.limits.speed_share < 0.02"}};
+  } else {
+    metrics["time_s"] = {{"kind", "first_time"}, {"that", "play.done == " + std::to_string(scenario.behaviors.size())}};
+  }
   const Json plan{{"name", options.name},
                   {"doc", scenario.name + ", with other masses, torques, noise, gains and delay in each run."},
                   {"scenarios", {from_root}},
@@ -129,18 +134,16 @@ int run_new_sweep(const NewPartOptions& options) {
                   {"cases", cases},
                   {"vary", varied(subject, quantities.names())},
                   {"metrics", metrics},
-                  {"time", "rest_s"},
+                  {"time", "time_s"},
                   {"worst", subject.stands() ? "tilt_max_rad" : "speed_max"},
                   {"passed_min", 0.9}};
-  write_new_files({file}, {{fs::proximate(file), json_text(plan, 2) + "\n"}});
+  const fs::path out = subject.project / "sweeps" / (options.name + "_first");
+  write_new_files({file, out}, {{fs::proximate(file), json_text(plan, 2) + "\n"}});
   const std::string shown = shell_word("config/sweeps/" + options.name + ".json");
   tell_command("Run all of it", subject.project, "sweep " + shown);
   if (options.no_run) return exit_passed;
-  const fs::path out = file.parent_path() / ("." + options.name + ".first_cases");
-  const int code = run_kadans({"sweep", fs::absolute(file).string(), "--cases", std::to_string(cases_run), "--out",
-                               fs::absolute(out).string()});
-  fs::remove_all(out, ignored);
-  return code;
+  return run_kadans({"sweep", fs::absolute(file).string(), "--cases", std::to_string(cases_run), "--out",
+                     fs::proximate(out).string()});
 }
 
 }  // namespace kadans
