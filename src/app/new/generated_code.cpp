@@ -152,7 +152,7 @@ void read_name_table(const std::vector<CodeFile>& files, const std::string& tabl
 void read_element_comments(const std::vector<CodeFile>& files, const std::string& array,
                            std::vector<CodeValue>& values) {
   std::map<int, std::pair<std::string, fs::path>> names;
-  const std::regex pattern("\\b" + array + R"(\s*\[\s*(\d{1,4})\s*\][^;\n]*;\s*/\*\s*([^*\n]+?)\s*\*/)");
+  const std::regex pattern("\\b" + array + R"(\s*\[\s*(\d{1,4})\s*\][^;\n]*;[ \t]*/\*\s*([^*\n]+?)\s*\*/)");
   for (const CodeFile& file : files) {
     for (std::sregex_iterator i(file.text.begin(), file.text.end(), pattern), end; i != end; ++i)
       names.try_emplace(std::stoi((*i)[1]), (*i)[2], file.path);
@@ -314,13 +314,15 @@ GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& descr
   code.guid = attribute(head, "guid");
   const std::string identifier = attribute(part, "modelIdentifier");
   bool source = false;
-  for (const CodeFile& file : files) {
-    const std::smatch found = first_match(file.bare, R"(\b(\w*)fmi2DoStep\s*\()");
+  for (const CodeFile& file : files) {  // a name that stands in the text, or one that a macro puts the prefix before
+    const std::smatch found = first_match(file.bare, R"(\b(\w*)fmi2DoStep\s*[()])");
     if (found.empty() || file.path.extension() != ".c") continue;
     source = true;
     code.before = found[1];
-    if (first_match(file.bare, R"(#\s*define\s+FMI2_FUNCTION_PREFIX\s+(\w+))").size() > 1)
-      code.before = first_match(file.bare, R"(#\s*define\s+FMI2_FUNCTION_PREFIX\s+(\w+))")[1];
+  }
+  for (const CodeFile& file : files) {
+    const std::smatch prefix = first_match(file.bare, R"(#\s*define\s+FMI2_FUNCTION_PREFIX\s+(\w+))");
+    if (!prefix.empty() && code.before.empty()) code.before = prefix[1];
   }
   if (!source)
     refuse("looked for fmi2DoStep in sources of C beside it, found none in " + list_of(files) + ": let the FMU of " +
