@@ -114,7 +114,7 @@ void @type@_initialise(void *code, double *parameters, int read) {
   @before@InitializeSubmodel@behind@(u, y, 0);
   if (read) {
 @read_parameters@  } else {
-@write_parameters@  }
+@write_parameters_there@  }
   (void)parameters;
 }
 
@@ -146,7 +146,7 @@ void @type@_initialise(void *code, double *parameters, int read) {
   (void)code, (void)parameters;
   if (read) {
 @read_parameters@  } else {
-@write_parameters@  }
+@write_parameters_there@  }
   @before@_initialize();
 }
 
@@ -243,11 +243,12 @@ std::string table_rows(const std::vector<CodeValue>& values, const char* what) {
 }
 
 // "  xx_P[0] = parameters[0];\n" and so on; or the other way round.
-std::string assignments(const std::vector<CodeValue>& values, const std::string& array, bool to_code) {
+std::string assignments(const std::vector<CodeValue>& values, const std::string& array, bool to_code,
+                        const char* indent = "  ") {
   std::string text;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::string element = array + "[" + std::to_string(i) + "]", &access = values[i].access;
-    text += "  " + (to_code ? access + " = " + element : element + " = " + access) + ";\n";
+    text += indent + (to_code ? access + " = " + element : element + " = " + access) + ";\n";
   }
   return text;
 }
@@ -331,7 +332,8 @@ int run_new_from_c(const NewControlObjectOptions& options, std::string_view main
       {"@behind@", code.behind},
       {"@guid@", code.guid},
       {"@externs@", outer_arrays(code)},
-      {"@read_parameters@", assignments(code.parameters, "parameters", false)},
+      {"@read_parameters@", assignments(code.parameters, "parameters", false, "    ")},
+      {"@write_parameters_there@", assignments(code.parameters, "parameters", true, "    ")},
       {"@write_parameters@", write},
       {"@write_inputs@", assignments(code.inputs, "inputs", true)},
       {"@read_outputs@", assignments(code.outputs, "outputs", false)},

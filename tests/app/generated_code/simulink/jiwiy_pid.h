@@ -1,3 +1,4 @@
+/* clang-format off */
 /* Written by hand in the shape of Simulink Coder's nonreusable code for a model "jiwiy_pid". */
 #ifndef jiwiy_pid_h_
 #define jiwiy_pid_h_

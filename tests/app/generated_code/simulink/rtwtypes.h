@@ -1,3 +1,4 @@
+/* clang-format off */
 /* Written by hand in the shape of what Embedded Coder generates. */
 #ifndef RTWTYPES_H
 #define RTWTYPES_H

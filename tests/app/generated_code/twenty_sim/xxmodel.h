@@ -1,3 +1,4 @@
+/* clang-format off */
 #ifndef XX_MODEL_H
 #define XX_MODEL_H
 

@@ -1,3 +1,4 @@
+/* clang-format off */
 #ifndef XX_SUBMOD_H
 #define XX_SUBMOD_H
 
