@@ -106,7 +106,7 @@ TEST_CASE("Code that fits no shape is refused with the file, what was looked for
       {"exchange", "openmodelica", "modelDescription.xml", "<CoSimulation", "<ModelExchange",
        "looked for <CoSimulation modelIdentifier=...>, found none"},
       {"binary", "openmodelica", "sources/Servo_FMU.c", "NAMED(fmi2DoStep)", "NAMED(step)",
-       "looked for fmi2DoStep in sources of C beside it, found none in Servo_FMU.c, modelDescription.xml"},
+       "looked for fmi2DoStep in sources of C beside it, found none in modelDescription.xml, Servo_FMU.c"},
       {"flag", "openmodelica", "modelDescription.xml", "<Real unit=\"Nm\"/>", "<Boolean/>",
        "looked for Real outputs, found 'torque' of another type"},
   };

@@ -1,4 +1,8 @@
 // `kadans new robot`: robots that nobody has configured stand or are held by the files that it writes.
+#include <cstdlib>
+#include <string>
+#include <tuple>
+
 #include <doctest/doctest.h>
 
 #include "program.h"
@@ -8,8 +12,29 @@ namespace kadans::program {
 
 using namespace robots_of_tests;
 
+namespace {
+
+// Drawing takes seconds. While this lives, no Chromium is found.
+class WithoutPictures {
+ public:
+  WithoutPictures() : named_(std::getenv(name) == nullptr ? "" : std::getenv(name)) { setenv(name, "", 1); }
+  ~WithoutPictures() {
+    if (named_.empty()) unsetenv(name);
+    if (!named_.empty()) setenv(name, named_.c_str(), 1);
+  }
+  WithoutPictures(const WithoutPictures&) = delete;
+  WithoutPictures& operator=(const WithoutPictures&) = delete;
+
+ private:
+  static constexpr const char* name = "KADANS_CHROMIUM";
+  std::string named_;
+};
+
+}  // namespace
+
 TEST_CASE("new robot writes robots that stand or are held, and play their behavior") {
   const auto folder = fresh_folder("new_robot");
+  const WithoutPictures none;
   for (const auto& [of, text, says] :
        {std::tuple{"spot_four", quadruped(), "It stands on fl_calf, fr_calf, rl_calf, rr_calf"},
         std::tuple{"biped", biped(), "It stands on l_foot, r_foot"}, std::tuple{"arm", arm(), "it is bolted down"}}) {
@@ -19,6 +44,8 @@ TEST_CASE("new robot writes robots that stand or are held, and play their behavi
     const Outcome made = run("new robot from.urdf", folder);
     CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
     CHECK(has(made.err, says));
+    CHECK(has(made.err, "No picture: "));
+    CHECK(!std::filesystem::exists(folder / "models" / name / (name + ".mcap")));
     CHECK(has(made.out, "PASSED"));
     CHECK(has(made.out, "behaviors/" + std::string(name) + "/sway.lua"));
     const std::string scenario = "config/scenarios/" + std::string(name) + "_hold.json";
@@ -74,6 +101,7 @@ TEST_CASE("new robot takes the meshes with it, each under a name of its own, and
   CHECK(has(urdf, "<mesh filename='meshes/part.obj'/>"));
   CHECK(has(urdf, "<mesh filename='meshes/part_2.obj'/>"));
   CHECK(read(folder / "project/models/mine/meshes/part_2.obj") == read(folder / "b/part.obj"));
+  if (!has(made.err, "No picture: ")) CHECK(read(folder / "project/models/mine/mine.png").substr(1, 3) == "PNG");
 }
 
 TEST_CASE("new robot overwrites nothing, and refuses what it can make no robot of") {

@@ -65,15 +65,16 @@ NewSubject read_subject(const NewPartOptions& options) {
   fs::path file = options.robot;
   if (file.empty()) {
     file = only_robot(here, "--robot FILE");
-  } else if (std::error_code ignored; !fs::exists(file, ignored) && fs::exists(here / file, ignored)) {
+  } else if (std::error_code unknown; !fs::exists(file, unknown) && fs::exists(here / file, unknown)) {
     file = here / file;
   }
   NewSubject subject;
   subject.robot = read_robot(file);
   subject.project = project_root(file);
   subject.robot_file = fs::proximate(fs::weakly_canonical(file), fs::weakly_canonical(subject.project)).string();
+  std::error_code ignored;
   const bool outside = subject.robot_file.starts_with("..") ||
-                       (!options.folder.empty() && !fs::equivalent(project_root(here / "x"), subject.project));
+                       (!options.folder.empty() && !fs::equivalent(project_root(here / "x"), subject.project, ignored));
   if (outside) {
     throw InputError({.file = file.string(),
                       .message = "lies in another project than " + here.string() +
