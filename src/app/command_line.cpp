@@ -59,7 +59,7 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_render(app, render);
   add_log(app, log);
   add_doctor(app, doctor);
-  add_new(app, new_object, new_robot);
+  add_new(app, made);
   add_reference(app, reference);
   add_examples(app);
 }

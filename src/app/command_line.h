@@ -44,8 +44,7 @@ struct CommandLine {
   RenderOptions render;
   LogOptions log;
   DoctorOptions doctor;
-  NewControlObjectOptions new_object;
-  NewRobotOptions new_robot;
+  NewOptions made;
   ReferenceOptions reference;
 };
 

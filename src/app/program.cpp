@@ -184,9 +184,7 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("sweep")) return run_sweep(line.sweep);
   if (app.got_subcommand("merge")) return run_merge(line.merge);
   if (app.got_subcommand("tune")) return start_tune_program(argv);
-  if (app.got_subcommand("new"))
-    return app.get_subcommand("new")->got_subcommand("robot") ? run_new_robot(line.new_robot)
-                                                              : run_new_control_object(line.new_object);
+  if (app.got_subcommand("new")) return run_new(app, line.made);
   if (app.got_subcommand("reference")) return run_reference(line, line.reference);
   if (app.got_subcommand("repl")) return run_repl(line.repl);
   if (app.got_subcommand("lua-stubs")) return run_stubs(line.stubs);

@@ -30,3 +30,21 @@ TEST_CASE("new control-object overwrites nothing and refuses names that are none
     CHECK_MESSAGE(run(std::string("new control-object ") + name, folder).exit_code == 2, name);
   }
 }
+
+TEST_CASE("new plant writes a plug-in with both sides of its wire, and a robot that it drives") {
+  const auto project = project_copy("new_plant");
+  const Outcome made = run("new plant can_drives --robot config/jiwiy/robot.json --in drives", project);
+  CHECK_MESSAGE(made.exit_code == 0, made.err);
+  for (const char* file : {"can_drives.h", "can_drives.cpp", "can_drives_wire.h", "can_drives_wire.cpp",
+                           "can_drives_test.cpp", "plugin.cpp", "CMakeLists.txt"}) {
+    CHECK_MESSAGE(has(made.out, file), file);
+    CHECK_MESSAGE(!has(read(project / "drives/can_drives" / file), "@"), file);
+  }
+  const std::string robot = read(project / "config/jiwiy/can_drives.json");
+  CHECK(has(robot, "\"based_on\": \"config/jiwiy/robot.json\""));
+  CHECK(has(robot, "\"../../drives/can_drives/build/can_drives.so\""));
+  CHECK(has(run("new plant can_drives --robot config/jiwiy/robot.json", project).err, "nothing is overwritten"));
+  CHECK(
+      has(run("new plant udp --robot config/jiwiy/robot.json", project).err, "there is such a type of plant already"));
+  CHECK(has(run("new plant other", project).err, "there are several robots, name one: --robot FILE"));
+}

@@ -1,86 +1,40 @@
 // `kadans new robot`: robots that nobody has configured stand or are held by the files that it writes.
-#include <array>
-#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <tuple>
 
 #include <doctest/doctest.h>
 
 #include "program.h"
+#include "robots_of_tests.h"
 
 namespace kadans::program {
+
+using namespace robots_of_tests;
+
 namespace {
 
-std::string link(const std::string& name, double mass_kg, const std::string& shape, double com_z_m) {
-  std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(),
-                "<link name=\"%s\"><inertial><origin xyz=\"0 0 %g\"/><mass value=\"%g\"/><inertia ixx=\"%g\" ixy=\"0\" "
-                "ixz=\"0\" iyy=\"%g\" iyz=\"0\" izz=\"%g\"/></inertial>",
-                name.c_str(), com_z_m, mass_kg, 0.01 * mass_kg, 0.01 * mass_kg, 0.01 * mass_kg);
-  const std::string origin = com_z_m == 0 ? "" : "<origin xyz=\"0 0 " + std::to_string(com_z_m) + "\"/>";
-  return text.data() +
-         (shape.empty() ? "" : "<collision>" + origin + "<geometry>" + shape + "</geometry></collision>") + "</link>\n";
-}
-
-std::string joint(const std::string& name, const std::string& parent, const std::string& child, const std::string& xyz,
-                  const std::string& axis, const std::string& range) {
-  return "<joint name=\"" + name + "\" type=\"revolute\"><parent link=\"" + parent + "\"/><child link=\"" + child +
-         "\"/><origin xyz=\"" + xyz + "\"/><axis xyz=\"" + axis + "\"/><limit " + range +
-         " effort=\"60\" velocity=\"15\"/></joint>\n";
-}
-
-// Four legs of three joints, knees that bend backwards alone, balls as feet.
-std::string quadruped() {
-  std::string text = "<robot name=\"Spot Four\">\n" + link("trunk", 8, "<box size=\"0.5 0.2 0.1\"/>", 0);
-  for (const auto& [leg, x, y] :
-       {std::tuple{"fl", "0.2", 1}, {"fr", "0.2", -1}, {"rl", "-0.2", 1}, {"rr", "-0.2", -1}}) {
-    const std::string n = leg, side = y > 0 ? "" : "-";
-    text += link(n + "_hip", 0.5, "", 0) + link(n + "_thigh", 0.8, "<box size=\"0.04 0.04 0.16\"/>", -0.1) +
-            link(n + "_calf", 0.3, "<sphere radius=\"0.02\"/>", -0.2);
-    text += joint(n + "_abduct", "trunk", n + "_hip", std::string(x) + " " + side + "0.06 0", "1 0 0",
-                  "lower=\"-0.8\" upper=\"0.8\"");
-    text +=
-        joint(n + "_swing", n + "_hip", n + "_thigh", "0 " + side + "0.08 0", "0 1 0", "lower=\"-1.5\" upper=\"3\"");
-    text += joint(n + "_knee", n + "_thigh", n + "_calf", "0 0 -0.2", "0 1 0", "lower=\"-2.7\" upper=\"-0.6\"");
+// Drawing takes seconds. While this lives, no Chromium is found.
+class WithoutPictures {
+ public:
+  WithoutPictures() : named_(std::getenv(name) == nullptr ? "" : std::getenv(name)) { setenv(name, "", 1); }
+  ~WithoutPictures() {
+    if (named_.empty()) unsetenv(name);
+    if (!named_.empty()) setenv(name, named_.c_str(), 1);
   }
-  return text + "</robot>\n";
-}
+  WithoutPictures(const WithoutPictures&) = delete;
+  WithoutPictures& operator=(const WithoutPictures&) = delete;
 
-// Two legs of six joints with flat feet, and a heavy trunk.
-std::string biped() {
-  std::string text = "<robot name=\"biped\">\n" + link("pelvis", 12, "<box size=\"0.2 0.3 0.4\"/>", 0.2);
-  for (const auto& [leg, side] : {std::pair{"l", ""}, {"r", "-"}}) {
-    const std::string n = leg;
-    text += link(n + "_yaw", 0.5, "", 0) + link(n + "_roll", 0.5, "", 0) +
-            link(n + "_thigh", 2, "<cylinder radius=\"0.05\" length=\"0.2\"/>", -0.15) +
-            link(n + "_shank", 1.5, "", -0.15) + link(n + "_pitch", 0.3, "", 0) +
-            link(n + "_foot", 0.8, "<box size=\"0.22 0.1 0.03\"/>", -0.05);
-    text += joint(n + "_hip_yaw", "pelvis", n + "_yaw", std::string("0 ") + side + "0.09 0", "0 0 1",
-                  "lower=\"-1\" upper=\"1\"");
-    text += joint(n + "_hip_roll", n + "_yaw", n + "_roll", "0 0 0", "1 0 0", "lower=\"-0.5\" upper=\"0.5\"");
-    text += joint(n + "_hip_pitch", n + "_roll", n + "_thigh", "0 0 0", "0 1 0", "lower=\"-2\" upper=\"1\"");
-    text += joint(n + "_knee", n + "_thigh", n + "_shank", "0 0 -0.3", "0 1 0", "lower=\"-0.05\" upper=\"2.4\"");
-    text += joint(n + "_ankle_pitch", n + "_shank", n + "_pitch", "0 0 -0.3", "0 1 0", "lower=\"-1\" upper=\"1\"");
-    text += joint(n + "_ankle_roll", n + "_pitch", n + "_foot", "0 0 0", "1 0 0", "lower=\"-0.5\" upper=\"0.5\"");
-  }
-  return text + "</robot>\n";
-}
-
-std::string arm() {
-  std::string text = "<robot name=\"arm\">\n" + link("base", 3, "<box size=\"0.2 0.2 0.1\"/>", 0);
-  std::string parent = "base";
-  for (int i = 1; i <= 5; ++i) {
-    const std::string n = std::to_string(i);
-    text += link("part" + n, 2.5 / i, "<cylinder radius=\"0.03\" length=\"0.15\"/>", 0.12);
-    text += joint("joint" + n, parent, "part" + n, i == 1 ? "0 0 0.1" : "0 0 0.25", i % 2 != 0 ? "0 0 1" : "0 1 0",
-                  "lower=\"-2\" upper=\"2\"");
-    parent = "part" + n;
-  }
-  return text + "</robot>\n";
-}
+ private:
+  static constexpr const char* name = "KADANS_CHROMIUM";
+  std::string named_;
+};
 
 }  // namespace
 
 TEST_CASE("new robot writes robots that stand or are held, and play their behavior") {
   const auto folder = fresh_folder("new_robot");
+  const WithoutPictures none;
   for (const auto& [of, text, says] :
        {std::tuple{"spot_four", quadruped(), "It stands on fl_calf, fr_calf, rl_calf, rr_calf"},
         std::tuple{"biped", biped(), "It stands on l_foot, r_foot"}, std::tuple{"arm", arm(), "it is bolted down"}}) {
@@ -90,6 +44,8 @@ TEST_CASE("new robot writes robots that stand or are held, and play their behavi
     const Outcome made = run("new robot from.urdf", folder);
     CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
     CHECK(has(made.err, says));
+    CHECK(has(made.err, "No picture: "));
+    CHECK(!std::filesystem::exists(folder / "models" / name / (name + ".mcap")));
     CHECK(has(made.out, "PASSED"));
     CHECK(has(made.out, "behaviors/" + std::string(name) + "/sway.lua"));
     const std::string scenario = "config/scenarios/" + std::string(name) + "_hold.json";
@@ -145,6 +101,7 @@ TEST_CASE("new robot takes the meshes with it, each under a name of its own, and
   CHECK(has(urdf, "<mesh filename='meshes/part.obj'/>"));
   CHECK(has(urdf, "<mesh filename='meshes/part_2.obj'/>"));
   CHECK(read(folder / "project/models/mine/meshes/part_2.obj") == read(folder / "b/part.obj"));
+  if (!has(made.err, "No picture: ")) CHECK(read(folder / "project/models/mine/mine.png").substr(1, 3) == "PNG");
 }
 
 TEST_CASE("new robot overwrites nothing, and refuses what it can make no robot of") {

@@ -29,32 +29,76 @@ if [ -x "$work/build/bench_program" ]; then
   driven "$work/build/bench_program"
 fi
 
-# What `kadans new control-object` writes builds and passes as it stands, as a program and as a plug-in.
+# What `kadans new` writes builds and passes as it stands: control objects as a program, as a plug-in and around C code in
+# the shapes of three tools, and a plant. One build for all of them.
 if [ -x "$work/moved/bin/kadans" ]; then
-  "$work/moved/bin/kadans" new control-object first_try
-  "$work/moved/bin/kadans" new control-object second_try --plugin
-  if "$work/moved/bin/kadans" new control-object first_try; then
+  kadans="$work/moved/bin/kadans"
+  share="$work/moved/share/kadans"
+  mkdir written
+  "$kadans" new control-object first_try --in written
+  "$kadans" new control-object second_try --in written --plugin
+  if "$kadans" new control-object first_try --in written; then
     echo "a control object was overwritten"
     exit 1
   fi
-  for name in first_try second_try; do
-    cmake -S "$name" -B "$name/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$1" >>"$work/configure.log"
-    cmake --build "$name/build" --parallel "$(nproc)"
-    "$name/build/${name}_test"
+  for shape in twenty_sim simulink openmodelica; do
+    "$kadans" new control-object "$shape" --in written --plugin --from-c "$here/../app/generated_code/$shape"
   done
-  first_try/build/kadans_first_try check "$work/moved/share/kadans/config/tulip/robot.json"
+  "$kadans" new plant can_drives --in written --robot "$share/config/jiwiy/robot.json"
+  cat >written/CMakeLists.txt <<'EOF'
+cmake_minimum_required(VERSION 3.25)
+project(written LANGUAGES C CXX)
+find_package(kadans 0.2 REQUIRED)
+enable_testing()
+foreach(part IN ITEMS first_try second_try twenty_sim simulink openmodelica can_drives)
+  add_subdirectory(${part})
+endforeach()
+EOF
+  cmake -S written -B written/build -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$1" >>"$work/configure.log"
+  cmake --build written/build --parallel "$(nproc)"
+  ctest --test-dir written/build --output-on-failure
+  written/build/first_try/kadans_first_try check "$share/config/tulip/robot.json"
+  # What two instances would share was found in the compiled code.
+  grep -q 'xx_P' written/build/twenty_sim/twenty_sim_state.h
+  grep -q 'jiwiy_pid_DW' written/build/simulink/simulink_state.h
+  grep -q '""' written/build/openmodelica/openmodelica_state.h
 fi
 
-share="$work/moved/share/kadans"
 if [ -x "$work/moved/bin/kadans" ]; then
   mkdir "$share/plugins"
-  cp "$work/build/bench_plugin.so" second_try/build/second_try.so "$share/plugins"
+  cp "$work/build/bench_plugin.so" written/build/second_try/second_try.so written/build/twenty_sim/twenty_sim.so "$share/plugins"
   cat >"$share/config/tulip/benched.json" <<'EOF'
 { "based_on": "config/tulip/robot.json", "plugins": ["plugins/bench_plugin.so", "plugins/second_try.so"],
   "plant": { "bench": { "period_s": 0.001 } } }
 EOF
   "$work/moved/bin/kadans" check --plugins "$share/config/tulip/benched.json"
   driven "$work/moved/bin/kadans" run "$share/config/tulip/benched.json" --plant bench --soft --json --no-ctl --duration 1
+  # JIWIY under C code in the shape of 20-sim's. Without its stiffness it does not follow, and there is one object of it.
+  cp "$here/outside/generated/generated.json" "$share/config/jiwiy"
+  cp "$here/outside/generated/jiwiy_generated.json" "$share/config/scenarios"
+  cp "$here/outside/generated/around.lua" "$share/behaviors/jiwiy"
+  "$kadans" check --plugins "$share/config/jiwiy/generated.json"
+  "$kadans" sim "$share/config/scenarios/jiwiy_generated.json" --no-record
+  if "$kadans" sim "$share/config/scenarios/jiwiy_generated.json" --no-record --set control.generated.pan.kp=0.05; then
+    echo "JIWIY follows without stiffness"
+    exit 1
+  fi
+  cat >"$share/config/jiwiy/twice.json" <<'EOF'
+{ "based_on": "config/jiwiy/generated.json",
+  "control": { "objects": [{ "name": "again", "type": "twenty_sim", "joints": ["*"], "options": {
+    "pan.wanted": "pan.reference_rad", "pan.measured": "pan.position_rad", "tilt.wanted": "tilt.reference_rad",
+    "tilt.measured": "tilt.position_rad", "pan.torque": "pan.effort_Nm", "tilt.torque": "tilt.effort_Nm" } }] } }
+EOF
+  twice=$("$kadans" check --plugins "$share/config/jiwiy/twice.json" 2>&1) && { echo "two objects share the state of one code"; exit 1; }
+  grep -q 'two objects of the type would disturb each other' <<<"$twice" || { echo "$twice"; exit 1; }
+  # The written plant, against its own emulator.
+  port=$((20000 + $$ % 20000))
+  sed -i 's|"[^"]*can_drives.so"|"plugins/can_drives.so"|' "$share/config/jiwiy/can_drives.json"
+  cp written/build/can_drives/can_drives.so "$share/plugins"
+  "$kadans" plant "$share/config/jiwiy/can_drives.json" --as can_drives --listen 127.0.0.1:$port --soft --once &
+  "$kadans" run "$share/config/jiwiy/can_drives.json" --plant can_drives --peer 127.0.0.1:$port --soft --no-ctl --json --duration 1 | tee run.json
+  wait $!
+  grep -Eq '"received": ?[0-9]{2,}' run.json || { echo "the written plant was not driven"; exit 1; }
   "$work/moved/bin/kadans" --version
   # A robot's file outside of any project belongs to the installed one. Man pages and completion are installed, too.
   echo '{ "based_on": "config/tulip/robot.json" }' >robot.json

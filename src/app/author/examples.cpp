@@ -144,7 +144,14 @@ constexpr Examples all_examples[] = {
      "  kadans doctor config/jiwiy/servos.json\n"},
     {"new",
      "  kadans new robot models/jiwiy/jiwiy.urdf --name camera --in mine\n"
+     "  kadans new behavior nod --robot config/jiwiy/robot.json\n"
      "  kadans new control-object knee_damper\n"},
+    {"new behavior", "  kadans new behavior nod --robot config/jiwiy/robot.json\n"},
+    {"new scenario",
+     "  kadans new scenario nudged --robot config/jiwiy/robot.json\n"
+     "  kadans new scenario sines --robot config/jiwiy/robot.json --play sine\n"},
+    {"new sweep", "  kadans new sweep switched --scenario config/scenarios/jiwiy_switched.json\n"},
+    {"new plant", "  kadans new plant can_drives --robot config/jiwiy/robot.json\n"},
     {"new robot",
      "  kadans new robot models/jiwiy/jiwiy.urdf --name camera --in mine\n"
      "  kadans new robot models/head/head.urdf --name eyes --no-run\n"},

@@ -223,7 +223,8 @@ class Connection final : public LiveConnection {
     if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, "only GET\n");
     if (!parser_->is_done()) return refuse(http::status::payload_too_large, "a GET has no body\n");
     if (path == "/record.mcap" && !site_.record.file.empty()) return send_record();
-    if (site_.hub != nullptr && path.starts_with("/asset/")) return send_asset(path.substr(7));
+    if ((site_.hub != nullptr || site_.record.read_mesh) && path.starts_with("/asset/"))
+      return send_asset(path.substr(7));
     send_page(path == "/" ? "/index.html" : path);
   }
 
@@ -245,7 +246,7 @@ class Connection final : public LiveConnection {
   }
 
   void send_asset(std::string_view name) {
-    content_ = site_.hub->assets().read(name);
+    content_ = site_.hub != nullptr ? site_.hub->assets().read(name) : site_.record.read_mesh(name);
     if (!content_) return refuse(http::status::not_found, "there is no such asset\n");
     reply(http::status::ok, media_type(name), *content_);
   }

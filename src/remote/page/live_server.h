@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "live_hub.h"
@@ -33,6 +34,8 @@ struct RecordSite {
   // Takes the pictures of a page that was asked to draw (POST /frames/NAME, with the token). Called on the server's
   // thread.
   std::function<void(const std::string& name, const std::string& bytes)> take_frame;
+  // A mesh of the robot, by its name in the URDF (GET /asset/NAME); nullptr: there is none. On the server's thread.
+  std::function<std::shared_ptr<const std::string>(std::string_view name)> read_mesh{};
 };
 
 class LiveServer {

@@ -1,21 +1,16 @@
-// `kadans new`: writes the files of a new control object. In the templates @type@ and @Class@ stand for its names.
+// `kadans new control-object`: writes its files. In the templates @type@ and @Class@ stand for its names.
 // Their control law is a spring and a damper: a working example that the author replaces.
-#include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "app/commands.h"
+#include "app/option_checks.h"
 #include "app/terminal.h"
-#include "kadans/signal/input_error.h"
-#include "signal/durable_file.h"
-#include "signal/shell_word.h"
+#include "new_files.h"
 
 namespace kadans {
 
@@ -223,110 +218,54 @@ inline constexpr std::string_view cmake_plugin_template = R"(
 kadans_plugin(@type@ SOURCES plugin.cpp @type@.cpp)
 )";
 
-struct ControlObjectNames {
-  std::string type;        // "knee_damper": the name of the type, the folder and the files
-  std::string class_name;  // "KneeDamper"
-};
+namespace fs = std::filesystem;
 
-namespace {
-
-constexpr std::size_t name_max = 48;
-
-// Replaces every "@type@" and "@Class@" in a template.
-std::string filled(std::string_view text, const ControlObjectNames& names) {
+std::string class_name_of(const std::string& name) {
   std::string result;
-  for (std::size_t i = 0; i < text.size();) {
-    if (text.substr(i).starts_with("@type@")) {
-      result += names.type;
-      i += 6;
-    } else if (text.substr(i).starts_with("@Class@")) {
-      result += names.class_name;
-      i += 7;
-    } else {
-      result += text[i++];
-    }
+  bool begins = true;
+  for (const char c : name) {
+    if (c != '_') result += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    begins = c == '_';
   }
   return result;
 }
 
-bool good(const std::string& type) {
-  if (type.empty() || type.size() > name_max || type.back() == '_' || type.find("__") != std::string::npos)
-    return false;
-  if (!(type[0] >= 'a' && type[0] <= 'z')) return false;
-  return std::ranges::all_of(type, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
-}
-
-}  // namespace
-
-// Throws std::invalid_argument unless the name consists of words of a-z and 0-9 that begin with a letter and are joined
-// by _.
-ControlObjectNames control_object_names(const std::string& type) {
-  if (!good(type)) {
-    throw std::invalid_argument("a control object's name is words of a-z and 0-9 joined by _, at most " +
-                                std::to_string(name_max) + " letters, for example knee_damper");
-  }
-  ControlObjectNames names{type, {}};
-  bool begins = true;
-  for (const char c : type) {
-    if (c != '_') names.class_name += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
-    begins = c == '_';
-  }
-  return names;
+void add_new_control_object(CLI::App& made, NewControlObjectOptions& options) {
+  CLI::App* object = made.add_subcommand("control-object", "Write a control object: source, test and build files");
+  object->add_option("name", options.name, "Name of its type, for example knee_damper")->required()->type_name("NAME");
+  object->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
+      ->type_name("FOLDER");
+  CLI::Option* from = object
+                          ->add_option("--from-c", options.from_c,
+                                       "Wrap the C code in this folder, made by 20-sim, Simulink Coder or OpenModelica")
+                          ->type_name("FOLDER");
+  object->add_option("--period", options.period_s, "Time between two steps of that code (default: what it says)")
+      ->type_name("S")
+      ->check(number_within(1e-5, 10.0))
+      ->needs(from);
+  object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
 }
 
 // A folder with a control object, its test, and a program or a plug-in that contains it. It builds and its test passes
 // without changes, on its own (find_package(kadans)) and as a subdirectory of a project that already contains Kadans.
-std::vector<NewFile> control_object_project(const ControlObjectNames& names, bool plugin) {
-  std::vector<NewFile> files{{names.type + ".h", filled(header_template, names)},
-                             {names.type + ".cpp", filled(source_template, names)},
-                             {names.type + "_test.cpp", filled(test_template, names)}};
-  files.push_back({plugin ? "plugin.cpp" : "main.cpp", filled(plugin ? plugin_template : program_template, names)});
-  files.push_back({"CMakeLists.txt", filled(cmake_template, names) +
-                                         filled(plugin ? cmake_plugin_template : cmake_program_template, names)});
-  return files;
-}
-
-namespace fs = std::filesystem;
-
-void add_new(CLI::App& app, NewControlObjectOptions& options, NewRobotOptions& robot) {
-  CLI::App* made = app.add_subcommand("new", "Write the first version of a new part of your project");
-  made->require_subcommand(1);
-  CLI::App* object = made->add_subcommand("control-object", "Write a control object: source, test and build files");
-  object->add_option("name", options.name, "Name of its type, for example knee_damper")->required()->type_name("NAME");
-  object->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
-      ->type_name("FOLDER");
-  object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
-  add_new_robot(*made, robot);
-}
-
-void write_new_files(const std::vector<fs::path>& fresh, const std::vector<NewFile>& files) {
-  std::error_code error;
-  for (const fs::path& path : fresh) {
-    if (fs::exists(path, error))
-      throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
-  }
-  for (const NewFile& file : files) {
-    const fs::path folder = file.path.parent_path();
-    fs::create_directories(folder, error);
-    if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
-    write_durably(file.path, file.text);
-    std::printf("%s\n", file.path.c_str());
-  }
-}
-
 int run_new_control_object(const NewControlObjectOptions& options) {
-  ControlObjectNames names;
-  try {
-    names = control_object_names(options.name);
-  } catch (const std::invalid_argument& error) {
-    throw InputError({.message = "'" + options.name + "': " + error.what()});
-  }
-  const fs::path folder = fs::path(options.folder) / names.type;
-  std::vector<NewFile> files = control_object_project(names, options.plugin);
-  for (NewFile& file : files) file.path = folder / file.path;
-  write_new_files({folder}, files);
-  std::fprintf(stderr, "Build and test it:  cd %s && cmake -B build && cmake --build build && build/%s_test\n",
-               shell_word(folder.string()).c_str(), names.type.c_str());
+  const std::string& type = options.name;
+  refuse_bad_name(type, "a control object", "knee_damper");
+  if (!options.from_c.empty()) return run_new_from_c(options, options.plugin ? plugin_template : program_template);
+  const std::string class_name = class_name_of(type);
+  const auto filled = [&](std::string_view text) {
+    return filled_template(text, {{"@type@", type}, {"@Class@", class_name}});
+  };
+  const fs::path folder = fs::path(options.folder) / type;
+  const bool plugin = options.plugin;
+  write_new_files({folder},
+                  {{folder / (type + ".h"), filled(header_template)},
+                   {folder / (type + ".cpp"), filled(source_template)},
+                   {folder / (type + "_test.cpp"), filled(test_template)},
+                   {folder / (plugin ? "plugin.cpp" : "main.cpp"), filled(plugin ? plugin_template : program_template)},
+                   {folder / "CMakeLists.txt",
+                    filled(cmake_template) + filled(plugin ? cmake_plugin_template : cmake_program_template)}});
+  tell_build(folder, type);
   return exit_passed;
 }
 

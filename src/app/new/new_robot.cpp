@@ -13,18 +13,19 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/author/robot_description.h"
+#include "app/author/stance.h"
 #include "app/commands.h"
+#include "app/live/record_pictures.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/mesh_hull.h"
 #include "kadans/model/urdf.h"
 #include "kadans/plant/bullet/bullet_world.h"
 #include "kadans/signal/input_error.h"
-#include "realtime/machine/child_process.h"
-#include "robot_description.h"
+#include "new_files.h"
 #include "signal/input_file.h"
 #include "signal/shell_word.h"
-#include "stance.h"
 
 namespace kadans {
 namespace {
@@ -344,6 +345,20 @@ void tell(const RobotModel& model, const StandingPose& stance, const std::vector
   }
 }
 
+// Runs the scenario, and leaves a picture of its end beside the URDF. The exit code of the run.
+int run_and_draw(const fs::path& scenario, const fs::path& picture) {
+  const std::string record = fs::absolute(picture).replace_extension(".mcap").string();
+  const int code = run_kadans({"sim", fs::absolute(scenario).string(), "--record", record});
+  if (code == exit_passed || code == exit_failed) {
+    const std::string missing = pictures_missing();
+    if (!missing.empty()) std::fprintf(stderr, "No picture: %s\n", missing.c_str());
+    if (missing.empty()) (void)run_kadans({"render", record, "--at", "10", "-o", picture.string()});
+  }
+  std::error_code ignored;
+  fs::remove(record, ignored);
+  return code;
+}
+
 }  // namespace
 
 void add_new_robot(CLI::App& made, NewRobotOptions& options) {
@@ -401,10 +416,7 @@ int run_new_robot(const NewRobotOptions& options) {
   const std::string at = project == "." ? "" : "cd " + shell_word(project.string()) + " && ";
   std::fprintf(stderr, "Run it:  %skadans sim %s    with the behavior: --play sway\n", at.c_str(), shown.c_str());
   if (options.no_run) return exit_passed;
-  ChildProcess run({.words = {"kadans", "sim", fs::absolute(scenario).string(), "--no-record"},
-                    .program = fs::read_symlink("/proc/self/exe").string()});
-  run.wait();
-  return run.exit_code() < 0 ? exit_failed : run.exit_code();
+  return run_and_draw(scenario, models / (name + ".png"));
 }
 
 }  // namespace kadans

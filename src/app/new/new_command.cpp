@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+
+#include "app/terminal.h"
+#include "kadans/signal/input_error.h"
+#include "new_files.h"
+#include "realtime/machine/child_process.h"
+#include "signal/durable_file.h"
+#include "signal/shell_word.h"
+
+namespace kadans {
+
+namespace fs = std::filesystem;
+
+void write_new_files(const std::vector<fs::path>& fresh, const std::vector<NewFile>& files) {
+  std::error_code error;
+  for (const fs::path& path : fresh) {
+    if (fs::exists(path, error))
+      throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
+  }
+  for (const NewFile& file : files) {
+    const fs::path folder = file.path.parent_path();
+    fs::create_directories(folder, error);
+    if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
+    write_durably(file.path, file.text);
+    std::printf("%s\n", file.path.c_str());
+  }
+  std::fflush(stdout);
+}
+
+void refuse_bad_name(const std::string& name, const std::string& what, const std::string& example) {
+  constexpr std::size_t name_max = 48;
+  const bool good =
+      !name.empty() && name.size() <= name_max && name.back() != '_' && name.find("__") == std::string::npos &&
+      name[0] >= 'a' && name[0] <= 'z' &&
+      std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
+  if (good) return;
+  throw InputError({.message = "'" + name + "': the name of " + what +
+                               " is words of a-z and 0-9 joined by _, at most " + std::to_string(name_max) +
+                               " letters, for example " + example});
+}
+
+std::string filled_template(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values) {
+  std::string result;
+  while (!text.empty()) {
+    const auto found = std::ranges::find_if(values, [&](const auto& value) { return text.starts_with(value.first); });
+    if (found != values.end()) {
+      result += found->second;
+      text.remove_prefix(found->first.size());
+    } else {
+      result += text.front();
+      text.remove_prefix(1);
+    }
+  }
+  return result;
+}
+
+void tell_build(const fs::path& folder, const std::string& name) {
+  std::fprintf(stderr, "Build and test it:  cd %s && cmake -B build && cmake --build build && build/%s_test\n",
+               shell_word(folder.string()).c_str(), name.c_str());
+}
+
+void tell_command(const std::string& what, const fs::path& project, const std::string& arguments) {
+  const fs::path there = fs::proximate(project);
+  const std::string at = there == "." ? "" : "cd " + shell_word(there.string()) + " && ";
+  std::fprintf(stderr, "%s:  %skadans %s\n", what.c_str(), at.c_str(), arguments.c_str());
+}
+
+int run_kadans(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "kadans");
+  ChildProcess run({.words = std::move(arguments), .program = fs::read_symlink("/proc/self/exe").string()});
+  run.wait();
+  return run.exit_code() < 0 ? exit_failed : run.exit_code();
+}
+
+void add_new(CLI::App& app, NewOptions& options) {
+  CLI::App* made = app.add_subcommand("new", "Write the first version of a new part of your project");
+  made->require_subcommand(1);
+  add_new_robot(*made, options.robot);
+  add_new_behavior(*made, options.behavior);
+  add_new_scenario(*made, options.scenario);
+  add_new_sweep(*made, options.sweep);
+  add_new_control_object(*made, options.object);
+  add_new_plant(*made, options.plant);
+}
+
+int run_new(const CLI::App& app, const NewOptions& options) {
+  const CLI::App* made = app.get_subcommand("new");
+  if (made->got_subcommand("robot")) return run_new_robot(options.robot);
+  if (made->got_subcommand("behavior")) return run_new_behavior(options.behavior);
+  if (made->got_subcommand("scenario")) return run_new_scenario(options.scenario);
+  if (made->got_subcommand("sweep")) return run_new_sweep(options.sweep);
+  if (made->got_subcommand("plant")) return run_new_plant(options.plant);
+  return run_new_control_object(options.object);
+}
+
+}  // namespace kadans

@@ -1,0 +1,56 @@
+// What all commands of `kadans new` share: names, templates, files that overwrite nothing, and what they run at their
+// end. None of it is fast or runs beside a loop.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "app/commands.h"
+
+namespace kadans {
+
+struct NewFile {
+  std::filesystem::path path;
+  std::string text;
+};
+// Writes the files, with their folders, and says which. Throws InputError, and writes nothing, when one of `fresh` is
+// there already.
+void write_new_files(const std::vector<std::filesystem::path>& fresh, const std::vector<NewFile>& files);
+
+// Throws InputError unless the name consists of words of a-z and 0-9 that begin with a letter and are joined by _.
+// `what` is for the message: "a scenario".
+void refuse_bad_name(const std::string& name, const std::string& what, const std::string& example);
+
+std::string class_name_of(const std::string& name);  // "KneeDamper" of "knee_damper"
+
+// The text with each "@name@" replaced by what stands beside it.
+std::string filled_template(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values);
+
+// "Build and test it: ..." of a folder with a CMakeLists.txt and the test NAME_test.
+void tell_build(const std::filesystem::path& folder, const std::string& name);
+// "Run it again: cd PROJECT && kadans ..." with what to type in a shell.
+void tell_command(const std::string& what, const std::filesystem::path& project, const std::string& arguments);
+
+// Runs this program with these arguments. Returns its exit code.
+int run_kadans(std::vector<std::string> arguments);
+
+void add_new_control_object(CLI::App& made, NewControlObjectOptions& options);
+int run_new_control_object(const NewControlObjectOptions& options);
+// The same around C code that a tool has made; `main_template` is its main.cpp or plugin.cpp.
+int run_new_from_c(const NewControlObjectOptions& options, std::string_view main_template);
+void add_new_robot(CLI::App& made, NewRobotOptions& options);
+// The exit code of its scenario.
+int run_new_robot(const NewRobotOptions& options);
+void add_new_behavior(CLI::App& made, NewPartOptions& options);
+int run_new_behavior(const NewPartOptions& options);
+void add_new_scenario(CLI::App& made, NewPartOptions& options);
+int run_new_scenario(const NewPartOptions& options);
+void add_new_sweep(CLI::App& made, NewPartOptions& options);
+int run_new_sweep(const NewPartOptions& options);
+void add_new_plant(CLI::App& made, NewPlantOptions& options);
+int run_new_plant(const NewPlantOptions& options);
+
+}  // namespace kadans
