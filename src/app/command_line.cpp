@@ -39,6 +39,7 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_check(app, check);
   add_sweep(app, sweep);
   add_merge(app, merge);
+  add_margin(app, margin);
   add_tune(app, tune);
   add_behavior(app, behavior);
   add_repl(app, repl);

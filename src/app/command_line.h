@@ -24,6 +24,7 @@ struct CommandLine {
   CheckOptions check;
   SweepOptions sweep;
   MergeOptions merge;
+  MarginOptions margin;
   TuneOptions tune;
   BehaviorOptions behavior;
   ReplOptions repl;

@@ -253,6 +253,21 @@ struct MergeOptions {
 void add_merge(CLI::App& app, MergeOptions& options);
 int run_merge(const MergeOptions& options);
 
+// `kadans margin`: how far quantities may go from their nominal values until a scenario of the robot fails, by
+// bisection over the same seeds.
+struct MarginOptions {
+  std::string robot;
+  std::vector<std::string> scenarios;   // files, folders, tags, names; none: those with the tag "margin"
+  std::vector<std::string> quantities;  // "delay", "ground.friction=0.02"; none: the usual ones
+  std::uint32_t seeds = 8;
+  std::uint64_t seed = 1;
+  unsigned jobs = 0;  // 0: one for each core
+  std::string out;    // "": margins in the working directory
+  bool json = false;
+};
+void add_margin(CLI::App& app, MarginOptions& options);
+int run_margin(const MarginOptions& options);
+
 // Checks a plan beyond its fields: patterns, ranges, signals. Throws InputError with all mistakes. Returns a
 // description of the plan.
 std::string check_sweep_plan(const std::string& file, const PluginGate& gate);

@@ -38,6 +38,9 @@ const std::map<std::string, std::vector<std::string>> samples{
     {"replay", {"replay knee.mcap", "replay knee.mcap --from-record", "replay nowhere.mcap"}},
     {"sweep", {"sweep config/sweeps/plan.json --out part", "sweep config/sweeps/plan.json --out part --shard 0/2"}},
     {"merge", {"merge part", "merge part --csv t.csv --sqlite t.db", "merge nowhere"}},
+    {"margin",
+     {"margin config/tulip/robot.json knee --quantity delay=0.05 --seeds 1", "margin config/tulip/robot.json fails",
+      "margin config/tulip/robot.json nothing_like_it"}},
     {"tune", {"tune config/tuning/plan.json --out tuned", "tune config/tuning/plan.json --out tuned"}},
     {"behavior test",
      {"behavior test behaviors/lib", "behavior test behaviors/lib --only timing --junit results.xml",
@@ -205,7 +208,8 @@ TEST_CASE("what stdout does not take is told, and the exit code is not 0") {
                               "--version",
                               "sweep config/sweeps/plan.json --out part",
                               "merge part",
-                              "merge part --json"}) {
+                              "merge part --json",
+                              "margin config/tulip/robot.json fails"}) {
     CAPTURE(command);
     const int code = shell("kadans " + std::string(command) + " >/dev/full 2>err", folder);
     CHECK(code != 0);

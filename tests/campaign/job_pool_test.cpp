@@ -22,7 +22,8 @@ class Watcher final : public JobWatcher {
 
   std::vector<JobOutcome> outcomes = std::vector<JobOutcome>(8);
   std::size_t count = 0, most_running = 0;
-  std::size_t stop_after = 1000;
+  bool enough() const override { return count >= enough_after; }
+  std::size_t stop_after = 1000, enough_after = 1000;
 };
 
 }  // namespace
@@ -56,6 +57,17 @@ TEST_CASE("A stop ends those that run and starts no more") {
   run_jobs(jobs, 2, watcher);
   CHECK(watcher.outcomes[1].cancelled);
   CHECK(watcher.count == 2);
+}
+
+TEST_CASE("When it is enough, no more start, and those that run end by themselves") {
+  const std::vector<Job> jobs{shell("true"), shell("head -c 1000000 /dev/zero | cksum >/dev/null; echo done"),
+                              shell("true"), shell("true")};
+  Watcher watcher;
+  watcher.enough_after = 1;
+  run_jobs(jobs, 2, watcher);
+  CHECK(watcher.count == 2);
+  CHECK_FALSE(watcher.outcomes[1].cancelled);
+  CHECK(watcher.outcomes[1].out == "done\n");
 }
 
 TEST_CASE("A program that is not there is an error") {

@@ -54,6 +54,10 @@ constexpr Examples all_examples[] = {
     {"merge",
      "  kadans merge part --csv push.csv\n"
      "  kadans merge part --heat-map push.svg --x ground.friction --y link.torso.mass_scale\n"},
+    {"margin",
+     "  kadans margin config/tulip/robot.json squat --quantity delay\n"
+     "  kadans margin config/tulip/robot.json config/scenarios/squat.json --quantity "
+     "'joint.*_knee.torque_scale=0.02'\n"},
     {"tune",
      "  kadans tune config/tuning/squat_height.json --generations 2 --runs 1 --out tuned\n"
      "  kadans tune config/tuning/squat_height.json --write better.json --overwrite\n"},

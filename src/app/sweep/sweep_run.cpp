@@ -68,6 +68,7 @@ void SweepRun::ended(const JobOutcome& outcome) {
   run.repeat = repeat_command(one, subject);
   const std::string line = case_json(results_.manifest(), one, run);
   results_.store(one, line);
+  failed_ = failed_ || run.status != RunStatus::passed;
   progress_.ended();
   if (!json_) return;
   std::fputs(line.c_str(), stdout);

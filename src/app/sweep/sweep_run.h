@@ -38,17 +38,20 @@ class SweepRun final : public JobWatcher {
            std::vector<SweepCase> cases, bool json, JobProgress::Log log = JobProgress::Log::tenths);
 
   void run(std::size_t at_once);
+  // Once a case failed, no further one is started. So the first failed one is the same however many run at once.
+  void stop_at_failure() noexcept { stops_at_failure_ = true; }
 
   void ended(const JobOutcome& outcome) override;
   void passed_time(std::size_t running) override { progress_.draw(running); }
   bool stop_asked() const override;
+  bool enough() const override { return stops_at_failure_ && failed_; }
 
  private:
   const ExperimentConfig& plan_;
   const std::vector<SweepSubject>& subjects_;
   const SweepResults& results_;
   std::vector<SweepCase> cases_;
-  bool json_;
+  bool json_, stops_at_failure_ = false, failed_ = false;
   JobProgress progress_;
 };
 

@@ -1,6 +1,7 @@
 #include "sweep_results.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -81,9 +82,17 @@ CaseRow row_from(const Json& json) {
   for (const RunStatus one : {RunStatus::passed, RunStatus::failed, RunStatus::refused, RunStatus::timed_out}) {
     if (status == name(one)) row.status = one;
   }
+  double first_s = HUGE_VAL;
   for (const Json& check : json.value("checks", Json::array())) {
-    if (!check.at("passed").get<bool>())
-      row.failed += (row.failed.empty() ? "" : "; ") + check.at("name").get<std::string>();
+    if (check.at("passed").get<bool>()) continue;
+    const auto check_name = check.at("name").get<std::string>();
+    const Json at_s = check.value("at_s", Json());  // null for a check that had nothing to look at
+    const double time_s = at_s.is_number() ? at_s.get<double>() : HUGE_VAL;
+    if (row.failed.empty() || time_s < first_s) {
+      row.first_failed = check_name;
+      first_s = time_s;
+    }
+    row.failed += (row.failed.empty() ? "" : "; ") + check_name;
   }
   for (const auto& [quantity, value] : numbers(json, "quantities")) row.quantities.push_back({quantity, value});
   for (const auto& [metric, value] : numbers(json, "metrics")) row.metrics.push_back({metric, value});

@@ -36,8 +36,9 @@ struct CaseRow {
   std::string scenario;
   std::uint64_t seed = 0;
   RunStatus status = RunStatus::crashed;
-  std::string failed;      // the names of the checks that failed, "; " between them
-  std::string state_hash;  // "" when the run left none
+  std::string failed;        // the names of the checks that failed, "; " between them
+  std::string first_failed;  // the one of them that failed at the earliest time; "" when none failed
+  std::string state_hash;    // "" when the run left none
   double simulated_s = 0;
   std::vector<QuantityValue> quantities;
   std::vector<MetricValue> metrics;

@@ -68,6 +68,7 @@ void run_jobs(std::span<const Job> jobs, std::size_t at_once, JobWatcher& watche
       next = jobs.size();
       for (const auto& job : running) job->cancel();
     }
+    if (watcher.enough()) next = jobs.size();
     for (; next < jobs.size() && running.size() < at_once; ++next) {
       running.push_back(std::make_unique<RunningJob>(jobs[next], next));
     }

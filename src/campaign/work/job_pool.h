@@ -30,6 +30,7 @@ class JobWatcher {
   virtual void ended(const JobOutcome& outcome) = 0;  // called in the order in which jobs end
   virtual void passed_time(std::size_t running) = 0;  // called a few times a second
   virtual bool stop_asked() const = 0;                // when true, no more jobs start and the running ones are killed
+  virtual bool enough() const { return false; }       // when true, no more jobs start, and the running ones go on
 };
 
 // Runs `at_once` jobs at a time; 0: one for each core. Returns when all have ended. Uses only the calling thread.

@@ -63,17 +63,17 @@ Quantities::Quantities(PlantVariant& variant, Catalog& catalog, bool further_rob
   add_parameters(catalog);
 }
 
-void Quantities::add(std::string name, NumberRange range, std::function<void(double)> set) {
+void Quantities::add(std::string name, NumberRange range, double value, std::function<void(double)> set) {
   names_.push_back(std::move(name));
-  quantities_.push_back({range, std::move(set)});
+  quantities_.push_back({range, value, std::move(set)});
 }
 
 void Quantities::add_value(std::string name, NumberRange range, double& value) {
-  add(std::move(name), range, [&value](double given) { value = given; });
+  add(std::move(name), range, value, [&value](double given) { value = given; });
 }
 
 void Quantities::add_scale(std::string name, double& value) {
-  add(std::move(name), scale_range, [&value, whole = value](double factor) { value = whole * factor; });
+  add(std::move(name), scale_range, 1, [&value, whole = value](double factor) { value = whole * factor; });
 }
 
 void Quantities::add_world(PlantSettings& plant) {
@@ -99,7 +99,7 @@ void Quantities::add_start(PlantSettings& plant) {
   add_value("start.y_m", {-100, 100, "m"}, plant.base.position_m[1]);
   constexpr std::array<const char*, 3> names{"start.roll_rad", "start.pitch_rad", "start.yaw_rad"};
   for (std::size_t axis = 0; axis < names.size(); ++axis) {
-    add(names[axis], {-4, 4, "rad"}, [this, &plant, axis, start = plant.base.orientation](double angle_rad) {
+    add(names[axis], {-4, 4, "rad"}, 0, [this, &plant, axis, start = plant.base.orientation](double angle_rad) {
       turn_rad_[axis] = angle_rad;
       plant.base.orientation = start;
       for (std::size_t i = 0; i < turn_rad_.size(); ++i) {
@@ -134,7 +134,7 @@ void Quantities::add_joints(const RobotModel& model, PlantSettings& plant) {
     add_value(joint + "encoder_noise_rad", {0, 1, "rad"}, plant.encoders[i].noise_rad);
     const std::size_t joints = model.joints.size();
     const double start_rad = i < plant.position_rad.size() ? plant.position_rad[i] : 0;
-    add(joint + "start_rad", {-7, 7, "rad"}, [&plant, i, joints, start_rad](double offset_rad) {
+    add(joint + "start_rad", {-7, 7, "rad"}, 0, [&plant, i, joints, start_rad](double offset_rad) {
       plant.position_rad.resize(joints);
       plant.position_rad[i] = start_rad + offset_rad;
     });
@@ -143,15 +143,17 @@ void Quantities::add_joints(const RobotModel& model, PlantSettings& plant) {
 
 void Quantities::add_links(RobotModel& model, PlantSettings& plant) {
   for (Link& link : model.links) {
-    add("link." + link.name + ".mass_scale", {0.01, 100, ""}, [&link, whole = link.inertia](double factor) {
+    add("link." + link.name + ".mass_scale", {0.01, 100, ""}, 1, [&link, whole = link.inertia](double factor) {
       Inertia& inertia = link.inertia;
       inertia = whole;
       for (double* part :
            {&inertia.mass_kg, &inertia.xx, &inertia.yy, &inertia.zz, &inertia.xy, &inertia.xz, &inertia.yz})
         *part *= factor;
     });
-    add("link." + link.name + ".friction", {0, 10, ""},
-        [&plant, name = link.name](double friction) { friction_of(plant, name) = friction; });
+    const auto surface = std::ranges::find(plant.surfaces, link.name, &SurfaceSettings::link);
+    const double friction = surface != plant.surfaces.end() ? surface->friction : SurfaceSettings{}.friction;
+    add("link." + link.name + ".friction", {0, 10, ""}, friction,
+        [&plant, name = link.name](double given) { friction_of(plant, name) = given; });
   }
 }
 
@@ -167,13 +169,13 @@ void Quantities::add_parameters(Catalog& catalog) {
       const Parameter& range = catalog.parameters.info(id);
       (void)catalog.parameters.set(id, std::clamp(scaled->value * scaled->factor, range.min, range.max));
     };
-    add("control." + info.name, {info.min, info.max, info.unit}, [scaled, store](double value) {
+    add("control." + info.name, {info.min, info.max, info.unit}, scaled->value, [scaled, store](double value) {
       scaled->value = value;
       store();
     });
     // A gain that is off by a factor is so whatever preset a behavior chooses.
     const std::vector<std::pair<double*, double>> presets = values_in_presets(catalog, id);
-    add("control." + info.name + "_scale", scale_range, [scaled, store, presets, &catalog, id](double factor) {
+    add("control." + info.name + "_scale", scale_range, 1, [scaled, store, presets, &catalog, id](double factor) {
       scaled->factor = factor;
       store();
       const Parameter& range = catalog.parameters.info(id);
@@ -197,6 +199,7 @@ bool Quantities::apply(std::size_t index, double value, TextPlace place, std::ve
     return false;
   }
   quantities_[index].set(value);
+  quantities_[index].value = value;
   const auto known = std::ranges::find(done, names_[index], &QuantityValue::name);
   if (known == done.end()) {
     done.push_back({names_[index], value});

@@ -54,6 +54,9 @@ class Quantities {
 
   // Full names, in a fixed order.
   const std::vector<std::string>& names() const noexcept { return names_; }
+  // What a quantity may be, and what it is now: 1 for a factor that nobody set.
+  const NumberRange& range(std::size_t index) const noexcept { return quantities_[index].range; }
+  double value(std::size_t index) const noexcept { return quantities_[index].value; }
 
   // Sets all quantities that the entry's pattern chooses, and adds them to `done`. Adds a problem when the pattern
   // chooses nothing or the value is out of range.
@@ -65,9 +68,10 @@ class Quantities {
  private:
   struct Quantity {
     NumberRange range;
+    double value = 0;
     std::function<void(double)> set;
   };
-  void add(std::string name, NumberRange range, std::function<void(double)> set);
+  void add(std::string name, NumberRange range, double value, std::function<void(double)> set);
   void add_value(std::string name, NumberRange range, double& value);
   void add_scale(std::string name, double& value);
   void add_joints(const RobotModel& model, PlantSettings& plant);
