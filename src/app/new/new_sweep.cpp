@@ -49,7 +49,7 @@ fs::path scenario_for(const NewPartOptions& options, const fs::path& here) {
     return here / options.scenario;
   }
   const fs::path own = project_root(here / "x") / "config/scenarios" / (options.name + ".json");
-  if (options.robot.empty() && fs::exists(own, ignored)) return own;
+  if (fs::exists(own, ignored)) return own;
   const NewSubject subject = read_subject(options);
   const std::vector<fs::path> all = scenarios_of(subject);
   if (all.size() == 1) return all.front();
@@ -119,7 +119,6 @@ int run_new_sweep(const NewPartOptions& options) {
   PlantVariant variant = plant_variant(scenario, subject.robot.config);
   const Quantities quantities(variant, subject.system->catalog);
   Json metrics = Json::object();
-  metrics["torque_max"] = {{"kind", "max"}, {"signal", "plant.limits.motor_torque_share"}};
   metrics["speed_max"] = {{"kind", "max"}, {"signal", "plant.limits.speed_share"}};
   if (subject.stands()) metrics["tilt_max_rad"] = {{"kind", "max"}, {"signal", "plant.base.tilt_rad"}};
   if (scenario.behaviors.empty()) {
