@@ -54,7 +54,9 @@ fs::path scenario_for(const NewPartOptions& options, const fs::path& here) {
   const std::vector<fs::path> all = scenarios_of(subject);
   if (all.size() == 1) return all.front();
   std::string names;
-  for (const fs::path& one : all) names += (names.empty() ? ": " : ", ") + fs::proximate(one).string();
+  for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 8); ++i)
+    names += (i == 0 ? ": " : ", ") + fs::proximate(all[i]).string();
+  if (all.size() > 8) names += " and " + std::to_string(all.size() - 8) + " more";
   throw InputError({.file = subject.file().string(),
                     .message = all.empty() ? "has no scenario yet: `kadans new scenario NAME` writes one"
                                            : "has several scenarios, name one: --scenario FILE" + names});
