@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commission/commission_command.h"
+#include "app/new/new_options.h"
 #include "commands.h"
 
 namespace kadans {

@@ -8,7 +8,7 @@
 #include "program.h"
 #include "robots_of_tests.h"
 
-namespace kadans::program {
+namespace kadans::program::new_robot_test {
 
 using namespace robots_of_tests;
 
@@ -122,4 +122,4 @@ TEST_CASE("new robot overwrites nothing, and refuses what it can make no robot o
   CHECK(has(refused.err, "no joint of it has a motor"));
 }
 
-}  // namespace kadans::program
+}  // namespace kadans::program::new_robot_test

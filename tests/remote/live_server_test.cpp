@@ -199,4 +199,18 @@ TEST_CASE("an exception while one connection is served ends that connection and 
   CHECK(WebClient(server.port()).get("/nothing", "localhost") >= 400);
 }
 
+TEST_CASE("a server of a record hands out the meshes that are found for it, and without any none") {
+  const auto find = [](std::string_view name) {
+    return name == "meshes/arm.stl" ? std::make_shared<const std::string>("solid") : nullptr;
+  };
+  for (const bool finds : {true, false}) {
+    RecordSite site{.file = "", .take_frame = {}, .read_mesh = {}};
+    if (finds) site.read_mesh = find;
+    LiveServer server({.address = "127.0.0.1", .port = 0, .token = token, .hosts = {}}, nullptr, site);
+    server.start();
+    CHECK((WebClient(server.port()).get("/asset/meshes/arm.stl", "localhost") == 200) == finds);
+    CHECK(WebClient(server.port()).get("/asset/meshes/leg.stl", "localhost") != 200);
+  }
+}
+
 }  // namespace live_server_test

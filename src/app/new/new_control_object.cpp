@@ -7,7 +7,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "new_files.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/commands.h"
+#include "new_options.h"
 
 namespace kadans {
 

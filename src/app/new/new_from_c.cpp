@@ -1,6 +1,6 @@
 // `kadans new control-object NAME --from-c FOLDER`: a control object around C code that a tool has made. In the
 // templates
-// @type@ and @Class@ stand for its names, the others for what the code's own tables say.
+// @type@ and @Name@ stand for its names, the others for what the code's own tables say.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -315,7 +315,7 @@ int run_new_from_c(const NewControlObjectOptions& options, std::string_view main
   const std::string write = assignments(code.parameters, "parameters", true);
   const std::vector<std::pair<std::string, std::string>> values{
       {"@type@", type},
-      {"@Class@", class_name_of(type)},
+      {"@Name@", class_name_of(type)},
       {"@tool@", code.tool},
       {"@every@", code.step_s > 0 ? decimal(code.step_s) + " s" : "tick"},
       {"@period@", code.step_s > 0 ? decimal(code.step_s) : "0"},

@@ -501,9 +501,9 @@ int run_new_plant(const NewPlantOptions& options) {
   const std::vector<std::pair<std::string, std::string>> names{{"@name@", name}, {"@Class@", class_name_of(name)}};
   const fs::path folder = fs::path(options.folder) / name;
   const fs::path robot = subject.file().parent_path() / (name + ".json");
-  const std::string library =
-      fs::proximate(fs::weakly_canonical(folder) / "build" / (name + ".so"), fs::weakly_canonical(robot.parent_path()))
-          .string();
+  const std::string library = (fs::weakly_canonical(fs::absolute(folder)) / "build" / (name + ".so"))
+                                  .lexically_relative(fs::weakly_canonical(robot.parent_path()))
+                                  .string();
   const nlohmann::ordered_json driven{{"doc", "Driven through " + name + "."},
                                       {"based_on", subject.robot_file},
                                       {"plugins", {library.starts_with("../") ? library : "./" + library}},

@@ -15,7 +15,6 @@
 
 #include "app/author/robot_description.h"
 #include "app/author/stance.h"
-#include "app/commands.h"
 #include "app/live/record_pictures.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"

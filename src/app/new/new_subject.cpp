@@ -72,9 +72,9 @@ NewSubject read_subject(const NewPartOptions& options) {
   subject.robot = read_robot(file);
   subject.project = project_root(file);
   subject.robot_file = fs::proximate(fs::weakly_canonical(file), fs::weakly_canonical(subject.project)).string();
-  std::error_code ignored;
+  const fs::path named = fs::weakly_canonical(fs::absolute(here)), root = fs::weakly_canonical(subject.project);
   const bool outside = subject.robot_file.starts_with("..") ||
-                       (!options.folder.empty() && !fs::equivalent(project_root(here / "x"), subject.project, ignored));
+                       (!options.folder.empty() && named.lexically_relative(root).string().starts_with(".."));
   if (outside) {
     throw InputError({.file = file.string(),
                       .message = "lies in another project than " + here.string() +

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/assembly.h"
-#include "app/commands.h"
+#include "new_options.h"
 
 namespace kadans {
 

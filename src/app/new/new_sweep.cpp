@@ -49,12 +49,14 @@ fs::path scenario_for(const NewPartOptions& options, const fs::path& here) {
     return here / options.scenario;
   }
   const fs::path own = project_root(here / "x") / "config/scenarios" / (options.name + ".json");
-  if (options.robot.empty() && fs::exists(own, ignored)) return own;
+  if (fs::exists(own, ignored)) return own;
   const NewSubject subject = read_subject(options);
   const std::vector<fs::path> all = scenarios_of(subject);
   if (all.size() == 1) return all.front();
   std::string names;
-  for (const fs::path& one : all) names += (names.empty() ? ": " : ", ") + fs::proximate(one).string();
+  for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 8); ++i)
+    names += (i == 0 ? ": " : ", ") + fs::proximate(all[i]).string();
+  if (all.size() > 8) names += " and " + std::to_string(all.size() - 8) + " more";
   throw InputError({.file = subject.file().string(),
                     .message = all.empty() ? "has no scenario yet: `kadans new scenario NAME` writes one"
                                            : "has several scenarios, name one: --scenario FILE" + names});
@@ -119,7 +121,6 @@ int run_new_sweep(const NewPartOptions& options) {
   PlantVariant variant = plant_variant(scenario, subject.robot.config);
   const Quantities quantities(variant, subject.system->catalog);
   Json metrics = Json::object();
-  metrics["torque_max"] = {{"kind", "max"}, {"signal", "plant.limits.motor_torque_share"}};
   metrics["speed_max"] = {{"kind", "max"}, {"signal", "plant.limits.speed_share"}};
   if (subject.stands()) metrics["tilt_max_rad"] = {{"kind", "max"}, {"signal", "plant.base.tilt_rad"}};
   if (scenario.behaviors.empty()) {

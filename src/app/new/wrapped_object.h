@@ -33,12 +33,12 @@ extern "C" {
 
 // One instance of the code. Code with variables of which a program has one, static or global, cannot have two instances
 // that do not disturb each other: the second one is refused.
-class @Class@Code {
+class @Name@Code {
  public:
-  @Class@Code();  // throws std::invalid_argument
-  ~@Class@Code();
-  @Class@Code(const @Class@Code&) = delete;
-  @Class@Code& operator=(const @Class@Code&) = delete;
+  @Name@Code();  // throws std::invalid_argument
+  ~@Name@Code();
+  @Name@Code(const @Name@Code&) = delete;
+  @Name@Code& operator=(const @Name@Code&) = delete;
 
   // The variables that instances would share, "" without any: found in the compiled code when this was built.
   static const char* shared_variables() noexcept;
@@ -55,10 +55,10 @@ class @Class@Code {
   double time_s_ = 0, due_s_ = 0;
 };
 
-class @Class@ final : public kadans::ControlObject {
+class @Name@ final : public kadans::ControlObject {
  public:
   // Throws kadans::OptionError for an input or output that is connected to nothing or to what there is not.
-  explicit @Class@(const kadans::ObjectSetup& setup);
+  explicit @Name@(const kadans::ObjectSetup& setup);
 
   void declare(kadans::Declaration& declaration) override;
   void start(const kadans::ControlInput& input) noexcept override;
@@ -83,7 +83,7 @@ class @Class@ final : public kadans::ControlObject {
   };
   Wire wire_of(const std::string& name, const kadans::ObjectSetup& setup, bool output);
 
-  @Class@Code code_;
+  @Name@Code code_;
   std::vector<Axis> axes_;
   std::vector<Wire> inputs_, outputs_;
   double time_s_ = 0;
@@ -124,7 +124,7 @@ std::mutex one_exists_guard;
 
 }  // namespace
 
-@Class@Code::@Class@Code() {
+@Name@Code::@Name@Code() {
   const std::lock_guard lock(one_exists_guard);
   if (*shared_variables() != 0 && one_exists)
     throw std::invalid_argument(
@@ -136,21 +136,21 @@ std::mutex one_exists_guard;
   @type@_initialise(code_, parameters.data(), 1);
 }
 
-@Class@Code::~@Class@Code() {
+@Name@Code::~@Name@Code() {
   const std::lock_guard lock(one_exists_guard);
   @type@_free(code_);
   one_exists = false;
 }
 
-const char* @Class@Code::shared_variables() noexcept { return shared_state; }
+const char* @Name@Code::shared_variables() noexcept { return shared_state; }
 
-void @Class@Code::initialise() noexcept {
+void @Name@Code::initialise() noexcept {
   @type@_initialise(code_, parameters.data(), 0);
   time_s_ = due_s_ = 0;
 }
 
 // Between two steps of the code its outputs hold.
-void @Class@Code::step(double dt_s) noexcept {
+void @Name@Code::step(double dt_s) noexcept {
   const double step_s = period_s > 0 ? period_s : dt_s;
   if (due_s_ < 0.5 * dt_s) {
     @type@_step(code_, time_s_, step_s, inputs.data(), outputs.data(), parameters.data());
@@ -160,7 +160,7 @@ void @Class@Code::step(double dt_s) noexcept {
   due_s_ -= dt_s;
 }
 
-@Class@::@Class@(const ObjectSetup& setup) {
+@Name@::@Name@(const ObjectSetup& setup) {
   for (const std::size_t index : setup.joints) {
     const Joint& joint = setup.model.joints.at(index);
     if (joint.passive()) throw std::invalid_argument("joint " + joint.name + " has no motor");
@@ -178,7 +178,7 @@ void @Class@Code::step(double dt_s) noexcept {
   }
 }
 
-@Class@::Wire @Class@::wire_of(const std::string& name, const ObjectSetup& setup, bool output) {
+@Name@::Wire @Name@::wire_of(const std::string& name, const ObjectSetup& setup, bool output) {
   const std::string* const text = setup.options.find(name);
   const std::string all = output ? "JOINT.effort_Nm, JOINT.velocity_rad_s, JOINT.position_rad or signal"
                                  : "JOINT.position_rad, JOINT.velocity_rad_s, JOINT.effort_Nm, JOINT.reference_rad, "
@@ -215,7 +215,7 @@ void @Class@Code::step(double dt_s) noexcept {
   return wire;
 }
 
-void @Class@::declare(Declaration& declaration) {
+void @Name@::declare(Declaration& declaration) {
   for (std::size_t i = 0; i < @type@_parameters; ++i) {
     const Row& row = parameter_rows[i];
     double& value = code_.parameters[i];
@@ -238,14 +238,14 @@ void @Class@::declare(Declaration& declaration) {
 }
 
 // The code begins anew where the joints are; what is left of a step in torque the framework fades out.
-void @Class@::start(const ControlInput& input) noexcept {
+void @Name@::start(const ControlInput& input) noexcept {
   for (Axis& axis : axes_)
     axis.reference = {.value = std::clamp(input.joints.joints[axis.joint].position_rad, axis.lower_rad, axis.upper_rad)};
   code_.initialise();
   time_s_ = 0;
 }
 
-void @Class@::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
+void @Name@::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const Wire& wire = inputs_[i];
     const JointState& joint = input.joints.joints[wire.joint];
@@ -274,19 +274,19 @@ void @Class@::step(const ControlInput& input, ActuationFrame& actuation) noexcep
   }
 }
 
-bool @Class@::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
+bool @Name@::setpoint_state(std::uint32_t channel, SetpointState& state) const noexcept {
   return state = axes_[channel].reference, true;
 }
 
-void @Class@::follow(std::uint32_t channel, const SetpointState& state) noexcept { axes_[channel].reference = state; }
+void @Name@::follow(std::uint32_t channel, const SetpointState& state) noexcept { axes_[channel].reference = state; }
 
 // What is seen of the code; what it hides shows in its outputs.
-void @Class@::pass_state(StateBytes& bytes) noexcept {
+void @Name@::pass_state(StateBytes& bytes) noexcept {
   for (Axis& axis : axes_) bytes(axis.reference);
   bytes(code_.inputs, code_.outputs, time_s_);
 }
 
-std::unique_ptr<ControlObject> make_@type@(const ObjectSetup& setup) { return std::make_unique<@Class@>(setup); }
+std::unique_ptr<ControlObject> make_@type@(const ObjectSetup& setup) { return std::make_unique<@Name@>(setup); }
 )";
 
 inline constexpr std::string_view wrapped_test_template = R"(#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
@@ -302,14 +302,14 @@ using namespace kadans::testing;
 namespace {
 
 // Inputs that change, the same for the same number.
-void drive(@Class@Code& code, int number) {
+void drive(@Name@Code& code, int number) {
   for (std::size_t i = 0; i < code.inputs.size(); ++i)
     code.inputs[i] = 0.1 * std::sin(0.05 * number * static_cast<double>(i + 1));
   code.step(0.001);
 }
 
 std::vector<double> outputs_alone(int steps) {
-  @Class@Code code;
+  @Name@Code code;
   std::vector<double> all;
   for (int i = 0; i < steps; ++i) {
     drive(code, i);
@@ -324,7 +324,7 @@ TEST_CASE("The C code of @type@ gives numbers, and the same ones when it begins 
   const std::vector<double> first = outputs_alone(500);
   for (const double value : first) REQUIRE(std::isfinite(value));
   CHECK(outputs_alone(500) == first);
-  @Class@Code code;
+  @Name@Code code;
   for (int i = 0; i < 77; ++i) drive(code, i);
   code.initialise();
   std::vector<double> again;
@@ -336,7 +336,7 @@ TEST_CASE("The C code of @type@ gives numbers, and the same ones when it begins 
 }
 
 TEST_CASE("The C code of @type@ does not allocate, neither when it begins nor in its steps") {
-  @Class@Code code;
+  @Name@Code code;
   const AllocationCount heap;
   code.initialise();
   for (int i = 0; i < 200; ++i) drive(code, i);
@@ -345,14 +345,14 @@ TEST_CASE("The C code of @type@ does not allocate, neither when it begins nor in
 }
 
 TEST_CASE("Two instances of the C code of @type@ do not share state, or the second one is refused") {
-  @Class@Code code;
-  const std::string shared = @Class@Code::shared_variables();
+  @Name@Code code;
+  const std::string shared = @Name@Code::shared_variables();
   if (!shared.empty()) {
-    CHECK_THROWS_AS(@Class@Code(), std::invalid_argument);
+    CHECK_THROWS_AS(@Name@Code(), std::invalid_argument);
     return;
   }
   const std::vector<double> alone = outputs_alone(500);
-  @Class@Code other;
+  @Name@Code other;
   std::vector<double> beside;
   for (int i = 0; i < 500; ++i) {
     drive(code, i);

@@ -1,0 +1,48 @@
+// `kadans new`: writes the first version of a part of a project.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace kadans {
+
+struct NewControlObjectOptions {
+  std::string name;
+  std::string folder = ".";  // the object's folder is made in this folder
+  bool plugin = false;
+  std::string from_c;                // folder of C code that a tool has made; "": an example law
+  std::optional<double> period_s{};  // of a step of that code
+};
+struct NewRobotOptions {
+  std::string urdf, srdf, name;
+  std::string folder = ".";  // the project
+  bool no_run = false;
+};
+// Of a behavior, a scenario or a sweep.
+struct NewPartOptions {
+  std::string name;
+  std::string robot;     // configuration; "": the project's only robot
+  std::string folder;    // the project; "": the robot's
+  std::string play;      // of a scenario: a list; "": nothing plays
+  std::string scenario;  // of a sweep; "": the one of its name, else the robot's only one
+  bool no_run = false;
+};
+struct NewPlantOptions {
+  std::string name;
+  std::string robot;
+  std::string folder = ".";  // the plant's folder is made in this folder
+};
+struct NewOptions {
+  NewControlObjectOptions object;
+  NewRobotOptions robot;
+  NewPartOptions behavior, scenario, sweep;
+  NewPlantOptions plant;
+};
+void add_new(CLI::App& app, NewOptions& options);
+// After parsing. Returns the program's exit code. Throws InputError for what it is asked and cannot do; then nothing is
+// written.
+int run_new(const CLI::App& app, const NewOptions& options);
+
+}  // namespace kadans
