@@ -85,13 +85,19 @@ TEST_CASE("k.play refuses an option that it does not have, and what is no file")
                                  "it('b', function() k.play('squat.lua', 'config/tulip/robot.json') end)\n"
                                  "it('c', function() k.play('squat.lua', { robot = 1 }) end)\n"
                                  "it('d', function() k.play() end)\n"
-                                 "it('e', function() k.play('squat.lua', { robot = 'config/tulip/soft.json' }) end)\n");
+                                 "it('e', function() k.play('squat.lua', { robot = 'config/tulip/soft.json' }) end)\n"
+                                 "it('f', function() k.play('squat.lua', { plant = 'bulet' }) end)\n"
+                                 "it('g', function() local run = k.play('squat.lua', { plant = 'bullet' })\n"
+                                 "  run:advance(0.5) expect(run.feet.left.contact).to_be_true() end)\n"
+                                 "it('h', function() local run = k.play('squat.lua')\n"
+                                 "  run:advance(0.5) expect(run.feet.left.contact).to_be_false() end)\n");
   CHECK(outcome.exit_code == 1);
-  CHECK(has(outcome.out, "my_test.lua:2: k.play has no option 'robt'; there is: robot"));
+  CHECK(has(outcome.out, "my_test.lua:2: k.play has no option 'robt'; there are: robot, plant"));
   CHECK(has(outcome.out, "my_test.lua:3: k.play: options are a table, { robot = FILE }"));
-  CHECK(has(outcome.out, "my_test.lua:4: k.play: robot must be a file, not a number"));
+  CHECK(has(outcome.out, "my_test.lua:4: k.play: robot must be a text, not a number"));
   CHECK(has(outcome.out, "my_test.lua:5: k.play needs the file of a behavior"));
-  CHECK(has(outcome.out, "1 passed, 4 failed"));
+  CHECK(has(outcome.out, "unknown plant 'bulet', did you mean 'bullet'?"));
+  CHECK(has(outcome.out, "3 passed, 5 failed"));
 }
 
 TEST_CASE("behavior test runs what its filter names, and tells it as JSON lines and as JUnit XML") {

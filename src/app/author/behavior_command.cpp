@@ -78,7 +78,7 @@ class BehaviorTests {
 
   // A file that does not load is reported, and the other files are still run.
   void run(const std::string& file) {
-    IdealStages stages(options_.robot);
+    RobotStages stages(options_.robot);
     bool named = false;
     try {
       for (const TestOutcome& test :

@@ -8,6 +8,7 @@
 
 #include "app/assembly.h"
 #include "app/snapshot_filter.h"
+#include "config/json/problems.h"
 #include "config/robot/project_root.h"
 #include "estimate/leg_chain.h"
 #include "signal/sine_cosine.h"
@@ -101,9 +102,9 @@ class Sensors final : public SnapshotFilter {
   std::map<std::string, double> values_;
 };
 
-class IdealStage final : public TestStage {
+class RobotStage final : public TestStage {
  public:
-  explicit IdealStage(ScenarioConfig scenario)
+  explicit RobotStage(ScenarioConfig scenario)
       : scenario_(std::move(scenario)), assembly_(scenario_, scenario_.seed, log_), sensors_(assembly_.catalog()) {
     assembly_.filter(sensors_);
   }
@@ -215,16 +216,20 @@ fs::path only_robot(const fs::path& folder, const std::string& named) {
                                               : "there are several robots, name one: " + named + names});
 }
 
-std::unique_ptr<TestStage> IdealStages::make(const fs::path& behavior, const std::string& robot) {
+std::unique_ptr<TestStage> RobotStages::make(const fs::path& behavior, const std::string& robot,
+                                             const std::string& plant) {
+  const std::vector<std::string> models = plant_type_names(&PlantType::is_model);
+  if (!plant.empty() && std::ranges::find(models, plant) == models.end())
+    throw InputError({.file = "k.play", .message = unknown_name("plant", plant, models)});
   ScenarioConfig scenario;
   scenario.file = behavior.string();
   scenario.name = behavior.stem().string();
   scenario.robot =
       (robot.empty() ? (robot_.empty() ? robot_of_behavior(behavior) : robot_) : project_root(behavior) / robot)
           .string();
-  scenario.plant = "ideal";
+  scenario.plant = plant.empty() ? "ideal" : plant;
   scenario.behaviors.push_back({.file = behavior});
-  return std::make_unique<IdealStage>(std::move(scenario));
+  return std::make_unique<RobotStage>(std::move(scenario));
 }
 
 }  // namespace kadans

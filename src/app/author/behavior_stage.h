@@ -1,4 +1,4 @@
-// Robots on the ideal plant, for tests of behaviors.
+// Robots of their own for tests of behaviors, on the ideal plant where no other is asked for.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +14,11 @@ std::filesystem::path robot_of_behavior(const std::filesystem::path& behavior);
 // one.
 std::filesystem::path only_robot(const std::filesystem::path& folder, const std::string& named = "--robot FILE");
 
-class IdealStages final : public TestStages {
+class RobotStages final : public TestStages {
  public:
-  explicit IdealStages(std::filesystem::path robot) : robot_(std::move(robot)) {}  // "": by the behavior's folder
-  std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const std::string& robot) override;
+  explicit RobotStages(std::filesystem::path robot) : robot_(std::move(robot)) {}  // "": by the behavior's folder
+  std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const std::string& robot,
+                                  const std::string& plant) override;
 
  private:
   std::filesystem::path robot_;

@@ -84,16 +84,17 @@ local k = require "kadans"
 
 describe("@name@", function()
   local joint, path, run = @joint@, @path@, nil
-  before_each(function() run = k.play("@name@.lua", { robot = @robot@ }) end)
+  before_each(function() run = k.play("@name@.lua", { robot = @robot@, plant = "bullet" }) end)
 
   it("moves the joint aside and comes back, as often as it is told", function()
     run:set_parameter("times", 1)
     run:advance_to("aside")
+    local began = run.joints[joint].position_rad
     run:advance(@there_s@)
-    expect(run.joints[joint].position_rad).to_be_near(@away@, @near@)
+    expect(run.joints[joint].position_rad - began).to_be_near(@way@, @near@)
     expect(run:finish(30)).to_equal "done"
     expect(run.states).to_equal "ready aside back done"
-    expect(run.joints[joint].position_rad).to_be_near(@home@, @near@)
+    expect(run.joints[joint].position_rad).to_be_near(began, @near@)
   end)
 
   it("fails when the joint stays where it is", function()
@@ -152,8 +153,8 @@ int run_new_behavior(const NewPartOptions& options) {
       {"@object@", chosen.object->name},
       {"@unit@", chosen.joint->type == JointType::prismatic ? "m" : "rad"},
       {"@home@", lua_number(home)},
-      {"@away@", lua_number(home + chosen.aside)},
-      {"@near@", lua_number(0.2 * far)},
+      {"@way@", lua_number(chosen.aside)},
+      {"@near@", lua_number(0.4 * far)},
       {"@sign@", chosen.aside < 0 ? "-" : "+"},
       {"@aside@", lua_number(far)},
       {"@least@", lua_number(0.001)},

@@ -66,11 +66,11 @@ void keep_message(Testing& testing, const std::exception& error) {
   std::snprintf(testing.message.data(), testing.message.size(), "%s", error.what());
 }
 
-bool make_stage(Testing& testing, const char* file, const char* robot) noexcept {
+bool make_stage(Testing& testing, const char* file, const char* robot, const char* plant) noexcept {
   try {
     const std::filesystem::path beside = testing.file.parent_path() / file;
     const auto path = std::filesystem::exists(beside) ? beside : testing.root / file;
-    testing.played.push_back({testing.stages.make(path, robot), {}, LUA_NOREF});
+    testing.played.push_back({testing.stages.make(path, robot, plant), {}, LUA_NOREF});
     return true;
   } catch (const std::exception& error) {
     keep_message(testing, error);
@@ -78,12 +78,12 @@ bool make_stage(Testing& testing, const char* file, const char* robot) noexcept 
   }
 }
 
-// play(file, robot) -> number.
+// play(file, robot, plant) -> number.
 int play(lua_State* state) {
   Testing& testing = testing_of(state);
   const char* file = luaL_checkstring(state, 1);
   if (testing.played.size() >= stages_max) return luaL_error(state, "a test plays 8 behaviors at most");
-  if (!make_stage(testing, file, luaL_checkstring(state, 2))) return raise(state, testing);
+  if (!make_stage(testing, file, luaL_checkstring(state, 2), luaL_checkstring(state, 3))) return raise(state, testing);
   Played& played = testing.played.back();
   played.snapshot = played.tables.open(state, played.stage->catalog());
   lua_pushinteger(state, static_cast<lua_Integer>(testing.played.size() - 1));

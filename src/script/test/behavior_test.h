@@ -50,8 +50,10 @@ class TestStage {
 class TestStages {
  public:
   virtual ~TestStages() = default;
-  // `robot` is the file of a configuration; "": the one for the behavior's folder. Throws InputError.
-  virtual std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const std::string& robot) = 0;
+  // `robot` is the file of a configuration; "": the one for the behavior's folder. `plant` is a plant type; "": joints
+  // that nothing loads. Throws InputError.
+  virtual std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const std::string& robot,
+                                          const std::string& plant) = 0;
 };
 
 struct TestOutcome {

@@ -170,11 +170,14 @@ end
 local function test_play(file, options)
   if type(file) ~= "string" then error("k.play needs the file of a behavior", 2) end
   if options ~= nil and type(options) ~= "table" then error("k.play: options are a table, { robot = FILE }", 2) end
-  for key, value in pairs(options or {}) do
-    if key ~= "robot" then error("k.play has no option '" .. tostring(key) .. "'; there is: robot", 2) end
-    if type(value) ~= "string" then error("k.play: robot must be a file, not a " .. type(value), 2) end
+  options = options or {}
+  for key, value in pairs(options) do
+    if key ~= "robot" and key ~= "plant" then
+      error("k.play has no option '" .. tostring(key) .. "'; there are: robot, plant", 2)
+    end
+    if type(value) ~= "string" then error("k.play: " .. key .. " must be a text, not a " .. type(value), 2) end
   end
-  local id = play(file, options and options.robot or "")
+  local id = play(file, options.robot or "", options.plant or "")
   return setmetatable({ id = id }, { __index = function(_, key) return methods[key] or read(id, key) end })
 end
 return describe, it, before_each, expect, test_play
