@@ -26,6 +26,13 @@ function walk.set_out(m, settle_s)
   m:wait(settle_s)
 end
 
+-- The velocity at which it goes when something sets `go`, a reflex for example; what is left out is 0.
+function walk.meant(m, way)
+  m.walk:set("forward_m_s", way.forward_m_s or 0)
+  m.walk:set("left_m_s", way.left_m_s or 0)
+  m.walk:set("turn_rad_s", way.turn_rad_s or 0)
+end
+
 -- Walks at { forward_m_s =, left_m_s =, turn_rad_s = } from now on; what is left out is 0. True, or nil and a sentence.
 function walk.go(m, way)
   local together = 0
@@ -36,9 +43,7 @@ function walk.go(m, way)
     together = together + share
   end
   if together > 1.5 then return nil, string.format("it does not walk so fast in all directions at once: %.1f of 1.5", together) end
-  m.walk:set("forward_m_s", way.forward_m_s or 0)
-  m.walk:set("left_m_s", way.left_m_s or 0)
-  m.walk:set("turn_rad_s", way.turn_rad_s or 0)
+  walk.meant(m, way)
   m.walk:set("go", 1)
   return true
 end

@@ -55,7 +55,7 @@ constexpr Examples all_examples[] = {
      "  kadans merge part --csv push.csv\n"
      "  kadans merge part --heat-map push.svg --x ground.friction --y link.torso.mass_scale\n"},
     {"margin",
-     "  kadans margin config/tulip/robot.json squat --quantity delay\n"
+     "  kadans margin config/tulip/robot.json config/scenarios/squat.json --quantity delay\n"
      "  kadans margin config/tulip/robot.json config/scenarios/squat.json --quantity "
      "'joint.*_knee.torque_scale=0.02'\n"},
     {"tune",

@@ -1,0 +1,45 @@
+-- kadans behavior test behaviors/tulip/keep_up_test.lua
+local k = require "kadans"
+
+describe("keep_up", function()
+  local run
+  before_each(function() run = k.play "keep_up.lua" end)
+
+  it("stands on feet that are apart, on and on", function()
+    run:advance(0.6)
+    expect(run.state).to_equal "stand"
+    expect(run.joints.l_hip_roll.position_rad).to_be_above(0.1)
+    run:advance(20)
+    expect(run.state).to_equal "stand"
+  end)
+
+  it("steps when its weight is beyond its soles, for a while, and stops with its feet apart", function()
+    run:advance(2)
+    run:emit "beyond_its_soles"
+    run:advance(1)
+    expect(run.state).to_equal "catch"
+    run:advance(0.6)
+    expect(run.state).to_equal "spread"
+    run:advance_to("stop")
+    run:advance_to("stand")
+  end)
+
+  it("goes when it is told to, and says when that is too fast", function()
+    run:set_parameter("go", 1)
+    run:set_parameter("forward_m_s", 0.64)
+    run:advance_to("go")
+    expect(run.log).to_contain "faster than it walks"
+    run:set_parameter("go", 0)
+    run:advance(0.1)
+    expect(run.state).to_equal "spread"
+  end)
+
+  it("gets up when it lies, and gives up when it cannot", function()
+    run:advance(1)
+    run:set_sensor("base.pitch_rad", 1.5)
+    run:set_sensor("base.tilt_rad", 1.5)
+    run:advance(0.1)
+    expect(run.state:sub(1, 6)).to_equal "fallen"
+    expect(run:finish(60)).to_equal "failed"
+  end)
+end)
