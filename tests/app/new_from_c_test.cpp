@@ -127,6 +127,7 @@ TEST_CASE("Code that fits no shape is refused with the file, what was looked for
     CHECK(!std::filesystem::exists(folder / "made"));
   }
   CHECK(has(wrap(folder / "nowhere", folder).err, "nowhere: is no folder"));
+  CHECK(has(run("new control-object made --period 0.01", folder).err, "--period: is that of C code"));
 }
 
 }  // namespace kadans::program::new_from_c_test

@@ -93,6 +93,7 @@ EOF
   grep -q 'two objects of the type would disturb each other' <<<"$twice" || { echo "$twice"; exit 1; }
   # The written plant, against its own emulator.
   port=$((20000 + $$ % 20000))
+  trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
   sed -i 's|"[^"]*can_drives.so"|"plugins/can_drives.so"|' "$share/config/jiwiy/can_drives.json"
   cp written/build/can_drives/can_drives.so "$share/plugins"
   "$kadans" plant "$share/config/jiwiy/can_drives.json" --as can_drives --listen 127.0.0.1:$port --soft --once &
