@@ -71,8 +71,9 @@ void IdealWorld::take(const ActuationFrame& actuation) noexcept {
   actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
   copy_first(actuation.drives, actuation_.joint_count, actuation_.drives);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
-    const bool asked = i < actuation_.joint_count && is_finite(actuation.joints[i]);
-    actuation_.joints[i] = asked ? actuation.joints[i] : JointActuation{};
+    JointActuation& asked = actuation_.joints[i];
+    asked = actuation.joints[i];
+    if (i >= actuation_.joint_count || !is_finite(asked)) asked = {};
   }
 }
 
