@@ -166,7 +166,14 @@ void ControlSets::restart(const ControlInput& input) noexcept {
 void ControlSets::compose_joints(const Member& member, Writers& writers, ActuationFrame& actuation) const noexcept {
   const ActuationFrame& proposal = *proposals_[member.object];
   const std::uint32_t bit = 1U << member.object;
-  const bool replaces = member.composition == Composition::set || member.composition == Composition::priority;
+  if (member.composition == Composition::set) {  // mostly
+    for (const std::size_t joint : catalog_.objects[member.object].joints) {
+      actuation.joints[joint] = proposal.joints[joint];
+      writers[joint] = bit;
+    }
+    return;
+  }
+  const bool replaces = member.composition == Composition::priority;
   for (const std::size_t joint : catalog_.objects[member.object].joints) {
     if (!compose(member.composition, member.weight, proposal.joints[joint], actuation.joints[joint])) continue;
     writers[joint] = replaces ? bit : writers[joint] | bit;

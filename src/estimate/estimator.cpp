@@ -78,14 +78,14 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
   started_ = true;
 }
 
-void Estimator::update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept {
+inline void Estimator::update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept {
   JointTrack& track = joints_[joint];
   SensorState& health = health_.joints[joint];
   track.elapsed_s += dt_s;
   if (!is_new(sample.sequence, track.last_sequence, look, health)) return;
 
   // A bus that says when each reading was taken knows better than the tick.
-  const bool timed = sample.time_ns > track.last_time_ns && track.last_time_ns != 0;
+  const bool timed = track.last_time_ns != 0 && sample.time_ns > track.last_time_ns;
   const double elapsed_s = timed ? seconds_between(track.last_time_ns, sample.time_ns) : track.elapsed_s;
   const bool position_ok = std::isfinite(sample.position_rad);
   const bool motor_ok = std::isfinite(sample.motor_position_rad) && std::isfinite(sample.motor_effort_Nm);

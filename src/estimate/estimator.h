@@ -65,7 +65,8 @@ class Estimator {
 
   void add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s);
   void add_feet(const RobotModel& model, const EstimateSettings& settings);
-  void update_joint(std::size_t joint, const JointSample& sample, bool look, double dt_s) noexcept;
+  [[gnu::always_inline]] void update_joint(std::size_t joint, const JointSample& sample, bool look,
+                                           double dt_s) noexcept;
   Axes update_base(const ImuSample& sample, std::int64_t now_ns, double dt_s, BaseStatus& base) noexcept;
   void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
   void update_channels(const SensorFrame& sensors, RobotStatus& status) noexcept;

@@ -67,18 +67,15 @@ void VelocityFilter::reset() noexcept {
   started_ = false;
 }
 
-double VelocityFilter::update(double position_rad, double elapsed_s) noexcept {
-  if (!std::isfinite(position_rad)) return state_.velocity_rad_s;
+void VelocityFilter::update_unevenly(double position_rad, double elapsed_s) noexcept {
+  if (!std::isfinite(position_rad)) return;
   if (!started_) {
     started_ = true;
     state_.position_rad = position_rad;
-    return state_.velocity_rad_s;
+    return;
   }
-  if (!(elapsed_s > 0 && std::isfinite(elapsed_s))) return state_.velocity_rad_s;
-
-  const double quotient_rad_s = (position_rad - state_.position_rad) / elapsed_s;
-  state_.position_rad = position_rad;
-  state_.quotient_rad_s = quotient_rad_s;
+  if (!(elapsed_s > 0 && std::isfinite(elapsed_s))) return;
+  take(position_rad, elapsed_s);
 
   double steps = 1;
   if (elapsed_s != config_.dt_s) {
@@ -88,19 +85,11 @@ double VelocityFilter::update(double position_rad, double elapsed_s) noexcept {
   const double step_s = elapsed_s / steps;
   if (!is_cutoff(config_.cutoff_Hz, step_s)) {  // so long that the filter has forgotten everything before
     band_rad_s_ = 0;
-    low_rad_s_ = state_.velocity_rad_s = quotient_rad_s;
-    return quotient_rad_s;
+    low_rad_s_ = state_.velocity_rad_s = state_.quotient_rad_s;
+    return;
   }
   if (step_s != step_s_) set_step(step_s);
-  for (int step = 0; step < static_cast<int>(steps); ++step) {
-    const double high = quotient_rad_s - low_rad_s_;
-    const double band = a1_ * band_rad_s_ + a2_ * high;
-    const double low = low_rad_s_ + a2_ * band_rad_s_ + a3_ * high;
-    band_rad_s_ = 2 * band - band_rad_s_;
-    low_rad_s_ = 2 * low - low_rad_s_;
-    state_.velocity_rad_s = low;
-  }
-  return state_.velocity_rad_s;
+  for (int step = 0; step < static_cast<int>(steps); ++step) pass();
 }
 
 }  // namespace kadans

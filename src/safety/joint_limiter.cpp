@@ -22,16 +22,18 @@ JointLimiter::JointLimiter(const SafetySettings& settings, const JointLimits& li
       upper_rad_(limits.upper_rad),
       zone_rad_(std::min(settings.soft_stop.zone_rad, 0.25 * (limits.upper_rad - limits.lower_rad))),
       stiffness_Nm_per_rad_(settings.soft_stop.stiffness_Nm_per_rad),
+      lowest_free_rad_(lower_rad_ + zone_rad_),
+      highest_free_rad_(upper_rad_ - zone_rad_),
       damping_Nms_per_rad_(settings.damping_Nms_per_rad) {}
 
 JointLimiter::Interval JointLimiter::soft_stops(double position_rad, Interval effort) const noexcept {
-  const double above_rad = position_rad - (upper_rad_ - zone_rad_);
+  const double above_rad = position_rad - highest_free_rad_;
   if (above_rad > 0) {
     const double beyond_rad = position_rad - upper_rad_;
     effort.high = beyond_rad > 0 ? std::max(effort.low, -stiffness_Nm_per_rad_ * beyond_rad)
                                  : effort.high * (1 - above_rad / zone_rad_);
   }
-  const double below_rad = lower_rad_ + zone_rad_ - position_rad;
+  const double below_rad = lowest_free_rad_ - position_rad;
   if (below_rad > 0) {
     const double beyond_rad = lower_rad_ - position_rad;
     effort.low = beyond_rad > 0 ? std::min(effort.high, stiffness_Nm_per_rad_ * beyond_rad)
@@ -146,8 +148,7 @@ void JointLimiter::describe(const Input& in, Fault& fault) const noexcept {
         fault.limit = given_rad_;
         break;
       }
-      fault.limit =
-          2 * in.state.position_rad > lower_rad_ + upper_rad_ ? upper_rad_ - zone_rad_ : lower_rad_ + zone_rad_;
+      fault.limit = 2 * in.state.position_rad > lower_rad_ + upper_rad_ ? highest_free_rad_ : lowest_free_rad_;
       break;
     case FaultCode::soft_speed:
       fault.value = (of_set_point_ & bit(fault.code)) != 0 ? asked_rad_s_ : in.state.velocity_rad_s;

@@ -61,6 +61,7 @@ class JointLimiter {
   double rate_Nm_s_ = 0, power_max_W_ = 0;
   double velocity_max_rad_s_ = 0, velocity_fade_rad_s_ = 0;
   double lower_rad_ = 0, upper_rad_ = 0, zone_rad_ = 0, stiffness_Nm_per_rad_ = 0;
+  double lowest_free_rad_ = 0, highest_free_rad_ = 0;  // between the soft stops
   double damping_Nms_per_rad_ = 0;
   // Of the last cut, for describe(); of a set-point what was asked and what was given.
   double asked_Nm_ = 0;
@@ -73,8 +74,8 @@ inline bool JointLimiter::free(const Input& in, double asked_Nm) const noexcept 
   const double speed_rad_s = std::abs(in.state.velocity_rad_s);
   return std::abs(asked_Nm) <= effort_max_Nm_ * in.derating * in.recovery &&
          std::abs(asked_Nm - in.last_Nm) <= rate_Nm_s_ * in.change_s && speed_rad_s <= velocity_max_rad_s_ &&
-         speed_rad_s * effort_max_Nm_ <= power_max_W_ && in.state.position_rad >= lower_rad_ + zone_rad_ &&
-         in.state.position_rad <= upper_rad_ - zone_rad_;
+         speed_rad_s * effort_max_Nm_ <= power_max_W_ && in.state.position_rad >= lowest_free_rad_ &&
+         in.state.position_rad <= highest_free_rad_;
 }
 
 }  // namespace kadans

@@ -51,24 +51,6 @@ FaultMask JointWatch::derate() noexcept {
   return bit(temperature_C >= hot_C_ ? FaultCode::motor_hot : FaultCode::motor_warm);
 }
 
-bool JointWatch::stuck(const Input& in) noexcept {
-  if (same_ == 0) {
-    motor_low_rad_ = motor_high_rad_ = motor_rad_;
-    asked_low_ = asked_high_ = asked_;
-  }
-  if (!in.follows) asked_low_ = asked_high_ = demand(in);
-  const double motor_rad = by_motor_rad(in);
-  motor_low_rad_ = std::min(motor_low_rad_, motor_rad);
-  motor_high_rad_ = std::max(motor_high_rad_, motor_rad);
-  asked_low_ = std::min(asked_low_, demand(in));
-  asked_high_ = std::max(asked_high_, demand(in));
-  if (++same_ < stuck_ticks_ || passive_) return false;
-  if (motor_high_rad_ - motor_low_rad_ > stuck_motion_rad_) return true;
-  if (spring_Nm_per_rad_ > 0) return false;  // the motor's encoder has told all
-  const double asked_max = has_position(in.asked.mode) ? stuck_motion_rad_ : stuck_effort_Nm_;
-  return asked_high_ - asked_low_ > asked_max;
-}
-
 void JointWatch::describe(const Input& in, Fault& fault) const noexcept {
   using enum FaultCode;
   switch (fault.code) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "estimate/sensor_health.h"
 #include "kadans/signal/frames.h"
@@ -43,7 +44,7 @@ class ThermalModel {
   // A torque that is not finite counts as 0. dt_s must be well below the time constant.
   void step(double effort_Nm, double dt_s) noexcept {
     const double heat_C = heating_C_per_Nm2_ * effort_Nm * effort_Nm;
-    const double settled_C = ambient_C_ + (std::isfinite(heat_C) ? heat_C : 0);
+    const double settled_C = ambient_C_ + (heat_C < std::numeric_limits<double>::infinity() ? heat_C : 0);
     temperature_C_ += std::min(1.0, rate_per_s_ * dt_s) * (settled_C - temperature_C_);
   }
 
@@ -71,7 +72,7 @@ class JointWatch {
   JointWatch() = default;
   JointWatch(const SafetySettings& settings, const JointLimits& limits) noexcept;
 
-  FaultMask look(const Input& input) noexcept;
+  [[gnu::always_inline]] FaultMask look(const Input& input) noexcept;
   // Value and limit of a fault that look() has just found.
   void describe(const Input& input, Fault& fault) const noexcept;
 
@@ -81,8 +82,8 @@ class JointWatch {
 
  private:
   static constexpr double swing_s = 0.05;  // of the smoothing; a rotor of 0.04 kg m2 on 100 Nm/rad swings in 0.13 s
-  FaultMask look_at_reading(const Input& input) noexcept;
-  bool stuck(const Input& input) noexcept;
+  [[gnu::always_inline]] void look_at_reading(const Input& input, FaultMask& found) noexcept;
+  [[gnu::always_inline]] bool stuck(const Input& input) noexcept;
   // What was asked of the motor, as one number that the joint follows: the position in modes that have one, else
   // torque.
   static double demand(const Input& input) noexcept {
@@ -122,19 +123,21 @@ class JointWatch {
 inline FaultMask JointWatch::look(const Input& in) noexcept {
   using enum FaultCode;
   since_s_ += in.dt_s;
-  FaultMask found = bit_if(!in.health.finite, sensor_not_finite) | bit_if(!is_finite(in.asked), actuation_not_finite) |
-                    bit_if(in.health.silent_ticks > silent_ticks_max_ + in.health.period_ticks - 1, sensor_silent);
-  if (in.health.silent_ticks == 0 && in.health.finite) found |= look_at_reading(in);
+  FaultMask found = 0;
+  note_if(!in.health.finite, sensor_not_finite, found);
+  note_if(!is_finite(in.asked), actuation_not_finite, found);
+  note_if(in.health.silent_ticks > silent_ticks_max_ + in.health.period_ticks - 1, sensor_silent, found);
+  if (in.health.silent_ticks == 0 && in.health.finite) look_at_reading(in, found);
   if (passive_) return found;  // nothing to take away
-  found |= bit_if(!(in.state.position_rad >= lowest_rad_ && in.state.position_rad <= highest_rad_), position_limit) |
-           bit_if(!(std::abs(in.state.velocity_rad_s) <= fastest_rad_s_), velocity_limit);
+  note_if(!(in.state.position_rad >= lowest_rad_ && in.state.position_rad <= highest_rad_), position_limit, found);
+  note_if(!(std::abs(in.state.velocity_rad_s) <= fastest_rad_s_), velocity_limit, found);
   // Counts the motor's own torque: a load of the ground on the spring heats nothing.
   thermal_.step(std::max(std::abs(in.written_Nm), std::abs(in.sample.motor_effort_Nm)), in.dt_s);
   derating_ = 1;
   return thermal_.temperature_C() <= warm_C_ ? found : found | derate();
 }
 
-inline FaultMask JointWatch::look_at_reading(const Input& in) noexcept {
+inline void JointWatch::look_at_reading(const Input& in, FaultMask& found) noexcept {
   const double position_rad = in.sample.position_rad;
   const bool first = !seen_;
   step_rad_ = position_rad - reading_rad_;
@@ -148,9 +151,27 @@ inline FaultMask JointWatch::look_at_reading(const Input& in) noexcept {
     motor_rad_ = by_motor_rad(in);
     asked_ = demand(in);
   }
-  if (first) return 0;
-  return bit_if(!(std::abs(step_rad_) <= step_max_rad_), FaultCode::sensor_jump) |
-         bit_if(step_rad_ == 0 && stuck(in), FaultCode::sensor_stuck);
+  if (first) return;
+  note_if(!(std::abs(step_rad_) <= step_max_rad_), FaultCode::sensor_jump, found);
+  note_if(step_rad_ == 0 && stuck(in), FaultCode::sensor_stuck, found);
+}
+
+inline bool JointWatch::stuck(const Input& in) noexcept {
+  if (same_ == 0) {
+    motor_low_rad_ = motor_high_rad_ = motor_rad_;
+    asked_low_ = asked_high_ = asked_;
+  }
+  const double motor_rad = by_motor_rad(in), asked = demand(in);
+  if (!in.follows) asked_low_ = asked_high_ = asked;
+  motor_low_rad_ = std::min(motor_low_rad_, motor_rad);
+  motor_high_rad_ = std::max(motor_high_rad_, motor_rad);
+  asked_low_ = std::min(asked_low_, asked);
+  asked_high_ = std::max(asked_high_, asked);
+  if (++same_ < stuck_ticks_ || passive_) return false;
+  if (motor_high_rad_ - motor_low_rad_ > stuck_motion_rad_) return true;
+  if (spring_Nm_per_rad_ > 0) return false;  // the motor's encoder has told all
+  const double asked_max = has_position(in.asked.mode) ? stuck_motion_rad_ : stuck_effort_Nm_;
+  return asked_high_ - asked_low_ > asked_max;
 }
 
 // Finds faults that the drives report: a fault of their own, not enabled, too hot, samples too old; and faults of what
@@ -174,10 +195,12 @@ class DriveWatch {
     idle_s_ = idle ? idle_s_ + in.dt_s : 0;
     const bool dropped_out = idle && was_enabled_;  // while it was asked: it may not come back by itself
     was_enabled_ = sample.drive == DriveState::enabled;
-    return bit_if(sample.drive == DriveState::fault, drive_fault) |
-           bit_if(dropped_out || idle_s_ > settings.enable_s, drive_not_enabled) |
-           bit_if(sample.temperature_C >= settings.hot_C, drive_hot) |
-           bit_if(sample.time_ns != 0 && age_s(in) > settings.sample_age_max_s, sample_old);
+    FaultMask found = 0;
+    note_if(sample.drive == DriveState::fault, drive_fault, found);
+    note_if(dropped_out || idle_s_ > settings.enable_s, drive_not_enabled, found);
+    note_if(sample.temperature_C >= settings.hot_C, drive_hot, found);
+    note_if(sample.time_ns != 0 && age_s(in) > settings.sample_age_max_s, sample_old, found);
+    return found;
   }
   // Value, limit and the maker's words of a fault that look() has just found; other faults are not changed.
   void describe(const SafetySettings& settings, const Input& in, Fault& fault) const noexcept;

@@ -131,32 +131,31 @@ FaultMask Safety::watch_joints(const SafetyInput& in, const ActuationFrame& actu
   lost_ = 0;
   for (std::size_t i = 0; i < joint_count_; ++i) {
     JointGuard& joint = joints_[i];
-    const JointWatch::Input look{.state = in.joints.joints[i],
-                                 .sample = in.sensors.joints[i],
-                                 .health = in.health.joints[i],
-                                 .asked = actuation.joints[i],
-                                 .written_Nm = joint.last_Nm,
-                                 .follows = !joint.gave_way,
-                                 .dt_s = dt_s};
-    const DriveWatch::Input drive{look.sample, joint.driven, in.sensors.time_ns, dt_s};
     const bool differ = modes_differ(i, actuation);
-    const FaultMask found = joint.watch.look(look) | joint.drive.look(settings_.drives, drive) |
-                            bit_if(differ && i < joint.partner, FaultCode::modes_differ);
+    FaultMask found =
+        joint.watch.look(of_joint(in, actuation, i, dt_s)) | joint.drive.look(settings_.drives, of_drive(in, i, dt_s));
+    note_if(differ && i < joint.partner, FaultCode::modes_differ, found);
     joint.writable = !differ && (found & bit(FaultCode::actuation_not_finite)) == 0;
     if ((found | joint.cut) == 0 && joint.ladder.idle()) continue;
-    FaultMask fresh = joint.ladder.update(found | joint.cut, dt_s, settings_.reactions, &Reaction::joint) & found;
-    for (; fresh != 0; fresh &= fresh - 1) {
-      Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(i), .tick = in.tick};
-      joint.watch.describe(look, fault);
-      joint.drive.describe(settings_, drive, fault);
-      if (fault.code == FaultCode::modes_differ)
-        fault.words = words_of_modes(look.asked.mode, actuation.joints[joint.partner].mode);
-      raise(fault);
-    }
+    judge_joint(in, actuation, i, found, dt_s);
     all |= found;
-    lost_ += ladder_level(i) >= SafetyLevel::damp ? 1 : 0;
   }
   return all;
+}
+
+void Safety::judge_joint(const SafetyInput& in, const ActuationFrame& actuation, std::size_t index, FaultMask found,
+                         double dt_s) noexcept {
+  JointGuard& joint = joints_[index];
+  FaultMask fresh = joint.ladder.update(found | joint.cut, dt_s, settings_.reactions, &Reaction::joint) & found;
+  for (; fresh != 0; fresh &= fresh - 1) {
+    Fault fault{.code = first_of(fresh), .joint = static_cast<std::uint16_t>(index), .tick = in.tick};
+    joint.watch.describe(of_joint(in, actuation, index, dt_s), fault);
+    joint.drive.describe(settings_, of_drive(in, index, dt_s), fault);
+    if (fault.code == FaultCode::modes_differ)
+      fault.words = words_of_modes(actuation.joints[index].mode, actuation.joints[joint.partner].mode);
+    raise(fault);
+  }
+  lost_ += ladder_level(index) >= SafetyLevel::damp ? 1 : 0;
 }
 
 // `body`: what the robot's own watches found and is still to be reported; `others`: already reported.
@@ -235,14 +234,14 @@ void Safety::cut_joint(const SafetyInput& in, std::size_t index, JointActuation&
   if (cut != 0) raise_cut(in, index, cut, [&](Fault& fault) { joint.limiter.describe(limits, fault); });
 }
 
-// The usual case in a few comparisons: nothing is wrong with joint or robot, and what is asked is well within the
-// limits.
-bool Safety::passes(const SafetyInput& in, std::size_t index, const JointActuation& actuation) noexcept {
+// The usual case in a few comparisons, while nothing is wrong with the robot: nor with the joint, and what is asked is
+// well within the limits.
+inline bool Safety::passes(const SafetyInput& in, std::size_t index, const JointActuation& actuation) noexcept {
   JointGuard& joint = joints_[index];
   const JointGuard& partner = joints_[joint.partner];
   const bool calm = joint.ladder.idle() && (joint.partner == index || (partner.ladder.idle() && partner.writable)) &&
-                    robot_.level() == SafetyLevel::normal && joint.writable && joint.authority == 1 && joint.cut == 0 &&
-                    !joint.gave_way && fall_.share() == 1 && actuation.mode == ActuationMode::effort;
+                    joint.writable && joint.authority == 1 && joint.cut == 0 && !joint.gave_way &&
+                    actuation.mode == ActuationMode::effort;
   const JointLimiter::Input limits{in.joints.joints[index], joint.watch.derating(), 1, joint.last_Nm, change_s_};
   if (!calm || joint.limiter.passive() || !joint.limiter.free(limits, actuation.effort_Nm)) return false;
   joint.last_Nm = actuation.effort_Nm;
@@ -313,8 +312,9 @@ void Safety::check(const SafetyInput& in, ActuationFrame& actuation, SafetyStatu
   go_down(body | others, dt_s);
   pending_ = 0;  // what was raised here has been judged here
   SafetyLevel worst = robot_.level();
+  const bool calm = worst == SafetyLevel::normal && fall_.share() == 1;
   for (std::size_t i = 0; i < joint_count_; ++i) {
-    if (passes(in, i, actuation.joints[i])) continue;
+    if (calm && passes(in, i, actuation.joints[i])) continue;
     limit_joint(in, i, dt_s, actuation.joints[i]);
     worst = std::max(worst, static_cast<SafetyLevel>(joints_[i].level_number));
   }

@@ -105,6 +105,20 @@ class Safety {
     std::uint32_t level_number = 0;
   };
 
+  // What the joint's watches look at.
+  JointWatch::Input of_joint(const SafetyInput& in, const ActuationFrame& actuation, std::size_t joint,
+                             double dt_s) const noexcept {
+    return {.state = in.joints.joints[joint],
+            .sample = in.sensors.joints[joint],
+            .health = in.health.joints[joint],
+            .asked = actuation.joints[joint],
+            .written_Nm = joints_[joint].last_Nm,
+            .follows = !joints_[joint].gave_way,
+            .dt_s = dt_s};
+  }
+  DriveWatch::Input of_drive(const SafetyInput& in, std::size_t joint, double dt_s) const noexcept {
+    return {in.sensors.joints[joint], joints_[joint].driven, in.sensors.time_ns, dt_s};
+  }
   // Of the joint and the one that it is coupled with.
   SafetyLevel ladder_level(std::size_t joint) const noexcept {
     const JointGuard& own = joints_[joint];
@@ -121,10 +135,13 @@ class Safety {
   FaultMask watch_feet(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_channels(const SafetyInput& input, double dt_s) noexcept;
   FaultMask watch_joints(const SafetyInput& input, const ActuationFrame& actuation, double dt_s) noexcept;
+  void judge_joint(const SafetyInput& input, const ActuationFrame& actuation, std::size_t joint, FaultMask found,
+                   double dt_s) noexcept;
   void judge_robot(const SafetyInput& input, FaultMask body, FaultMask others, double dt_s) noexcept;
   FaultMask take_stop(bool& lift) noexcept;
   void go_down(FaultMask faults, double dt_s) noexcept;
-  bool passes(const SafetyInput& input, std::size_t joint, const JointActuation& actuation) noexcept;
+  [[gnu::always_inline]] bool passes(const SafetyInput& input, std::size_t joint,
+                                     const JointActuation& actuation) noexcept;
   bool gives_way(std::size_t joint, double dt_s, const JointActuation& actuation) noexcept;
   void limit_joint(const SafetyInput& input, std::size_t joint, double dt_s, JointActuation& actuation) noexcept;
   void cut_coupling(const SafetyInput& input, CouplingLimiter& coupling, ActuationFrame& actuation) noexcept;

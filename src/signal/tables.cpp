@@ -1,5 +1,6 @@
 // The tables of parameters, set-points and signals.
 #include <cassert>
+#include <cstring>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -82,7 +83,19 @@ SignalId SignalTable::add_info(Signal signal) {
 
 SignalId SignalTable::add(Signal signal, const double* source) {
   const SignalId id = add_info(std::move(signal));
-  doubles_.push_back({id, source});
+  const std::size_t length = last_run_;
+  if (length > 0 && length < run_max) {
+    const Source<double> run = runs_[length - 1].back();
+    if (run.id + length == id && run.value + length == source) {
+      runs_[length - 1].pop_back();
+      runs_[length].push_back(run);
+      last_run_ = length + 1;
+      sources_.emplace_back(source);
+      return id;
+    }
+  }
+  runs_[0].push_back({id, source});
+  last_run_ = 1;
   sources_.emplace_back(source);
   return id;
 }
@@ -117,7 +130,13 @@ SignalId SignalTable::add(Signal signal, const std::atomic<std::uint32_t>* sourc
 
 void SignalTable::gather(std::span<double> row) const noexcept {
   assert(row.size() == infos_.size());
-  for (const auto& [id, value] : doubles_) row[id] = *value;
+  [&]<std::size_t... less_1>(std::index_sequence<less_1...>) {
+    const auto copy = [&]<std::size_t length>(std::integral_constant<std::size_t, length>) {
+      for (const auto& [id, first] : runs_[length - 1]) std::memcpy(&row[id], first, length * sizeof(double));
+    };
+    (copy(std::integral_constant<std::size_t, less_1 + 1>{}), ...);
+  }
+  (std::make_index_sequence<run_max>{});
   for (const auto& [id, value] : bools_) row[id] = *value ? 1.0 : 0.0;
   for (const auto& [id, value] : choices_) row[id] = static_cast<double>(*value);
   for (const auto& [id, value] : counts_) row[id] = static_cast<double>(*value);

@@ -20,13 +20,18 @@ class MinimumJerk {
   // Comes to rest in duration_s, after half the way that it would go at its present velocity.
   void stop(double duration_s) noexcept;
 
-  const SetpointState& step(double dt_s) noexcept;
+  const SetpointState& step(double dt_s) noexcept {
+    if (!(remaining_s_ <= 0)) advance(dt_s);
+    return state_;
+  }
   const SetpointState& state() const noexcept { return state_; }
   double target() const noexcept { return target_; }
   double remaining_s() const noexcept { return remaining_s_; }  // 0 at rest
   void pass_state(auto& bytes) noexcept { bytes(state_, target_, remaining_s_); }
 
  private:
+  void advance(double dt_s) noexcept;
+
   SetpointState state_;
   double target_ = 0;
   double remaining_s_ = 0;

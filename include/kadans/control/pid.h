@@ -10,6 +10,9 @@
 // One owner, the control thread; step() neither allocates, locks nor throws.
 #pragma once
 
+#include <algorithm>
+#include <numbers>
+
 #include "kadans/control/state_bytes.h"
 
 namespace kadans {
@@ -29,9 +32,9 @@ class Pid {
   struct State {
     double reference_rad = 0, reference_velocity_rad_s = 0;
     double error_rad = 0;
-    double velocity_rad_s = 0;  // measured, filtered
     double integral_Nm = 0;
     double effort_Nm = 0;
+    double velocity_rad_s = 0;  // measured, filtered
     bool saturated = false;
   };
 
@@ -52,5 +55,32 @@ class Pid {
   Config config_;
   State state_;
 };
+
+// Here, because it runs for every joint in every tick.
+inline double Pid::step(double reference_rad, double reference_velocity_rad_s, double position_rad,
+                        double velocity_rad_s, double dt_s) noexcept {
+  const Config& c = config_;
+  State& s = state_;
+  s.reference_rad = reference_rad;
+  s.reference_velocity_rad_s = reference_velocity_rad_s;
+  s.error_rad = reference_rad - position_rad;
+
+  if (c.kd_cutoff_Hz > 0) {  // first-order low pass by backward differences: stable for every cut-off
+    const double rate = 2 * std::numbers::pi * c.kd_cutoff_Hz * dt_s;
+    s.velocity_rad_s += rate / (1 + rate) * (velocity_rad_s - s.velocity_rad_s);
+  } else {
+    s.velocity_rad_s = velocity_rad_s;
+  }
+
+  const double unlimited_Nm = c.feedforward_Nm + c.kp_Nm_per_rad * s.error_rad + s.integral_Nm +
+                              c.kd_Nms_per_rad * (c.velocity_weight * reference_velocity_rad_s - s.velocity_rad_s);
+  s.effort_Nm = std::clamp(unlimited_Nm, -c.effort_max_Nm, c.effort_max_Nm);
+  s.saturated = s.effort_Nm != unlimited_Nm;
+
+  const double growth_Nm = c.ki_Nm_per_rads * s.error_rad * dt_s;
+  const bool winds_up = s.saturated && growth_Nm * unlimited_Nm > 0;
+  if (!winds_up) s.integral_Nm = std::clamp(s.integral_Nm + growth_Nm, -c.integral_max_Nm, c.integral_max_Nm);
+  return s.effort_Nm;
+}
 
 }  // namespace kadans

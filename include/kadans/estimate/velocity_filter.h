@@ -9,6 +9,8 @@
 // One owner, the control thread. update neither allocates nor throws.
 #pragma once
 
+#include <cmath>
+
 namespace kadans {
 
 class VelocityFilter {
@@ -33,7 +35,15 @@ class VelocityFilter {
 
   // elapsed_s: since the last reading, > 0. Returns the velocity. The first reading after construction or reset gives
   // 0, whatever the position. A position or time that is not finite, or no time at all, changes nothing.
-  double update(double position_rad, double elapsed_s) noexcept;
+  double update(double position_rad, double elapsed_s) noexcept {
+    if (elapsed_s == step_s_ && elapsed_s == config_.dt_s && started_ && std::isfinite(position_rad)) {  // mostly
+      take(position_rad, elapsed_s);
+      pass();
+    } else {
+      update_unevenly(position_rad, elapsed_s);
+    }
+    return state_.velocity_rad_s;
+  }
 
   // At rest; the next reading is a first one.
   void reset() noexcept;
@@ -45,6 +55,19 @@ class VelocityFilter {
  private:
   void prewarp() noexcept;  // for the cut-off
   void set_step(double step_s) noexcept;
+  void update_unevenly(double position_rad, double elapsed_s) noexcept;
+  void take(double position_rad, double elapsed_s) noexcept {
+    state_.quotient_rad_s = (position_rad - state_.position_rad) / elapsed_s;
+    state_.position_rad = position_rad;
+  }
+  void pass() noexcept {  // the quotient through one step of the low pass
+    const double high = state_.quotient_rad_s - low_rad_s_;
+    const double band = a1_ * band_rad_s_ + a2_ * high;
+    const double low = low_rad_s_ + a2_ * band_rad_s_ + a3_ * high;
+    band_rad_s_ = 2 * band - band_rad_s_;
+    low_rad_s_ = 2 * low - low_rad_s_;
+    state_.velocity_rad_s = low;
+  }
 
   Config config_;
   State state_;

@@ -2,7 +2,9 @@
 // them into one row of numbers per tick. Recorder, checks, viewers and scripts know them by name.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -68,7 +70,10 @@ class SignalTable {
   std::vector<AnySource> sources_;  // by id
   std::unordered_map<std::string, SignalId> ids_;
   std::unordered_map<std::int64_t, SignalId> keys_;
-  std::vector<Source<double>> doubles_;
+  // Doubles that are neighbours in memory and in the row, by their number less 1: each time one copy of fixed length.
+  static constexpr std::size_t run_max = 8;
+  std::array<std::vector<Source<double>>, run_max> runs_;
+  std::size_t last_run_ = 0;  // the length of the run that was added to last
   std::vector<Source<bool>> bools_;
   std::vector<Source<std::uint8_t>> choices_;
   std::vector<Source<std::uint32_t>> counts_;

@@ -31,12 +31,8 @@ void MinimumJerk::stop(double duration_s) noexcept {
 
 // The quintic that leads from the present state to rest at the target in the time that is left, taken dt further. The
 // polynomial is found anew each step from the state; exact arithmetic would find the same one each time.
-const SetpointState& MinimumJerk::step(double dt_s) noexcept {
-  if (remaining_s_ <= 0) return state_;
-  if (remaining_s_ <= 1.5 * dt_s) {
-    reset(target_);
-    return state_;
-  }
+void MinimumJerk::advance(double dt_s) noexcept {
+  if (remaining_s_ <= 1.5 * dt_s) return reset(target_);
   const double T = remaining_s_;
   const double way = target_ - state_.value;
   const double v = state_.velocity * T;  // scaled to time 0..1
@@ -49,7 +45,6 @@ const SetpointState& MinimumJerk::step(double dt_s) noexcept {
   state_.velocity = (v + t * (2 * half_a + t * (3 * c3 + t * (4 * c4 + t * 5 * c5)))) / T;
   state_.acceleration = (2 * half_a + t * (6 * c3 + t * (12 * c4 + t * 20 * c5))) / (T * T);
   remaining_s_ -= dt_s;
-  return state_;
 }
 
 }  // namespace kadans

@@ -74,6 +74,8 @@ CubicSpline::Range CubicSpline::range() const noexcept {
 SetpointMotions::SetpointMotions(Catalog& catalog, ControlSets& sets)
     : setpoints_(catalog.setpoints), sets_(sets), motions_(catalog.setpoints.size()) {
   active_.reserve(motions_.size());
+  for (SetpointId id = 0; id < std::min(motions_.size(), max_setpoints_shown); ++id)
+    shown_.push_back({setpoints_[id].follows ? &object(id) : nullptr, setpoints_[id].owner, setpoints_[id].channel});
 }
 
 bool SetpointMotions::acceptable(const Command& command, const SetpointTable& setpoints) noexcept {
@@ -216,18 +218,17 @@ double SetpointMotions::remaining_s(std::uint32_t owner) const noexcept {
 }
 
 void SetpointMotions::fill(Snapshot& snapshot) const noexcept {
-  const std::size_t shown = std::min(motions_.size(), max_setpoints_shown);
-  snapshot.setpoint_count = static_cast<std::uint32_t>(shown);
-  for (SetpointId id = 0; id < shown; ++id) {
-    const Setpoint& setpoint = setpoints_[id];
-    SetpointStatus& status = snapshot.setpoints[id];
-    if (!setpoint.follows || !sets_.runs(setpoint.owner)) {
-      status = {};
+  snapshot.setpoint_count = static_cast<std::uint32_t>(shown_.size());
+  SetpointStatus* status = snapshot.setpoints.data();
+  for (const Shown& shown : shown_) {
+    SetpointStatus& at = *status++;
+    if (shown.object == nullptr || !sets_.runs(shown.owner)) {
+      at = {};
       continue;
     }
     SetpointState state;
-    (void)sets_.object(setpoint.owner).setpoint_state(setpoint.channel, state);
-    status = {state.value, state.velocity};
+    (void)shown.object->setpoint_state(shown.channel, state);
+    at = {state.value, state.velocity};
   }
   for (const SetpointId id : active_) {
     double& left_s = snapshot.objects[setpoints_[id].owner].motion_remaining_s;

@@ -115,7 +115,12 @@ class SetpointMotions {
 
   const SetpointTable& setpoints_;
   ControlSets& sets_;
+  struct Shown {
+    const ControlObject* object;  // null: it cannot be led
+    std::uint32_t owner, channel;
+  };
   std::vector<Motion> motions_;     // by SetpointId
+  std::vector<Shown> shown_;        // likewise: those in the snapshot
   std::vector<SetpointId> active_;  // those under way
 };
 

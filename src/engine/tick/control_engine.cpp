@@ -1,5 +1,6 @@
 #include "control_engine.h"
 
+#include <span>
 #include <utility>
 
 #include "engine/tick/control_engine.h"
@@ -106,9 +107,10 @@ void ControlEngine::tell_drives() noexcept {
   PowerStatus& power = snapshot_.power;
   power.supply_V = sensors_.supply_V;
   power.emergency = sensors_.emergency;
-  for (std::size_t i = 0; i < snapshot_.joints.count; ++i) {
-    const JointSample& said = sensors_.joints[i];
-    power.drives[i] = {said.temperature_C, said.code, said.drive, said.homed, said.braked};
+  const JointSample* said = sensors_.joints.data();
+  for (DriveStatus& drive : std::span(power.drives).first(snapshot_.joints.count)) {
+    drive = {said->temperature_C, said->code, said->drive, said->homed, said->braked};
+    ++said;
   }
 }
 
@@ -118,8 +120,8 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   inbox_.fill(snapshot_);
   sets_.fill(snapshot_);
   inbox_.motions().fill(snapshot_);
-  snapshot_.joystick = exchange_.joystick.newest();
-  snapshot_.ball = exchange_.ball.newest();
+  if (exchange_.joystick.has_news()) snapshot_.joystick = exchange_.joystick.newest();
+  if (exchange_.ball.has_news()) snapshot_.ball = exchange_.ball.newest();
   if (snapshot_.ball.confidence > 0)
     snapshot_.ball.age_s = 1e-9 * static_cast<double>(time_ns - snapshot_.ball.time_ns);
   tell_drives();

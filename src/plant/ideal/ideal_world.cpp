@@ -68,10 +68,12 @@ void IdealWorld::read(SensorFrame& sensors) noexcept {
 }
 
 void IdealWorld::take(const ActuationFrame& actuation) noexcept {
-  copy_used(actuation, actuation_);
   actuation_.joint_count = std::min(actuation.joint_count, truth_.joint_count);
+  copy_first(actuation.drives, actuation_.joint_count, actuation_.drives);
   for (std::size_t i = 0; i < truth_.joint_count; ++i) {
-    if (i >= actuation_.joint_count || !is_finite(actuation_.joints[i])) actuation_.joints[i] = {};
+    JointActuation& asked = actuation_.joints[i];
+    asked = actuation.joints[i];
+    if (i >= actuation_.joint_count || !is_finite(asked)) asked = {};
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
@@ -91,6 +92,34 @@ class ObjectContact final : public btCollisionAlgorithm {
 };
 static_assert(sizeof(ObjectContact) <= sizeof(btConvexConvexAlgorithm), "fits the dispatcher's pool");
 
+// Whether the boxes around two bodies are clearly apart. Those of the broadphase are wider by Bullet's threshold.
+bool apart(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
+  const btScalar gap_m = 1e-6 - 2 * gContactBreakingThreshold;
+  for (int i = 0; i < 3; ++i) {
+    if (a.m_aabbMax[i] + gap_m < b.m_aabbMin[i] || b.m_aabbMax[i] + gap_m < a.m_aabbMin[i]) return true;
+  }
+  return false;
+}
+
+// Whether Bullet looked at two links before and keeps nothing of their parts.
+bool keeps_nothing(const btBroadphasePair& pair, const btCollisionObject& a) {
+  if (pair.m_algorithm == nullptr) return false;
+  const auto& parts = static_cast<const btCompoundCollisionAlgorithm&>(*pair.m_algorithm);
+  const int count = static_cast<const btCompoundShape&>(*a.getCollisionShape()).getNumChildShapes();
+  for (int i = 0; i < count; ++i) {
+    if (parts.getChildAlgorithm(i) != nullptr) return false;
+  }
+  return true;
+}
+
+// Of two links whose boxes are apart Bullet would find out the same, part by part, and leave everything as it is.
+void look_at_pair(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
+  const auto& a = *static_cast<const btCollisionObject*>(pair.m_pProxy0->m_clientObject);
+  const auto& b = *static_cast<const btCollisionObject*>(pair.m_pProxy1->m_clientObject);
+  if (!in_world(a) && !in_world(b) && apart(*pair.m_pProxy0, *pair.m_pProxy1) && keeps_nothing(pair, a)) return;
+  btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+}
+
 }  // namespace
 
 void renew_contact(btPersistentManifold& manifold, int part_a, int part_b) {
@@ -117,6 +146,7 @@ void renew_contact(btPersistentManifold& manifold, int part_a, int part_b) {
 
 void ObjectContactMaker::register_with(btCollisionDispatcher& dispatcher) {
   dispatcher.registerCollisionCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE, this);
+  dispatcher.setNearCallback(look_at_pair);
 }
 
 btCollisionAlgorithm* ObjectContactMaker::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,

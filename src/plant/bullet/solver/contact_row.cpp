@@ -102,6 +102,7 @@ ContactRow::Three ContactRow::velocity() const {
   Three sum = bias_;
   for (int s = 0; s < side_count_; ++s) {
     const Side& side = sides_[static_cast<std::size_t>(s)];
+#pragma GCC unroll 4
     for (int p = 0; p < side.path.length; ++p) {
       const btScalar z = side.z[side.path.dofs[p]];
       for (std::size_t i = 0; i < 4; ++i) sum[i] += side.y[p][i] * z;
@@ -110,10 +111,11 @@ ContactRow::Three ContactRow::velocity() const {
   return sum;
 }
 
-void ContactRow::apply(const Three& change) {
+inline void ContactRow::apply(const Three& change) {
   for (std::size_t i = 0; i < 3; ++i) impulse_[i] += change[i];
   for (int s = 0; s < side_count_; ++s) {
     const Side& side = sides_[static_cast<std::size_t>(s)];
+#pragma GCC unroll 4
     for (int p = 0; p < side.path.length; ++p) {
       const Three& y = side.y[p];
       side.z[side.path.dofs[p]] += y[0] * change[0] + y[1] * change[1] + y[2] * change[2];

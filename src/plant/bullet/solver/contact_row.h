@@ -90,8 +90,8 @@ class ContactRow {
   void add_shared_response();
   void aim(const ContactTiming& timing);
   void prepare_gains();
-  Three velocity() const;
-  void apply(const Three& change);
+  [[gnu::noinline]] Three velocity() const;  // inlined, its first number would be computed twice
+  [[gnu::always_inline]] void apply(const Three& change);
   void hold_or_slide(const Three& velocity, btScalar limit, FrictionLaw law, Three& impulse) const;
 
   btManifoldPoint* point_;

@@ -203,10 +203,13 @@ void TreeFactor::first_half(int dof, std::array<btScalar, 4>* y) const {
   for (int p = path.length - 1; p >= 0; --p) {
     const btScalar* const factor = row(path.dofs[p]);
     const std::array<btScalar, 4> value = y[p];
+#pragma GCC unroll 2
     for (int q = 0; q < p; ++q) {
-      for (std::size_t c = 0; c < 4; ++c) y[q][c] -= value[c] * factor[q];
+      const btScalar share = factor[q];
+      for (std::size_t c = 0; c < 4; ++c) y[q][c] -= value[c] * share;
     }
-    for (std::size_t c = 0; c < 4; ++c) y[p][c] = value[c] * scale(path.dofs[p]);
+    const btScalar own = scale(path.dofs[p]);
+    for (std::size_t c = 0; c < 4; ++c) y[p][c] = value[c] * own;
   }
 }
 
