@@ -168,7 +168,8 @@ TEST_CASE("When the line is lost in a push the torque ends, a sentence says so, 
     REQUIRE(all.report.problems.size() == 1);
     CHECK_MESSAGE(has(all.report.problems[0], is_board ? "its board does not answer" : "does not answer"),
                   all.report.problems[0]);
-    CHECK_MESSAGE(all.report.problems[0].find("'pan'") == all.report.problems[0].rfind("'pan'"), all.report.problems[0]);
+    CHECK_MESSAGE(all.report.problems[0].find("'pan'") == all.report.problems[0].rfind("'pan'"),
+                  all.report.problems[0]);
     REQUIRE(all.seen.cut_ns > 0);
     // The board's watchdog takes 10 ms, a servo's 100 ms in steps of 20.
     CHECK(all.seen.torque_until_ns - all.seen.cut_ns <= (is_board ? 12 : 122) * ms);

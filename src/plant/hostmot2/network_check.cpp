@@ -27,8 +27,8 @@ std::string text_of(std::uint32_t address) {
   return text.data();
 }
 
-// IFF_LOWER_UP of linux/if.h, which cannot be included beside net/if.h: there is a cable with something at its other end.
-// IFF_RUNNING follows it, up to a second later.
+// IFF_LOWER_UP of linux/if.h, which cannot be included beside net/if.h: there is a cable with something at its other
+// end. IFF_RUNNING follows it, up to a second later.
 constexpr unsigned carrier = 1U << 16;
 
 }  // namespace
