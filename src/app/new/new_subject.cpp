@@ -45,9 +45,9 @@ void choose_object(const Catalog& catalog, AsideJoint& found) {
   for (std::size_t i = 0; i < catalog.sets.size(); ++i) {
     for (const std::uint32_t number : catalog.sets[i].objects) {
       const ObjectInfo& object = catalog.objects[number];
-      std::size_t led = std::ranges::count_if(object.setpoints, [&](SetpointId id) {
+      auto led = static_cast<std::size_t>(std::ranges::count_if(object.setpoints, [&](SetpointId id) {
         return catalog.setpoints[id].joint != no_joint && catalog.setpoints[id].name.ends_with(".position_rad");
-      });
+      }));
       if (led == 0) continue;
       if ((catalog.initial_sets >> i & 1) != 0) led += max_joints;
       if (led <= most) continue;
