@@ -86,7 +86,8 @@ class Run {
   }
 
   void take_residual(double time_s) {
-    const double residual_m_s = parts_.robot.truth().residual_m_s;
+    double residual_m_s = parts_.robot.truth().residual_m_s;
+    for (const RunParts& other : parts_.others) residual_m_s = std::max(residual_m_s, other.robot.truth().residual_m_s);
     if (residual_m_s > residual_trusted_m_s) ++result_.unsettled_steps;
     if (residual_m_s <= result_.residual_max_m_s) return;
     result_.residual_max_m_s = residual_m_s;
