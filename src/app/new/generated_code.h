@@ -1,13 +1,13 @@
 // C code that a tool has made of a controller, as a person copies it from there: which shape it has, and what its own
 // tables say of inputs, outputs and parameters.
 //
-// | shape | what is looked for | tables |
-// |---|---|---|
-// | 20-sim | XXInitializeSubmodel(u, y, t), XXCalculateSubmodel, XXTerminateSubmodel, and names with X before or behind
-// | xx_input_names, xx_output_names, xx_parameter_names, which may stand in a comment; else the comments beside u[0]
-// and y[0] | | Simulink Coder | MODEL_initialize(void), MODEL_step(void), MODEL_terminate(void) | the structs of
-// MODEL_U, MODEL_Y and MODEL_P | | OpenModelica, a source FMU (FMI 2.0, co-simulation) | modelDescription.xml,
-// fmi2DoStep | its ScalarVariables |
+// - 20-sim: XXInitializeSubmodel(u, y, t), XXCalculateSubmodel and XXTerminateSubmodel, and names with X before or
+//   behind. Tables: xx_input_names, xx_output_names and xx_parameter_names, which may stand in a comment; else the
+//   comments beside u[0] and y[0].
+// - Simulink Coder: MODEL_initialize(void), MODEL_step(void) and MODEL_terminate(void). Tables: the structs of MODEL_U,
+//   MODEL_Y and MODEL_P.
+// - OpenModelica, a source FMU (FMI 2.0, co-simulation): modelDescription.xml and fmi2DoStep. Tables: its
+//   ScalarVariables.
 #pragma once
 
 #include <filesystem>

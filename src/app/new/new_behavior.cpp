@@ -1,6 +1,6 @@
 // `kadans new behavior`: a behavior of one joint with its test.
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -10,6 +10,7 @@
 #include "app/terminal.h"
 #include "new_files.h"
 #include "new_subject.h"
+#include "signal/number_text.h"
 #include "signal/shell_word.h"
 
 namespace kadans {
@@ -33,12 +34,12 @@ local P = k.params {
   missing = { 0.5, min = 0.01, max = 1, doc = "share of the way that may be missing" },
 }
 
-local function away() return home_@unit@ @sign@ P.aside_@unit@ end
+local function way() return @sign@P.aside_@unit@ end
 
 -- Whether the joint has not moved as far as it was told, from where it began.
 local function missed(s, m)
   local went = s.joints[joint].position_rad - m.vars.began
-  return math.abs(went - (away() - home_@unit@)) > P.missing * P.aside_@unit@
+  return math.abs(went - way()) > P.missing * P.aside_@unit@
 end
 
 return k.behavior "@name@" {
@@ -59,7 +60,7 @@ return k.behavior "@name@" {
   k.state "aside" {
     enter = function(m, s) m.vars.began = s.joints[joint].position_rad end,
     run = function(m)
-      m.@object@:move({ [joint] = away() }, { time_s = P.move_s }):wait()
+      m.@object@:move({ [joint] = home_@unit@ + way() }, { time_s = P.move_s }):wait()
       m:wait(P.rest_s)
     end,
     { on = "run.done", when = missed, to = "failed", why = "did not get there" },
@@ -112,20 +113,7 @@ describe("@name@", function()
 end)
 )";
 
-std::string lua_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
-std::string lua_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string lua_number(double value) { return printed("%.6g", value); }
 
 }  // namespace
 
@@ -146,16 +134,16 @@ int run_new_behavior(const NewPartOptions& options) {
   const std::vector<std::pair<std::string, std::string>> values{
       {"@name@", options.name},
       {"@file@", test},
-      {"@robot@", lua_text(subject.robot_file)},
-      {"@joint@", lua_text(chosen.joint->name)},
-      {"@path@", lua_text("joints." + chosen.joint->name + ".position_rad")},
+      {"@robot@", source_text(subject.robot_file)},
+      {"@joint@", source_text(chosen.joint->name)},
+      {"@path@", source_text("joints." + chosen.joint->name + ".position_rad")},
       {"@set@", chosen.set->name},
       {"@object@", chosen.object->name},
       {"@unit@", chosen.joint->type == JointType::prismatic ? "m" : "rad"},
       {"@home@", lua_number(home)},
       {"@way@", lua_number(chosen.aside)},
       {"@near@", lua_number(0.4 * far)},
-      {"@sign@", chosen.aside < 0 ? "-" : "+"},
+      {"@sign@", chosen.aside < 0 ? "-" : ""},
       {"@aside@", lua_number(far)},
       {"@least@", lua_number(0.001)},
       {"@most@", lua_number(chosen.most)},

@@ -44,6 +44,15 @@ void refuse_bad_name(const std::string& name, const std::string& what, const std
                                " letters, for example " + example});
 }
 
+std::string source_text(std::string_view text) {
+  std::string literal = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') literal += '\\';
+    if (static_cast<unsigned char>(c) >= ' ') literal += c;
+  }
+  return literal + "\"";
+}
+
 std::string filled_template(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values) {
   std::string result;
   while (!text.empty()) {

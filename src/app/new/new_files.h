@@ -26,6 +26,9 @@ void refuse_bad_name(const std::string& name, const std::string& what, const std
 
 std::string class_name_of(const std::string& name);  // "KneeDamper" of "knee_damper"
 
+// A text as a literal of C or Lua, in double quotes; without control characters.
+std::string source_text(std::string_view text);
+
 // The text with each "@name@" replaced by what stands beside it.
 std::string filled_template(std::string_view text, const std::vector<std::pair<std::string, std::string>>& values);
 

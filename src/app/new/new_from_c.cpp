@@ -1,6 +1,5 @@
 // `kadans new control-object NAME --from-c FOLDER`: a control object around C code that a tool has made. In the
-// templates
-// @type@ and @Name@ stand for its names, the others for what the code's own tables say.
+// templates @type@ and @Name@ stand for its names, the others for what the code's own tables say.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "kadans/signal/input_error.h"
 #include "new_files.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 #include "wrapped_object.h"
 
 namespace kadans {
@@ -224,20 +224,12 @@ void @type@_step(void *code, double time_s, double step_s, const double *inputs,
 }
 )";
 
-std::string c_text(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    if (static_cast<unsigned char>(c) >= ' ') result += c;
-  }
-  return result + "\"";
-}
-
 std::string table_rows(const std::vector<CodeValue>& values, const char* what) {
   std::string text;
   for (const CodeValue& value : values) {
     const std::string doc = value.doc.empty() ? what + value.name + "." : value.doc;
-    text += "    {" + c_text(value.name) + ", " + c_text(value.unit) + ", -1e6, 1e6, " + c_text(doc) + "},\n";
+    text += "    {" + source_text(value.name) + ", " + source_text(value.unit) + ", -1e6, 1e6, " + source_text(doc) +
+            "},\n";
   }
   return text;
 }
@@ -259,11 +251,7 @@ std::string value_references(const std::vector<CodeValue>& values, bool more) {
   return text + (more && !values.empty() ? ", " : "");
 }
 
-std::string decimal(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+std::string decimal(double value) { return printed("%.9g", value); }
 
 // The parameter array, where the code's headers do not declare it.
 std::string outer_arrays(const GeneratedCode& code) {
@@ -279,8 +267,8 @@ std::string_view adapter_template(GeneratedCode::Shape shape) {
 
 std::string example_options(const GeneratedCode& code) {
   std::string text;
-  for (const CodeValue& value : code.inputs) text += (text.empty() ? "" : ", ") + c_text(value.name) + ": \"...\"";
-  for (const CodeValue& value : code.outputs) text += ", " + c_text(value.name) + ": \"...\"";
+  for (const CodeValue& value : code.inputs) text += (text.empty() ? "" : ", ") + source_text(value.name) + ": \"...\"";
+  for (const CodeValue& value : code.outputs) text += ", " + source_text(value.name) + ": \"...\"";
   return text;
 }
 

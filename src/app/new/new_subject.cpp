@@ -60,14 +60,18 @@ void choose_object(const Catalog& catalog, AsideJoint& found) {
 
 }  // namespace
 
+fs::path folder_of(const NewPartOptions& options) {
+  return options.folder.empty() ? fs::current_path() : fs::path(options.folder);
+}
+
+fs::path file_named(const fs::path& name, const fs::path& folder) {
+  std::error_code unknown;
+  return !fs::exists(name, unknown) && fs::exists(folder / name, unknown) ? folder / name : name;
+}
+
 NewSubject read_subject(const NewPartOptions& options) {
-  const fs::path here = options.folder.empty() ? fs::current_path() : fs::path(options.folder);
-  fs::path file = options.robot;
-  if (file.empty()) {
-    file = only_robot(here, "--robot FILE");
-  } else if (std::error_code unknown; !fs::exists(file, unknown) && fs::exists(here / file, unknown)) {
-    file = here / file;
-  }
+  const fs::path here = folder_of(options);
+  const fs::path file = options.robot.empty() ? only_robot(here, "--robot FILE") : file_named(options.robot, here);
   NewSubject subject;
   subject.robot = read_robot(file);
   subject.project = project_root(file);

@@ -23,6 +23,11 @@ struct NewSubject {
   std::string behaviors_folder() const { return file().parent_path().filename().string(); }
 };
 
+// The folder that --in names, else the working directory.
+std::filesystem::path folder_of(const NewPartOptions& options);
+// A file that an option names, by its path from here or else from that folder.
+std::filesystem::path file_named(const std::filesystem::path& name, const std::filesystem::path& folder);
+
 // Throws InputError where there is no such robot, or it lies in no project or in another one than the options name.
 NewSubject read_subject(const NewPartOptions& options);
 

@@ -42,12 +42,10 @@ std::vector<fs::path> scenarios_of(const NewSubject& subject) {
   return found;
 }
 
-fs::path scenario_for(const NewPartOptions& options, const fs::path& here) {
+fs::path scenario_for(const NewPartOptions& options) {
+  const fs::path here = folder_of(options);
+  if (!options.scenario.empty()) return file_named(options.scenario, here);
   std::error_code ignored;
-  if (!options.scenario.empty()) {
-    if (fs::exists(options.scenario, ignored) || !fs::exists(here / options.scenario, ignored)) return options.scenario;
-    return here / options.scenario;
-  }
   const fs::path own = project_root(here / "x") / "config/scenarios" / (options.name + ".json");
   if (fs::exists(own, ignored)) return own;
   const NewSubject subject = read_subject(options);
@@ -105,8 +103,7 @@ void add_new_sweep(CLI::App& made, NewPartOptions& options) {
 
 int run_new_sweep(const NewPartOptions& options) {
   refuse_bad_name(options.name, "a sweep", "nudged");
-  const fs::path here = options.folder.empty() ? fs::current_path() : fs::path(options.folder);
-  const fs::path scenario_file = scenario_for(options, here);
+  const fs::path scenario_file = scenario_for(options);
   ScenarioConfig scenario = read_scenario_config(scenario_file);
   NewPartOptions of = options;
   if (of.robot.empty()) of.robot = scenario.robot;
