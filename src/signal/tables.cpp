@@ -11,6 +11,16 @@
 #include "number_text.h"
 
 namespace kadans {
+namespace {
+
+// Copies each run of `length` doubles to its place in the row.
+template <std::size_t length>
+void copy_runs(const auto& runs, std::span<double> row) noexcept {
+  for (const auto& [id, first] : runs) std::memcpy(&row[id], first, length * sizeof(double));
+}
+
+}  // namespace
+
 ParameterId ParameterTable::add(Parameter parameter, double* value, std::uint32_t owner) {
   if (!(parameter.min <= parameter.max)) throw std::invalid_argument("parameter " + parameter.name + ": empty range");
   if (!(std::isfinite(parameter.initial) && parameter.initial >= parameter.min && parameter.initial <= parameter.max)) {
@@ -130,12 +140,7 @@ SignalId SignalTable::add(Signal signal, const std::atomic<std::uint32_t>* sourc
 
 void SignalTable::gather(std::span<double> row) const noexcept {
   assert(row.size() == infos_.size());
-  [&]<std::size_t... less_1>(std::index_sequence<less_1...>) {
-    const auto copy = [&]<std::size_t length>(std::integral_constant<std::size_t, length>) {
-      for (const auto& [id, first] : runs_[length - 1]) std::memcpy(&row[id], first, length * sizeof(double));
-    };
-    (copy(std::integral_constant<std::size_t, less_1 + 1>{}), ...);
-  }
+  [&]<std::size_t... less_1>(std::index_sequence<less_1...>) { (copy_runs<less_1 + 1>(runs_[less_1], row), ...); }
   (std::make_index_sequence<run_max>{});
   for (const auto& [id, value] : bools_) row[id] = *value ? 1.0 : 0.0;
   for (const auto& [id, value] : choices_) row[id] = static_cast<double>(*value);

@@ -32,14 +32,6 @@ fs::path project(const std::string& more = "", const std::string& tags = "[]") {
 
 const std::string margin = "margin config/tulip/robot.json ";
 
-// The results of each value that was tried are in a folder of their own.
-std::size_t runs_in(const fs::path& folder) {
-  std::size_t count = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    count += entry.path().parent_path().filename() == "cases" ? 1 : 0;
-  return count;
-}
-
 }  // namespace
 
 TEST_CASE("Both directions of a quantity end at the bound of the check, and say which seed and check failed there") {
@@ -76,10 +68,10 @@ TEST_CASE(
                "joint.l_knee.position_rad + joint.r_knee.position_rad < 0.68"));
   const std::string command = margin + "short --quantity joint.l_knee.start_rad=0.01 --seeds 12 --json ";
   const Outcome one = run(command + "--jobs 1 --out one", folder);
-  const std::size_t runs = runs_in(folder / "one");
+  const std::size_t runs = results_in(folder / "one");
   const Outcome again = run(command + "--jobs 1 --out one", folder);
   CHECK(again.out == one.out);
-  CHECK(runs_in(folder / "one") == runs);
+  CHECK(results_in(folder / "one") == runs);
   const Outcome many = run(command + "--jobs 5 --out many", folder);
   CHECK(many.out == one.out);
   const Json up = Json::parse(one.out).at("scenarios").at(0).at("margins").at(1);

@@ -125,6 +125,13 @@ bool edit(const fs::path& file, const std::string& from, const std::string& to) 
   return true;
 }
 
+std::size_t results_in(const fs::path& folder) {
+  std::size_t count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    count += entry.path().parent_path().filename() == "cases" ? 1 : 0;
+  return count;
+}
+
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of('\n') + 1;
   const std::size_t begin = text.rfind('\n', end - 1) + 1;

@@ -57,6 +57,9 @@ void write(const std::filesystem::path& file, const std::string& text);
 // Replaces the first `from` in the file by `to`; false when it is not there.
 bool edit(const std::filesystem::path& file, const std::string& from, const std::string& to);
 
+// How many runs have their results below this folder, each in a folder "cases" of what it belongs to.
+std::size_t results_in(const std::filesystem::path& folder);
+
 // The last line that is not empty, without its end.
 std::string last_line(const std::string& text);
 

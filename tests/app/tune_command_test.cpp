@@ -38,13 +38,6 @@ return k.behavior "step" {
 
 const std::string plan = "tune config/tuning/plan.json ";
 
-std::size_t runs_in(const fs::path& folder) {
-  std::size_t count = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    count += entry.path().parent_path().filename() == "cases" ? 1 : 0;
-  return count;
-}
-
 }  // namespace
 
 TEST_CASE("The damping with the least squared error after a step is found where theory has it") {
@@ -62,11 +55,11 @@ TEST_CASE("The damping with the least squared error after a step is found where 
   CHECK(has(after, "\"l_knee.kd_Nms_per_rad\": "));
   CHECK(after.size() < before.size() + 60);  // one entry more
   CHECK(run("check t/robot.json", folder).exit_code == 0);
-  const std::size_t evaluated = runs_in(folder / "t");
+  const std::size_t evaluated = results_in(folder / "t");
   CHECK(evaluated == 2 + 6 * 5 * 2 + 2 * 4);
   const Outcome again = run(plan + "--out t --json", folder);  // nothing is left to run
   CHECK(again.out == outcome.out);
-  CHECK(runs_in(folder / "t") == evaluated);
+  CHECK(results_in(folder / "t") == evaluated);
 }
 
 TEST_CASE("Parts in a shared folder make the same search as one process, also when one of them was missing at first") {

@@ -113,12 +113,13 @@ class SetpointMotions {
   static SetpointState advance(Motion& motion, double dt_s) noexcept;
   static double remaining_s(const Motion& motion) noexcept;
 
-  const SetpointTable& setpoints_;
-  ControlSets& sets_;
   struct Shown {
     const ControlObject* object;  // null: it cannot be led
     std::uint32_t owner, channel;
   };
+
+  const SetpointTable& setpoints_;
+  ControlSets& sets_;
   std::vector<Motion> motions_;     // by SetpointId
   std::vector<Shown> shown_;        // likewise: those in the snapshot
   std::vector<SetpointId> active_;  // those under way
