@@ -88,8 +88,8 @@ inline void Estimator::update_joint(std::size_t joint, const JointSample& sample
   const bool timed = track.last_time_ns != 0 && sample.time_ns > track.last_time_ns;
   const double elapsed_s = timed ? seconds_between(track.last_time_ns, sample.time_ns) : track.elapsed_s;
   const bool position_ok = std::isfinite(sample.position_rad);
-  const bool motor_ok = std::isfinite(sample.motor_position_rad) && std::isfinite(sample.motor_effort_Nm);
-  health.finite = position_ok && motor_ok;
+  const bool effort_ok = std::isfinite(sample.motor_effort_Nm);
+  health.finite = position_ok && effort_ok && std::isfinite(sample.motor_position_rad);
   if (position_ok) {
     track.state.position_rad = sample.position_rad;
     track.state.velocity_rad_s = track.velocity.update(sample.position_rad, elapsed_s);
@@ -99,7 +99,7 @@ inline void Estimator::update_joint(std::size_t joint, const JointSample& sample
   if (track.spring_Nm_per_rad > 0) {
     const double deflection_rad = sample.motor_position_rad - sample.position_rad;
     if (std::isfinite(deflection_rad)) track.state.effort_Nm = track.spring_Nm_per_rad * deflection_rad;
-  } else if (std::isfinite(sample.motor_effort_Nm)) {
+  } else if (effort_ok) {
     track.state.effort_Nm = sample.motor_effort_Nm;
   }
 }

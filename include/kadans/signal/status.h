@@ -130,11 +130,23 @@ struct alignas(8) Snapshot {
   PowerStatus power;
 };
 
+// Numbered entries that `to` has, by their count, stay as they are.
+inline void copy_used(const SafetyStatus& from, SafetyStatus& to) noexcept {
+  to.level = from.level;
+  to.stopped = from.stopped;
+  to.lifts = from.lifts;
+  to.fault_count = from.fault_count;
+  to.first_fault = from.first_fault;
+  if (to.faults_raised == from.faults_raised) return;
+  to.faults_raised = from.faults_raised;
+  to.new_faults = from.new_faults;
+}
+
 inline void copy_used(const RobotStatus& from, RobotStatus& to) noexcept {
   to.base = from.base;
   to.foot_count = from.foot_count;
   copy_first(from.feet, from.foot_count, to.feet);
-  to.safety = from.safety;
+  copy_used(from.safety, to.safety);
   to.support = from.support;
   to.channel_count = from.channel_count;
   copy_first(from.channels, from.channel_count, to.channels);
@@ -146,6 +158,7 @@ inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
   to.transactions_applied = from.transactions_applied;
   to.commands_refused = from.commands_refused;
   to.control_sets = from.control_sets;
+  if (to.transactions_refused != from.transactions_refused) to.refusals = from.refusals;  // numbered, too
   to.transactions_refused = from.transactions_refused;
   copy_used(from.joints, to.joints);
   copy_used(from.status, to.status);
@@ -153,7 +166,6 @@ inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
   to.setpoint_count = from.setpoint_count;
   copy_first(from.objects, from.object_count, to.objects);
   copy_first(from.setpoints, from.setpoint_count, to.setpoints);
-  to.refusals = from.refusals;
   to.armed = from.armed;
   to.joystick = from.joystick;
   to.ball = from.ball;
