@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# same_bits.sh: all scenarios end with their golden hashes on this processor, and when the C library, which chooses its code
-# by the processor, is told that there is neither fused multiply-add nor AVX2.
+# same_bits.sh: all scenarios end with their golden hashes when the C library, which chooses its code by the processor, is
+# told that there is neither fused multiply-add nor AVX2. That they do on this processor as it is, app_test shows.
 set -euo pipefail
 cd "$KADANS_SOURCE_DIR"
 [ "$(uname -m)" = x86_64 ] || { echo "the golden hashes are those of x86_64"; exit 77; }
@@ -12,7 +12,4 @@ if grep -qw fma /proc/cpuinfo && [ "$(features "")" = "$(features $older_process
   exit 1
 fi
 
-for tunables in "" "$older_processor"; do
-  echo "GLIBC_TUNABLES=$tunables"
-  GLIBC_TUNABLES=$tunables "$KADANS_BINARY_DIR/kadans" test --golden
-done
+GLIBC_TUNABLES=$older_processor "$KADANS_BINARY_DIR/kadans" test --golden
