@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/live/record_meshes.h"
 #include "program.h"
 #include "telemetry/mcap/mcap_reader.h"
 
@@ -187,6 +188,21 @@ TEST_CASE("Records in a folder are numbered, go on in new files, and take no mor
       run("run config/tulip/robot.json --threads-on-virtual-time --duration 0.5 --record kept", project).exit_code ==
       0);
   CHECK(*numbers_in(project / "kept").rbegin() > *second.rbegin());
+}
+
+TEST_CASE("The meshes of a record are found where its URDF still lies as it was, and nowhere else") {
+  const fs::path project = project_copy("record_meshes"), urdf = project / "models/tulip/tulip.urdf";
+  REQUIRE(edit(urdf, "<link name=\"torso\">",
+               "<link name=\"torso\"><visual><geometry><mesh filename=\"plate.stl\"/></geometry></visual>"));
+  write(project / "models/tulip/plate.stl", "solid plate");
+  run("sim config/scenarios/squat.json --duration 0.05 --record run.mcap", project);
+  const std::string record = (project / "run.mcap").string();
+  const auto read = meshes_of_record(record);
+  REQUIRE(read("plate.stl") != nullptr);
+  CHECK(*read("plate.stl") == "solid plate");
+  CHECK(read("../tulip/tulip.urdf") == nullptr);
+  REQUIRE(edit(urdf, "plate.stl", "other.stl"));
+  CHECK(meshes_of_record(record)("plate.stl") == nullptr);
 }
 
 }  // namespace record_test

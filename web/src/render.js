@@ -28,7 +28,6 @@ export async function render_record(session, wanted) {
     const stage = new Stage(canvas);
     stage.set_theme(wanted.get('theme') ?? 'light');
     stage.resize(Number(wanted.get('width') ?? 960), Number(wanted.get('height') ?? 720), 1);
-    session.mesh_base = './asset/';
     const show = new Show(stage);
     const times = times_of(session, wanted);
     session.seek(times[0]);

@@ -17,13 +17,9 @@
 #include "app/services.h"
 #include "app/terminal.h"
 #include "config/json/fields.h"
-#include "config/robot/project_root.h"
 #include "realtime/machine/child_process.h"
-#include "remote/page/live_content.h"
+#include "record_meshes.h"
 #include "remote/page/page_files.h"
-#include "signal/input_file.h"
-#include "telemetry/mcap/mcap_reader.h"
-#include "telemetry/record/run_inputs.h"
 
 namespace kadans {
 
@@ -154,34 +150,6 @@ class Frames {
   bool done_ = false;
 };
 
-// The meshes that the record's URDFs name, where these URDFs still lie as they were: in the project of its scenario, in
-// that around the working directory, or in that around the record. nullptr: there are none. Throws InputError for a
-// file that is no record.
-std::unique_ptr<LiveAssets> meshes_of(const std::string& record) {
-  McapReader reader(record);
-  McapMessage first;
-  (void)reader.next(first);  // what comes before it is read now
-  const RunInputs inputs = read_inputs(reader, record);
-  RobotTexts texts;
-  std::string urdf_file;
-  for (const InputFile& input : inputs.files) {
-    if (!input.text || !(input.path.ends_with(".urdf") || input.path.ends_with(".URDF"))) continue;
-    for (const fs::path& near : {fs::path(inputs.fact("scenario")), fs::current_path() / "x", fs::absolute(record)}) {
-      const fs::path file = project_root(near) / input.path;
-      std::error_code error;
-      if (!fs::is_regular_file(file, error) || content_hash(read_input_file(file.string())) != input.hash) continue;
-      if (urdf_file.empty()) {
-        texts.urdf = *input.text;
-        urdf_file = file.string();
-      } else {
-        texts.others.push_back({.name = "", .urdf = *input.text, .file = file.string()});
-      }
-      break;
-    }
-  }
-  return urdf_file.empty() ? nullptr : std::make_unique<LiveAssets>(texts, urdf_file);
-}
-
 std::string address_of(const PictureOptions& options, const LiveServer& server) {
   const std::string url = server.url() + "&record=record.mcap&render=1&theme=" + options.theme +
                           "&width=" + std::to_string(options.width) + "&height=" + std::to_string(options.height);
@@ -198,13 +166,12 @@ std::string pictures_missing() {
 void draw_record(const PictureOptions& options,
                  const std::function<void(const std::string& name, std::string bytes)>& take) {
   if (const std::string missing = pictures_missing(); !missing.empty()) throw InputError({.message = missing});
-  const std::unique_ptr<LiveAssets> meshes = meshes_of(options.record);
   Frames frames;
   LiveServer server(
       {.port = 0, .token = "", .hosts = {}}, nullptr,
       {.file = std::filesystem::absolute(options.record).string(),
        .take_frame = [&frames](const std::string& name, const std::string& bytes) { frames.take(name, bytes); },
-       .read_mesh = [&meshes](std::string_view name) { return meshes ? meshes->read(name) : nullptr; }});
+       .read_mesh = meshes_of_record(options.record)});
   server.start();
   Chromium chromium(find_chromium(), address_of(options, server), options.width, options.height);
   for (std::vector<Frames::Frame> got = frames.next(chromium); !got.empty(); got = frames.next(chromium)) {

@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
+#include "record_meshes.h"
 #include "remote/page/page_files.h"
 #include "signal/input_file.h"
 
@@ -48,7 +49,8 @@ int run_view(const ViewOptions& options) {
   if (!file.empty()) check_input_file(file);
   LiveServer server(
       {.address = options.live.address, .port = options.live.port_number(), .token = "", .hosts = options.live.hosts},
-      nullptr, {.file = file.string(), .take_frame = {}});
+      nullptr,
+      {.file = file.string(), .take_frame = {}, .read_mesh = file.empty() ? nullptr : meshes_of_record(file.string())});
   catch_interrupts();
   server.start();
   const std::string shown = file.empty() ? "empty" : "record=record.mcap&title=" + in_url(file.filename().string());

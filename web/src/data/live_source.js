@@ -156,7 +156,6 @@ class Remote {
 export function open_live(run) {
   const session = new Session('live', true);
   session.status = 'connecting…';
-  session.mesh_base = './asset/';
   session.remote = new Remote(session, run);
   return session;
 }

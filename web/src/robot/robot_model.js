@@ -18,6 +18,8 @@ function masses_of(robot) {
   return masses;
 }
 
+const meshes_at = './asset/'; // by the names that the URDF has for them, with package:// or without
+
 // In place of a mesh that is not there, or of a kind that nothing here reads. Whatever that mesh's scale is.
 const marker_m = 0.05;
 function mark(material, done) {
@@ -27,12 +29,12 @@ function mark(material, done) {
 }
 
 export class RobotModel {
-  // `mesh_base`: where package:// leads to. Not `fine`: without gloss. `prefix`: with which the robot's signals begin.
-  constructor(urdf, mesh_base, fine, prefix = '') {
+  // Not `fine`: without gloss. `prefix`: with which the robot's signals begin.
+  constructor(urdf, fine, prefix = '') {
     this.prefix = prefix;
     const loader = new URDFLoader();
-    loader.packages = (name) => `${mesh_base}${name}`;
-    loader.workingPath = mesh_base; // of names that are relative to the URDF
+    loader.packages = (name) => `${meshes_at}${name}`;
+    loader.workingPath = meshes_at; // of names that are relative to the URDF
     const meshes = [];
     loader.loadMeshCb = (path, manager, material, done) => {
       const come = (resolve) => {

@@ -22,9 +22,8 @@ export class Show {
     const same_robot = this.session === session && this.urdf === session.urdf;
     Object.assign(this, { session, urdf: session.urdf, description: session.description, key });
     if (!session.urdf) return;
-    const mesh_base = session.mesh_base ?? './assets/';
-    this.model = new RobotModel(session.urdf, mesh_base, this.stage.fine);
-    this.others = [...session.others].map(([name, urdf]) => new RobotModel(urdf, mesh_base, this.stage.fine, `${name}.`));
+    this.model = new RobotModel(session.urdf, this.stage.fine);
+    this.others = [...session.others].map(([name, urdf]) => new RobotModel(urdf, this.stage.fine, `${name}.`));
     const { model } = this;
     model.complete?.then(() => {
       if (this.model !== model) return;
