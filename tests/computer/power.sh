@@ -15,10 +15,10 @@ log=$work/log base=$work/base.img progress=$work/progress
 
 # entries NAME: a line with what the machine had reached by then.
 note() { echo "$(python3 tests/computer/power_log.py count "$log") $*" >>"$progress"; }
-# The record that is written and the run's time, then the entries.
+# The record that is written, which no dump of the flight recorder is, and the run's time, then the entries.
 note_run() {
   local now
-  now=$(guest "ls $records | tail -n 1; kadans ctl status" 2>/dev/null | awk 'NR == 1 {file = $1; next} /^tulip/ {sub(/,$/, "", $5); print file, $5}') || return 0
+  now=$(guest "ls $records | grep -v _flight | tail -n 1; kadans ctl status" 2>/dev/null | awk 'NR == 1 {file = $1; next} /^tulip/ {sub(/,$/, "", $5); print file, $5}') || return 0
   [ -z "$now" ] || note record "$now"
 }
 run_for() {

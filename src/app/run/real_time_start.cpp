@@ -16,7 +16,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{3} << 19U;
+constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{1} << 20U;
 
 }  // namespace
 
