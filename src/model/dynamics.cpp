@@ -15,7 +15,6 @@
 #include <Eigen/Geometry>
 #include <kdl/tree.hpp>
 #include <kdl/treeidsolver_recursive_newton_euler.hpp>
-#include <kdl/treejnttojacsolver.hpp>
 
 namespace kadans {
 namespace {
@@ -144,10 +143,8 @@ struct Dynamics::Tree {
   KDL::Tree tree;
   std::vector<Part> parts;  // one a link
   KDL::TreeIdSolver_RNE newton_euler{tree, KDL::Vector::Zero()};
-  KDL::TreeJntToJacSolver jacobian_solver{tree};
   KDL::JntArray position{tree.getNrOfJoints()}, velocity{position}, acceleration{position};
   KDL::JntArray force{position};
-  KDL::Jacobian jacobian{tree.getNrOfJoints()};
   const KDL::WrenchMap no_push;
   Matrix3d base;  // its axes in the world
 };
@@ -218,19 +215,28 @@ void Dynamics::gravity_gradient(Eigen::Ref<Eigen::MatrixXd> gradient) const noex
   }
 }
 
+// Not KDL's solver: it numbers the joints of its copy of the tree anew, depth first, whatever the model's order is.
 void Dynamics::link_jacobian(std::size_t link, const Vec3& point_in_link_m,
                              Eigen::Ref<Eigen::MatrixXd> jacobian) const noexcept {
-  Tree& tree = *tree_;
-  tree.jacobian_solver.JntToJac(tree.position, tree.jacobian, segment(link));
-  const Matrix3d to_base = tree.base.transpose();
-  const Quat& q = kinematics_.link(link).orientation;
-  const Vector3d arm = to_base * vector(rotate(q, point_in_link_m));
-  tree.jacobian.changeRefPoint(KDL::Vector(arm.x(), arm.y(), arm.z()));
-  jacobian.topRows<3>().noalias() = tree.base * tree.jacobian.data.topRows<3>().rightCols(jacobian.cols());
-  jacobian.bottomRows<3>().noalias() = tree.base * tree.jacobian.data.bottomRows<3>().rightCols(jacobian.cols());
+  const Vector3d point = vector(transform(kinematics_.link(link), point_in_link_m));
+  const auto turn = [&](Index column, const Vector3d& axis, const Pose& about) {
+    jacobian.col(column) << axis.cross(point - vector(about.position_m)), axis;
+  };
+  jacobian.setZero();
+  for (std::size_t i = link; i > 0; i = model_->joints[i - 1].parent) {
+    const Joint& joint = model_->joints[i - 1];
+    const Vector3d axis = vector(rotate(kinematics_.link(i).orientation, joint.axis));
+    const auto column = static_cast<Index>(base_size_ + i - 1);
+    if (joint.type == JointType::prismatic)
+      jacobian.col(column).head<3>() = axis;
+    else
+      turn(column, axis, kinematics_.link(i));
+  }
   if (base_size_ == 0) return;
-  jacobian.block<6, 3>(0, 0) *= to_base;
-  jacobian.block<6, 3>(0, 3) *= to_base;
+  for (Index k = 0; k < 3; ++k) {
+    jacobian(k, k) = 1;
+    turn(3 + k, Vector3d::Unit(k), kinematics_.link(0));
+  }
 }
 
 void Dynamics::com_jacobian(Eigen::Ref<Eigen::MatrixXd> jacobian) const noexcept {

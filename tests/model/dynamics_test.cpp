@@ -160,6 +160,33 @@ TEST_CASE("Dynamics refuses rotors that are not one a joint") {
                        "rotor_inertia_kg_m2 has 1 values, the model has 7 joints", std::invalid_argument);
 }
 
+TEST_CASE("A Jacobian's columns are the model's joints when its branches are numbered across each other") {
+  RobotModel model;
+  model.links.resize(5);
+  for (const std::size_t parent : {0U, 0U, 1U, 2U}) {
+    Joint& joint = model.joints.emplace_back();
+    joint.parent = parent;
+    joint.axis = {0, 1, 0};
+    joint.origin.position_m = {0, parent == 0 ? 0.1 * static_cast<double>(model.joints.size()) : 0.0, -0.3};
+  }
+  Dynamics dynamics(model);
+  const std::vector<double> at{0.1, 0.2, 0.3, 0.4}, still(4);
+  MatrixXd jacobian(6, 4);
+  for (std::size_t link = 0; link < 5; ++link) {
+    dynamics.update(at, still, {});
+    dynamics.link_jacobian(link, {0, 0, -0.2}, jacobian);
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::vector<double> less = at, more = at;
+      less[i] -= 1e-6, more[i] += 1e-6;
+      dynamics.update(less, still, {});
+      const Eigen::Vector3d before = point_of(dynamics, link, {0, 0, -0.2});
+      dynamics.update(more, still, {});
+      const Eigen::Vector3d moves = (point_of(dynamics, link, {0, 0, -0.2}) - before) / 2e-6;
+      CHECK((moves - jacobian.block<3, 1>(0, static_cast<Index>(i))).norm() < 1e-8);
+    }
+  }
+}
+
 TEST_CASE("Dynamics allocates nothing once it is made") {
   const RobotModel model = tulip();
   Dynamics dynamics(model, {.base = Dynamics::Base::floating});

@@ -155,6 +155,30 @@ TEST_CASE("What is bolted down hangs on a link of the name world, and several ar
   CHECK(model.joints[1].origin.position_m == Vec3{0, -1, 0});
 }
 
+TEST_CASE("An MJCF without actuators has the motors that its joints' ranges of force say") {
+  const test::TemporaryFolder files;
+  const std::string body = R"(<mujoco><compiler angle="radian"/><worldbody>
+    <body><joint name="j1" actuatorfrcrange="-3 4"/><geom size="0.1" pos="1 0 0"/>
+    <body><joint name="j2"/><geom size="0.1" pos="1 0 0"/></body></body></worldbody>)";
+  const RobotModel model = model_of(read_mjcf(files.write("bare.xml", body + "</mujoco>")));
+  CHECK(model.joints[0].effort_max_Nm == 4);
+  CHECK(model.joints[1].effort_max_Nm == 0);
+  const std::string motor = "<actuator><motor joint=\"j2\" ctrlrange=\"-1 1\"/></actuator></mujoco>";
+  CHECK(model_of(read_mjcf(files.write("driven.xml", body + motor))).joints[0].effort_max_Nm == 0);
+}
+
+TEST_CASE("A motor of a joint that was refused is not told as well") {
+  const test::TemporaryFolder files;
+  const std::string text = R"(<mujoco><worldbody><body><joint name="a"/><joint name="b" axis="0 1 0"/><geom size="0.1"/>
+    </body></worldbody><actuator><motor joint="b"/></actuator></mujoco>)";
+  try {
+    (void)read_mjcf(files.write("two.xml", text));
+    FAIL_CHECK("accepted");
+  } catch (const InputError& error) {
+    CHECK(std::string(error.what()).find("which does not exist") == std::string::npos);
+  }
+}
+
 TEST_CASE("What a file includes is read in its place, and problems are told of the file that they stand in") {
   const test::TemporaryFolder files;
   files.write("parts.xml", "<mujocoinclude>\n<default>\n  <geom density=\"-x\"/>\n</default>\n</mujocoinclude>");

@@ -152,6 +152,8 @@ TEST_CASE("A package is where it is said to be, where ROS says, or where a packa
   CHECK(find_urdf_file("model://shell/meshes/a.stl", urdf) == own);
   CHECK(find_urdf_file("package:///shell/meshes/a.stl", urdf) == own);
   CHECK_FALSE(find_urdf_file("package://other/meshes/a.stl", urdf));
+  const std::string cloned = place.write("clone/meshes/b.stl", "solid");  // under a name that is not the package's
+  CHECK(find_urdf_file("package://other/meshes/b.stl", place.write("clone/urdf/b.urdf", "")) == cloned);
 }
 
 TEST_CASE(

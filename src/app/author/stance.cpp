@@ -98,19 +98,19 @@ class Body {
       const Vector3d size = resting(link, turn).sizes();
       return size.x() * size.y();
     };
+    std::vector<std::pair<int, int>> turns;  // the nearest first
+    for (int roll = -most_deg; roll <= most_deg; ++roll)
+      for (int pitch = -most_deg; pitch <= most_deg; ++pitch) turns.emplace_back(roll, pitch);
+    std::ranges::stable_sort(turns, {},
+                             [](const auto& turn) { return turn.first * turn.first + turn.second * turn.second; });
     Quat best{1, 0, 0, 0};
     double best_m2 = clearly * area(best);
-    for (int distance = 1; distance <= most_deg; ++distance) {  // the nearest first
-      for (int roll = -distance; roll <= distance; ++roll) {
-        const int step = std::abs(roll) == distance ? 1 : 2 * distance;
-        for (int pitch = -distance; pitch <= distance; pitch += step) {
-          const Quat turn = from_roll_pitch_yaw(roll * deg, pitch * deg, 0);
-          const double m2 = area(turn);
-          if (m2 <= best_m2) continue;
-          best = turn;
-          best_m2 = 1.01 * m2;
-        }
-      }
+    for (const auto& [roll, pitch] : turns) {
+      const Quat turn = from_roll_pitch_yaw(roll * deg, pitch * deg, 0);
+      const double m2 = area(turn);
+      if (m2 <= best_m2) continue;
+      best = turn;
+      best_m2 = 1.01 * m2;
     }
     return best;
   }
@@ -257,11 +257,13 @@ class StanceSearch {
 
   double within(std::size_t i, double wanted, double margin_share) const {
     const Joint& joint = model_.joints[i];
-    const bool bounded = std::isfinite(joint.lower_rad) && std::isfinite(joint.upper_rad);
-    const double range = joint.upper_rad - joint.lower_rad;
+    const double lower = std::max(joint.lower_rad, joint.soft_lower_rad);
+    const double upper = std::min(joint.upper_rad, joint.soft_upper_rad);
+    const bool bounded = std::isfinite(lower) && std::isfinite(upper);
+    const double range = upper - lower;
     // The safety layer's soft stops begin 0.03 rad before the limits.
     const double margin = bounded ? std::min(std::max(margin_share * range, 0.06), 0.25 * range) : 0;
-    return std::clamp(wanted, joint.lower_rad + margin, joint.upper_rad - margin);
+    return std::clamp(wanted, lower + margin, upper - margin);
   }
 
   void find_legs() {

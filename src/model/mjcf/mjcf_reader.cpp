@@ -268,6 +268,9 @@ class MjcfReader {
                            " joints of its own: write a body of a small mass and inertia for each of them but the "
                            "last, one inside of the other",
                        "several joints");
+    for (std::size_t i = 1; i < joints.size(); ++i) {
+      if (const char* const name = joints[i]->Attribute("name"); name != nullptr) refused_joints_.insert(name);
+    }
     Frame own{number, {}, e.class_name()};
     if (!joints.empty()) {
       const Vec3 anchor = vec3(element(*joints[0], own.of_class).numbers("pos", 3, 3, {0, 0, 0}));
@@ -490,7 +493,7 @@ class MjcfReader {
     std::vector<std::string> names;
     for (const UrdfJoint& each : robot_.joints)
       if (each.moves) names.push_back(each.name);
-    if (joint == nullptr)
+    if (joint == nullptr && !refused_joints_.contains(given->text))
       document_.refuse(given->at, "<" + shown(e.name()) + "> is of joint " + shown_quoted(given->text) +
                                       ", which does not exist" + did_you_mean(given->text, names));
     return joint;
@@ -579,11 +582,14 @@ class MjcfReader {
     return std::min(force, gain * larger(e.numbers("ctrlrange", 2, 2, {0, 0})));
   }
 
+  // An MJCF without actuators, driven by the program around it, says what its joints' motors give by their ranges.
   void bound_efforts() {
+    const bool driven =
+        std::ranges::any_of(robot_.joints, [](const UrdfJoint& joint) { return joint.joint.effort_max_Nm > 0; });
     for (UrdfJoint& joint : robot_.joints) {
       double& effort = joint.joint.effort_max_Nm;
-      if (const auto most = joint_most_.find(joint.name); most != joint_most_.end() && effort > 0)
-        effort = std::min(effort, most->second);
+      if (const auto most = joint_most_.find(joint.name); most != joint_most_.end() && (effort > 0 || !driven))
+        effort = driven ? std::min(effort, most->second) : most->second;
       if (!std::isinf(effort)) continue;
       document_.warn(joint.at,
                      "joint " + shown_quoted(joint.name) +
@@ -622,7 +628,7 @@ class MjcfReader {
   std::map<std::string, Material> materials_;
   std::map<std::string, std::vector<std::pair<std::string, double>>> tendons_;  // joints and their shares
   std::map<std::string, double> joint_most_;                                    // actuatorfrcrange
-  std::set<std::string> link_names_, joint_names_;
+  std::set<std::string> link_names_, joint_names_, refused_joints_;
   std::vector<Address> addresses_;
   std::size_t positions_ = 0, moving_ = 0;
 };

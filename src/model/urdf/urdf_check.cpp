@@ -42,9 +42,9 @@ class TreeCheck {
   }
 
  private:
-  void refuse(std::size_t at, std::string message) {
+  void refuse(std::size_t at, std::string message, std::string_view kind = {}) {
     sound_ = false;
-    document_.refuse(at, std::move(message));
+    document_.refuse(at, std::move(message), kind);
   }
 
   template <typename Item>
@@ -135,8 +135,10 @@ class TreeCheck {
     for (const UrdfJoint& joint : robot_.joints) {
       const std::string& child = joint.child.link;
       if (!joint.moves || bodies.contains(child)) continue;
-      refuse(links_.at(child)->at, "link " + shown_quoted(child) + " moves on joint " + shown_quoted(joint.name) +
-                                       " but has no mass: it, or a link fixed to it, needs an <inertial>");
+      refuse(links_.at(child)->at,
+             "link " + shown_quoted(child) + " moves on joint " + shown_quoted(joint.name) +
+                 " but has no mass: it, or a link fixed to it, needs an <inertial>",
+             "no mass");
     }
     for (const UrdfLink& link : robot_.links) {
       if (link.inertia) check_inertia(link, bodies.at(tops_.at(link.name)));

@@ -79,6 +79,11 @@ std::optional<std::string> in_package(std::string_view name, const fs::path& sta
   }
   for (fs::path folder = start;; folder = folder.parent_path()) {
     if (auto found = in_folder(folder, package, inside)) return found;
+    if (folder == folder.parent_path()) break;
+  }
+  // A copy of the package whose folder has another name, and no package.xml that says it is another one.
+  for (fs::path folder = start;; folder = folder.parent_path()) {
+    if (auto found = if_file(folder / inside); found && package_in(folder).empty()) return found;
     if (folder == folder.parent_path()) return std::nullopt;
   }
 }
