@@ -2,6 +2,8 @@
 // for an object that balances it.
 #pragma once
 
+#include <utility>
+
 #include "kadans/control/object_options.h"
 #include "kadans/model/robot_model.h"
 #include "tested_object.h"
@@ -46,7 +48,7 @@ inline constexpr double biped_com_height_m = (10 * 0.7 + 2 * 0.25) / 12;  // ove
 template <class Object>
 class BalanceBench : public TestedObject {
  public:
-  BalanceBench() { declare(object, 4); }
+  explicit BalanceBench(RobotModel robot = biped()) : model(std::move(robot)) { declare(object, 4); }
 
   void step() { object.step(input(), computed); }
   void settle() {
@@ -64,7 +66,7 @@ class BalanceBench : public TestedObject {
   double hip_Nm() const { return effort_Nm(0); }
   double ankle_Nm(std::size_t joint = 1) const { return effort_Nm(joint); }
 
-  RobotModel model = biped();
+  RobotModel model;
   Object object{{.model = model, .joints = {0, 1, 2, 3}, .options = biped_feet}};
 };
 

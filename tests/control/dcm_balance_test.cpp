@@ -19,7 +19,7 @@ namespace {
 constexpr double weight_N = kadans::test::biped_weight_N, com_height_m = kadans::test::biped_com_height_m;
 
 struct Bench : kadans::test::BalanceBench<DcmBalance> {
-  Bench() {
+  explicit Bench(RobotModel robot = biped()) : BalanceBench(std::move(robot)) {
     set("offset_x_m", 0);
     set("hip_Nm_per_m", 300);
   }
@@ -97,6 +97,16 @@ TEST_CASE("DcmBalance gives no torque when something is not measured, or the rob
   CHECK(bench.ankle_Nm() == 0);
 }
 
+TEST_CASE("DcmBalance turns a joint about -y the other way") {
+  RobotModel other = biped();
+  other.joints[1].axis = {0, -1, 0};
+  Bench plain, turned(std::move(other));
+  plain.lean(0.05);
+  turned.lean(0.05);
+  CHECK(turned.ankle_Nm() == -plain.ankle_Nm());
+  CHECK(turned.ankle_Nm(3) == plain.ankle_Nm(3));
+}
+
 TEST_CASE("DcmBalance does not allocate") {
   Bench bench;
   const ControlInput input = bench.input();
@@ -112,7 +122,9 @@ TEST_CASE("DcmBalance needs feet, and joints that have a part in balance") {
   CHECK_THROWS_WITH_AS(DcmBalance({.model = model, .joints = {0}}), "it needs the option 'left_foot': a foot's link",
                        OptionError);
   RobotModel other = biped();
-  other.joints[0].name = "l_wing";
+  other.joints[0].name = "l_wing";  // names do not matter
+  CHECK_NOTHROW(DcmBalance({.model = other, .joints = {0}, .options = biped_feet}));
+  other.joints[0].axis = {0, 0, 1};
   CHECK_THROWS_AS(DcmBalance({.model = other, .joints = {0}, .options = biped_feet}), std::invalid_argument);
 }
 

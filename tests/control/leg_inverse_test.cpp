@@ -29,7 +29,7 @@ Pose foot(const RobotModel& model, const LegInverse::Angles& angles_rad, bool ri
 
 TEST_CASE("LegInverse puts the ankle where it is told") {
   const RobotModel model = leg_robot();
-  const LegInverse left(model, all_axes(model), "l"), right(model, all_axes(model), "r");
+  const LegInverse left(model, all_axes(model), 5), right(model, all_axes(model), 10);
   for (const double yaw_rad : {-0.3, 0.0, 0.4}) {
     for (const Vec3 ankle_m : {Vec3{0.1, 0.05, -0.45}, Vec3{-0.2, 0.12, -0.4}, Vec3{0.3, -0.1, -0.35}}) {
       const LegInverse& leg = ankle_m[1] > 0 ? left : right;
@@ -41,7 +41,7 @@ TEST_CASE("LegInverse puts the ankle where it is told") {
 
 TEST_CASE("LegInverse keeps the foot's pitch parallel to the base, and the knee bent forward") {
   const RobotModel model = leg_robot();
-  const LegInverse leg(model, all_axes(model), "l");
+  const LegInverse leg(model, all_axes(model), 5);
   const LegInverse::Angles angles_rad = leg.angles({0.15, 0, -0.4}, 0);
   CHECK(angles_rad[knee] > 0);
   CHECK(angles_rad[hip_pitch] + angles_rad[knee] + angles_rad[ankle_pitch] == doctest::Approx(0));
@@ -50,7 +50,7 @@ TEST_CASE("LegInverse keeps the foot's pitch parallel to the base, and the knee 
 
 TEST_CASE("LegInverse brings a place too far within reach along its line") {
   const RobotModel model = leg_robot();
-  const LegInverse leg(model, all_axes(model), "r");
+  const LegInverse leg(model, all_axes(model), 10);
   const Vec3 at_m = foot(model, leg.angles({0.5, 0, -0.6}, 0), true).position_m;
   const double x_m = at_m[0] - leg.hip_m()[0], z_m = at_m[2] - leg.hip_m()[2];
   CHECK(x_m / z_m == doctest::Approx(0.5 / -0.6));
@@ -58,8 +58,22 @@ TEST_CASE("LegInverse brings a place too far within reach along its line") {
   CHECK(leg.longest_m() < test::thigh_m + test::shank_m);
 }
 
-TEST_CASE("LegInverse says which joint it misses") {
-  const RobotModel model = leg_robot();
+TEST_CASE("LegInverse finds its joints by their axes, and says what it misses") {
+  RobotModel model = leg_robot();
+  for (Joint& joint : model.joints) joint.name = "m" + joint.name.substr(2);
+  const LegInverse leg(model, all_axes(model), 10);
+  for (std::size_t i = 0; i < leg_joints; ++i) CHECK(leg.axis(i).joint == 5 + i);
   const std::vector<JointAxis> axes = joint_axes({.model = model, .joints = {0, 1, 2, 3}});
-  CHECK_THROWS_WITH_AS(LegInverse(model, axes, "l"), "a leg needs the joint l_ankle_pitch", std::invalid_argument);
+  CHECK_THROWS_WITH_AS(LegInverse(model, axes, 5), "the leg of l_foot needs a joint as ankle_pitch",
+                       std::invalid_argument);
+  model.joints[3].axis = {0, -1, 0};
+  CHECK_THROWS_WITH_AS(LegInverse(model, all_axes(model), 5),
+                       "the leg of l_foot: joint mknee turns the other way; z, x, y, y, y are needed",
+                       std::invalid_argument);
+  std::swap(model.joints[0].axis, model.joints[2].axis);
+  model.joints[3].axis = {0, 1, 0};
+  CHECK_THROWS_WITH_AS(LegInverse(model, all_axes(model), 5),
+                       "the leg of l_foot: joint mhip_roll comes before mhip_pitch; from the hip on, z, x, y, y, y are "
+                       "needed",
+                       std::invalid_argument);
 }

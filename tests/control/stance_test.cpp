@@ -187,6 +187,9 @@ TEST_CASE("Stance needs feet, and joints of legs or arms") {
   RobotModel other = biped();
   other.links.push_back(kadans::test::biped_link("wing", 1, 0));
   other.joints.push_back(kadans::test::biped_joint("l_wing", 0, {}));
+  CHECK_NOTHROW(
+      Stance({.model = other, .joints = {4}, .options = biped_feet}));  // it swings about y as a shoulder does
+  other.joints.back().axis = {1, 0, 0};
   CHECK_THROWS_AS(Stance({.model = other, .joints = {4}, .options = biped_feet}), std::invalid_argument);
 }
 

@@ -222,6 +222,44 @@ Json balance_json(const RobotModel& model, const StandingPose& stance) {
             {"smooth_s", 0.004}}}};
 }
 
+// Three legs or more share the weight and what rights the trunk. The gains were found on quadrupeds of many makers
+// (docs/own_robot.md).
+Json support_json(const RobotModel& model, const StandingPose& stance) {
+  double height_m = stance.com_m;  // over the ground, not over frames of feet that lie at the knees
+  for (const StandingFoot& foot : stance.feet) height_m += foot.below_m / static_cast<double>(stance.feet.size());
+  constexpr double most_Nm_per_rad = 5000, most_Nms_per_rad = 500;
+  const double mgh = 9.81 * model.mass_kg() * height_m;
+  Json joints = Json::array();
+  Json parameters = {{"share", 1},
+                     {"pull", 4},
+                     {"upright_Nm_per_rad", figures(std::min(most_Nm_per_rad, 0.8 * mgh))},
+                     {"upright_Nms_per_rad", figures(std::min(most_Nms_per_rad, 0.08 * mgh))},
+                     {"level_Nm_per_rad", figures(std::min(most_Nm_per_rad, 0.8 * mgh))},
+                     {"level_Nms_per_rad", figures(std::min(most_Nms_per_rad, 0.08 * mgh))},
+                     {"turn_Nms_per_rad", figures(std::min(most_Nms_per_rad, 0.04 * mgh))},
+                     {"smooth_s", 0.004}};
+  std::string links;
+  for (const StandingFoot& foot : stance.feet) {
+    const std::string& link = model.links[foot.link].name;
+    links += (links.empty() ? "" : " ") + link;
+    for (const std::size_t joint : foot.leg) {
+      if (!model.joints[joint].passive()) joints.push_back(model.joints[joint].name);
+    }
+    constexpr std::array<const char*, 3> axes{"x", "y", "z"};
+    for (std::size_t k = 0; k < 3; ++k) {
+      double middle_m = 0;
+      for (const Vec3& corner_m : foot.corners_m) middle_m += corner_m[k] / static_cast<double>(foot.corners_m.size());
+      parameters[link + "." + axes[k] + "_m"] = rounded(middle_m);
+    }
+  }
+  return {{"name", "balance"},
+          {"doc", "E: scaled by the robot's weight and height."},
+          {"type", "support_forces"},
+          {"joints", joints},
+          {"options", {{"feet", links}}},
+          {"parameters", parameters}};
+}
+
 // The motors of what hangs from the base: all of a robot that is held, else those that are in no leg.
 Json hanging_joints(const RobotModel& model, const StandingPose& stance, const Json& motors) {
   Json hanging = motors;
@@ -277,6 +315,8 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
            "Holds its joints, and carries the weight of what hangs.");
   if (stance.stands_on().size() == 2)
     sum_up(balance_json(model, stance), "Holds its joints, and keeps its centre of mass over its soles.");
+  else if (stance.stands_on().size() > 2 && stance.feet.size() <= max_feet)
+    sum_up(support_json(model, stance), "Holds its joints; its feet share the weight and what rights the trunk.");
   Json plant = {{"drives", drives}, {"fixed_base", bolted}, {"self_collision", true}};
   Json safety = Json::object();
   if (bolted) {
@@ -387,7 +427,8 @@ int run_new_robot(const NewRobotOptions& options) {
   const std::vector<JointHold> holds = hold_joints(model, stance);
   if (std::ranges::none_of(holds, [](const JointHold& hold) { return hold.stiffness_Nm_per_rad > 0; }))
     throw InputError(
-        {.file = options.urdf, .message = "no joint of it has a motor: <limit effort=...> says which torque it has"});
+        {.file = options.urdf,
+         .message = "no joint of it has a motor: <limit effort=...> says which torque it has, an MJCF's <actuator>"});
 
   Json robot = robot_json(description, name, stance, holds);
   const std::string srdf = options.srdf.empty() ? touching_srdf(model, name, stance) : read_input_file(options.srdf);

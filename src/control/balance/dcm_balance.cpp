@@ -14,20 +14,16 @@ double beyond(double error, double back, double front) noexcept { return error -
 
 DcmBalance::DcmBalance(const ObjectSetup& setup)
     : standing_(setup), weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {
+  const std::vector<JointPart> parts = leg_parts(setup.model, standing_.feet());
   for (JointAxis& axis : joint_axes(setup)) {
-    const Role role = role_of(axis.name);
-    parts_.push_back({.axis = std::move(axis), .role = role});
+    const JointPart& part = parts[axis.joint];
+    if (part.part != LegPart::ankle_pitch && part.part != LegPart::hip_pitch && part.part != LegPart::hip_roll &&
+        part.part != LegPart::swing)
+      throw std::invalid_argument("joint " + axis.name +
+                                  " has no part in balance: in a leg it is neither the first nor the last that turns "
+                                  "about y, nor the first about x; and it is no shoulder that turns about y");
+    parts_.push_back({.axis = std::move(axis), .part = part.part, .sign = part.sign});
   }
-}
-
-DcmBalance::Role DcmBalance::role_of(const std::string& joint) {
-  if (joint.ends_with("_ankle_pitch")) return Role::ankle_pitch;
-  if (joint.ends_with("_hip_pitch")) return Role::hip_pitch;
-  if (joint.ends_with("_hip_roll")) return Role::hip_roll;
-  if (joint.ends_with("_shoulder_pitch")) return Role::shoulder_pitch;
-  throw std::invalid_argument("joint " + joint +
-                              " has no part in balance: it is no *_ankle_pitch, *_hip_pitch, *_hip_roll or "
-                              "*_shoulder_pitch");
 }
 
 void DcmBalance::declare(Declaration& d) {
@@ -80,22 +76,23 @@ bool DcmBalance::measure(const ControlInput& input) noexcept {
   return stands;
 }
 
-double DcmBalance::law_Nm(Role role) const noexcept {
+double DcmBalance::law_Nm(LegPart part) const noexcept {
   const Config& c = config_;
   const State& s = state_;
-  switch (role) {
-    case Role::ankle_pitch: {
+  switch (part) {
+    case LegPart::ankle_pitch: {
       const double wanted_Nm = weight_N_ * c.ankle_per_m * (s.dcm_x_m - c.offset_x_m) / 2;
       return std::clamp(wanted_Nm, -c.ankle_max_Nm, c.ankle_max_Nm);
     }
-    case Role::hip_pitch:
+    case LegPart::hip_pitch:
       return -c.hip_Nm_per_m * s.beyond_x_m;
-    case Role::shoulder_pitch:
+    case LegPart::swing:
       return c.arm_Nm_per_m * s.beyond_x_m;
-    case Role::hip_roll:
+    case LegPart::hip_roll:
       return c.roll_Nm_per_m * s.beyond_y_m;
+    default:
+      return 0;
   }
-  return 0;
 }
 
 void DcmBalance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
@@ -104,7 +101,7 @@ void DcmBalance::step(const ControlInput& input, ActuationFrame& actuation) noex
   state_.share = stands ? state_.share + std::clamp(config_.share - state_.share, -most, most) : 0;
   const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
   for (Part& part : parts_) {
-    const double wanted_Nm = stands ? state_.share * law_Nm(part.role) : 0;
+    const double wanted_Nm = stands ? state_.share * part.sign * law_Nm(part.part) : 0;
     const double bounded_Nm = std::clamp(wanted_Nm, -part.axis.effort_max_Nm, part.axis.effort_max_Nm);
     part.effort_Nm = stands ? part.effort_Nm + smooth * (bounded_Nm - part.effort_Nm) : 0;
     actuation.joints[part.axis.joint] = {.effort_Nm = part.effort_Nm, .mode = ActuationMode::effort};

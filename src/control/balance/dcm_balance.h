@@ -11,7 +11,8 @@
 //
 // A foot that is pressed to its edge by torques without any delay chatters on the ground; smooth_s prevents that.
 //
-// Joints      of each side *_ankle_pitch, *_hip_pitch, *_hip_roll, *_shoulder_pitch, all or some.
+// Joints      of each leg the pitch of ankle and hip and the roll of the hip, and shoulders that turn about y, all or
+//             some: leg_parts.h says which are which.
 // Options     left_foot, right_foot: the links that stand; required.
 // Parameters  Config. `share` fades all torques in and out; a change by 1 takes 0.2 s.
 // Signals     State, and <joint>.effort_Nm.
@@ -25,6 +26,7 @@
 #include "dcm_measure.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/joint_axis.h"
+#include "leg_parts.h"
 
 namespace kadans {
 
@@ -63,15 +65,14 @@ class DcmBalance final : public ControlObject {
   const State& state() const noexcept { return state_; }
 
  private:
-  enum class Role : std::uint8_t { ankle_pitch, hip_pitch, hip_roll, shoulder_pitch };
   struct Part {
     JointAxis axis;
-    Role role = Role::ankle_pitch;
+    LegPart part = LegPart::none;
+    double sign = 1;
     double effort_Nm = 0;
   };
-  static Role role_of(const std::string& joint);
   bool measure(const ControlInput& input) noexcept;
-  double law_Nm(Role role) const noexcept;
+  double law_Nm(LegPart part) const noexcept;
 
   std::vector<Part> parts_;
   Standing standing_;

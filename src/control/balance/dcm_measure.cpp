@@ -21,10 +21,9 @@ std::size_t foot_of(const ObjectSetup& setup, const char* option) {
 
 }  // namespace
 
-BodyAhead::BodyAhead(const ObjectSetup& setup)
-    : feet_{foot_of(setup, "left_foot"), foot_of(setup, "right_foot")},
-      kinematics_(setup.model),
-      joint_count_(setup.model.joints.size()) {}
+std::array<std::size_t, 2> two_feet(const ObjectSetup& setup) {
+  return {foot_of(setup, "left_foot"), foot_of(setup, "right_foot")};
+}
 
 void BodyAhead::update(const ControlInput& input, const Quat& upright, double ahead_s) noexcept {
   std::array<double, max_joints> position_rad{};
@@ -41,8 +40,8 @@ Vec3 Standing::com_over_feet(const ControlInput& input, double ahead_s) noexcept
   const BaseStatus& base = input.status.base;
   body_.update(input, from_roll_pitch_yaw(base.roll_rad, base.pitch_rad, 0), ahead_s);
   const Vec3 com = body_.kinematics().com_m();
-  const Vec3& left = body_.foot(0).position_m;
-  const Vec3& right = body_.foot(1).position_m;
+  const Vec3& left = body_.kinematics().link(feet_[0]).position_m;
+  const Vec3& right = body_.kinematics().link(feet_[1]).position_m;
   return {com[0] - (left[0] + right[0]) / 2, com[1] - (left[1] + right[1]) / 2, com[2] - (left[2] + right[2]) / 2};
 }
 
@@ -72,15 +71,17 @@ bool DcmMeasure::update(const ControlInput& input) noexcept {
   upright_ = from_roll_pitch_yaw(base.roll_rad, base.pitch_rad, yaw_rad_);
   std::array<Vec3, 2> next_m{};
   body_.update(input, upright_, moment_s);
-  for (std::size_t i = 0; i < 2; ++i) next_m[i] = difference(body_.kinematics().com_m(), body_.foot(i).position_m);
+  for (std::size_t i = 0; i < 2; ++i)
+    next_m[i] = difference(body_.kinematics().com_m(), body_.kinematics().link(feet_[i]).position_m);
   body_.update(input, upright_, 0);
   com_m_ = body_.kinematics().com_m();
   for (std::size_t i = 0; i < 2; ++i) {
     OverFoot& over = over_[i];
-    over.foot_m = body_.foot(i).position_m;
-    const Vec3 toes = rotate(body_.foot(i).orientation, {1, 0, 0});
+    const Pose& foot = body_.kinematics().link(feet_[i]);
+    over.foot_m = foot.position_m;
+    const Vec3 toes = rotate(foot.orientation, {1, 0, 0});
     over.toe_up_m = toes[2];
-    over.left_up_m = rotate(body_.foot(i).orientation, {0, 1, 0})[2];
+    over.left_up_m = rotate(foot.orientation, {0, 1, 0})[2];
     over.yaw_rad = std::atan2(toes[1], toes[0]);
     over.com_m = difference(com_m_, over.foot_m);
     const Vec3 way_m = difference(next_m[i], over.com_m);

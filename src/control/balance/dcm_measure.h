@@ -22,24 +22,22 @@ inline constexpr double gravity_of_balance_m_s2 = 9.81;
 inline constexpr double lowest_com_m = 0.1;  // over the feet's frames; a robot does not stand below this
 inline constexpr double moment_s = 0.001;    // how far ahead velocities are computed
 
+// The links that the options left_foot and right_foot name. Throws OptionError.
+std::array<std::size_t, 2> two_feet(const ObjectSetup& setup);
+
 // The kinematics, now or a moment ahead. The state a moment ahead is the measured state, moved on with the filtered
 // joint velocities and the gyro. So the velocity of any point is the difference between the two, and no measured
 // position is differentiated.
 class BodyAhead {
  public:
-  // The feet are the links that the options left_foot and right_foot name. Throws OptionError. Keeps a reference to the
-  // model.
-  explicit BodyAhead(const ObjectSetup& setup);
+  explicit BodyAhead(const RobotModel& model) : kinematics_(model), joint_count_(model.joints.size()) {}
 
   // Puts the base's origin at 0 and turns the base by `upright` and by its rotation in ahead_s.
   void update(const ControlInput& input, const Quat& upright, double ahead_s) noexcept;
 
-  const Kinematics& kinematics() const noexcept { return kinematics_; }      // as of the last update
-  const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }  // links, left and right
-  const Pose& foot(std::size_t foot) const noexcept { return kinematics_.link(feet_[foot]); }
+  const Kinematics& kinematics() const noexcept { return kinematics_; }  // as of the last update
 
  private:
-  std::array<std::size_t, 2> feet_{};
   Kinematics kinematics_;
   std::size_t joint_count_;
 };
@@ -52,7 +50,7 @@ class Standing {
  public:
   // The feet are the links that the options left_foot and right_foot name. Throws OptionError. Keeps a reference to the
   // model.
-  explicit Standing(const ObjectSetup& setup) : body_(setup) {}
+  explicit Standing(const ObjectSetup& setup) : feet_(two_feet(setup)), body_(setup.model) {}
 
   // False when the robot does not stand, or a measurement is not finite.
   bool update(const ControlInput& input) noexcept;
@@ -61,13 +59,14 @@ class Standing {
   const Vec3& velocity_m_s() const noexcept { return velocity_m_s_; }  // of the centre of mass
   double dcm_x_m() const noexcept { return dcm_x_m_; }
   double dcm_y_m() const noexcept { return dcm_y_m_; }
-  const std::array<std::size_t, 2>& feet() const noexcept { return body_.feet(); }  // links, left and right
+  const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }  // links, left and right
   // As of the last update, the base's origin at 0.
   const Kinematics& kinematics() const noexcept { return body_.kinematics(); }
 
  private:
   Vec3 com_over_feet(const ControlInput& input, double ahead_s) noexcept;
 
+  std::array<std::size_t, 2> feet_;
   BodyAhead body_;
   Vec3 com_m_{}, velocity_m_s_{};
   double dcm_x_m_ = 0, dcm_y_m_ = 0;
@@ -88,7 +87,7 @@ class DcmMeasure {
   };
 
   // The feet are the links that the options left_foot and right_foot name. Throws OptionError.
-  explicit DcmMeasure(const ObjectSetup& setup) : body_(setup) {}
+  explicit DcmMeasure(const ObjectSetup& setup) : feet_(two_feet(setup)), body_(setup.model) {}
 
   // False when the robot does not stand, or a measurement is not finite.
   [[nodiscard]] bool update(const ControlInput& input) noexcept;
@@ -100,16 +99,17 @@ class DcmMeasure {
   void pass_state(StateBytes& bytes) noexcept { bytes(keeps_, heading_rad_); }  // all else is measured anew
   double yaw_rad() const noexcept { return yaw_rad_; }                          // of the base in the heading frame
 
-  const OverFoot& over(std::size_t foot) const noexcept { return over_[foot]; }     // 0 left, 1 right
-  const Quat& upright() const noexcept { return upright_; }                         // of the base in the heading frame
-  const Vec3& com_m() const noexcept { return com_m_; }                             // from the base's origin
-  const std::array<std::size_t, 2>& feet() const noexcept { return body_.feet(); }  // links, left and right
-  const Kinematics& kinematics() const noexcept { return body_.kinematics(); }      // the base's origin at 0
-  double rate_per_s() const noexcept { return rate_per_s_; }                        // w0
+  const OverFoot& over(std::size_t foot) const noexcept { return over_[foot]; }  // 0 left, 1 right
+  const Quat& upright() const noexcept { return upright_; }                      // of the base in the heading frame
+  const Vec3& com_m() const noexcept { return com_m_; }                          // from the base's origin
+  const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }      // links, left and right
+  const Kinematics& kinematics() const noexcept { return body_.kinematics(); }   // the base's origin at 0
+  double rate_per_s() const noexcept { return rate_per_s_; }                     // w0
 
  private:
   double dcm(std::size_t axis, const OverFoot& over) const noexcept;
 
+  std::array<std::size_t, 2> feet_;
   BodyAhead body_;
   std::array<OverFoot, 2> over_{};
   Quat upright_{1, 0, 0, 0};

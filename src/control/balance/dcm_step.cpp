@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "leg_parts.h"
+
 namespace kadans {
 namespace {
 
@@ -16,11 +18,19 @@ double distance_m(double thigh_m, double shank_m, double knee_rad) {
 
 }  // namespace
 
-LegInverse::LegInverse(const RobotModel& model, const std::vector<JointAxis>& axes, const std::string& side) {
+LegInverse::LegInverse(const RobotModel& model, const std::vector<JointAxis>& axes, std::size_t foot) {
+  constexpr std::array<LegPart, leg_joints> wanted{LegPart::hip_yaw, LegPart::hip_roll, LegPart::hip_pitch,
+                                                   LegPart::knee, LegPart::ankle_pitch};
+  const std::vector<JointPart> parts = leg_parts(model, {&foot, 1});
+  const std::string leg = "the leg of " + model.links[foot].name;
   for (std::size_t i = 0; i < leg_joints; ++i) {
-    const std::string name = side + "_" + leg_parts[i];
-    const auto found = std::find_if(axes.begin(), axes.end(), [&](const JointAxis& a) { return a.name == name; });
-    if (found == axes.end()) throw std::invalid_argument("a leg needs the joint " + name);
+    const auto found = std::ranges::find_if(axes, [&](const JointAxis& a) { return parts[a.joint].part == wanted[i]; });
+    if (found == axes.end()) throw std::invalid_argument(leg + " needs a joint as " + leg_joint_names[i]);
+    if (parts[found->joint].sign < 0)
+      throw std::invalid_argument(leg + ": joint " + found->name + " turns the other way; z, x, y, y, y are needed");
+    if (i > 0 && found->joint < axes_[i - 1].joint)
+      throw std::invalid_argument(leg + ": joint " + found->name + " comes before " + axes_[i - 1].name +
+                                  "; from the hip on, z, x, y, y, y are needed");
     axes_[i] = *found;
   }
   const auto origin_m = [&](LegJoint joint) { return model.joints[axes_[joint].joint].origin.position_m; };
@@ -56,7 +66,7 @@ constexpr double torso_over_hips = 0.6;                    // share of the weigh
 
 void LegGains::declare(Declaration& d) {
   for (std::size_t i = 0; i < leg_joints; ++i) {
-    const std::string name = leg_parts[i];
+    const std::string name = leg_joint_names[i];
     d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 2000, kp_Nm_per_rad[i], "Torque per position error."},
                 &kp_Nm_per_rad[i]);
     d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 200, kd_Nms_per_rad[i], "Torque per velocity error."},
@@ -247,8 +257,8 @@ std::unique_ptr<ControlObject> make_dcm_step(const ObjectSetup& setup) { return 
 DcmStep::DcmStep(const ObjectSetup& setup)
     : axes_(joint_axes(setup)),
       over_feet_(setup),
-      legs_{Leg{{.inverse = LegInverse(setup.model, axes_, "l")}},
-            Leg{{.inverse = LegInverse(setup.model, axes_, "r")}}},
+      legs_{Leg{{.inverse = LegInverse(setup.model, axes_, over_feet_.feet()[0])}},
+            Leg{{.inverse = LegInverse(setup.model, axes_, over_feet_.feet()[1])}}},
       weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {}
 
 Vec3 DcmStep::hip(std::size_t leg) const noexcept { return rotate(over_feet_.upright(), legs_[leg].inverse.hip_m()); }

@@ -15,7 +15,7 @@
 //               middle between the feet: PD, with the torques that bear each foot's load as feed-forward.
 // clang-format on
 //
-// Joints      of both legs *_hip_yaw, *_hip_roll, *_hip_pitch, *_knee, *_ankle_pitch.
+// Joints      of both legs those about z, x and y at the hip, the knee and the ankle about y (leg_parts.h).
 // Options     left_foot, right_foot: the links that stand; required. The foot sensors are in this order too.
 // Parameters  Config and StepPlan::Config. `enabled`: 0 lets go at once.
 // Signals     State of the plan.
@@ -42,16 +42,17 @@ namespace kadans {
 // The joints turn about z, x, y, y, y. So a bent knee is positive, and a hip pitch that lifts the thigh forward is
 // negative.
 enum LegJoint : std::size_t { hip_yaw, hip_roll, hip_pitch, knee, ankle_pitch, leg_joints };
-inline constexpr std::array<const char*, leg_joints> leg_parts{"hip_yaw", "hip_roll", "hip_pitch", "knee",
-                                                               "ankle_pitch"};
+inline constexpr std::array<const char*, leg_joints> leg_joint_names{"hip_yaw", "hip_roll", "hip_pitch", "knee",
+                                                                     "ankle_pitch"};
 
 class LegInverse {
  public:
   using Angles = std::array<double, leg_joints>;
 
-  // Finds the joints <side>_hip_yaw ... <side>_ankle_pitch among the axes and the lengths in the model; `side` is "l"
-  // or "r". Throws std::invalid_argument when a joint is missing, or the knee and the ankle do not lie below the hip.
-  LegInverse(const RobotModel& model, const std::vector<JointAxis>& axes, const std::string& side);
+  // Finds the joints of the leg that ends at the link `foot` among the axes (leg_parts.h), and the lengths in the
+  // model. Throws std::invalid_argument when a joint is missing or turns the other way, when the hip turns about other
+  // axes first, or when the knee and the ankle do not lie below the hip.
+  LegInverse(const RobotModel& model, const std::vector<JointAxis>& axes, std::size_t foot);
 
   // The angles that put the ankle at ankle_m, from the hip in the base frame, with the hip turned by yaw_rad and the
   // foot parallel to the base. A place that is too far or too near is moved into reach, along the line from the hip.

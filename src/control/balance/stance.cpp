@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "dcm_measure.h"
+#include "leg_parts.h"
 
 namespace kadans {
 namespace {
@@ -57,13 +58,16 @@ Stance::Stance(const ObjectSetup& setup)
     : standing_(setup),
       legs_{LegLoad(setup.model, standing_.feet()[0]), LegLoad(setup.model, standing_.feet()[1])},
       weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {
+  const std::vector<JointPart> parts = leg_parts(setup.model, standing_.feet());
   for (JointAxis& axis : joint_axes(setup)) {
-    const bool arm = axis.name.ends_with("_shoulder_pitch");
+    const JointPart& part = parts[axis.joint];
+    const bool arm = part.part == LegPart::swing;
     if (!arm && !bears(legs_[0].bearings(), axis.joint) && !bears(legs_[1].bearings(), axis.joint)) {
       throw std::invalid_argument("joint " + axis.name +
-                                  " has no part in a stance: no foot hangs on it, and it is no " + "*_shoulder_pitch");
+                                  " has no part in a stance: no foot hangs on it, and it is no shoulder that turns "
+                                  "about y");
     }
-    parts_.push_back({.axis = std::move(axis), .arm = arm});
+    parts_.push_back({.axis = std::move(axis), .arm = arm, .sign = part.sign});
   }
 }
 
@@ -229,7 +233,8 @@ void Stance::step(const ControlInput& input, ActuationFrame& actuation) noexcept
   const double arm_m = config_.arm_from_m;
   const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
   for (Part& part : parts_) {
-    if (part.arm) part.wanted_Nm = config_.arm_Nm_per_m * (s.beyond_x_m - std::clamp(s.beyond_x_m, -arm_m, arm_m));
+    if (part.arm)
+      part.wanted_Nm = part.sign * config_.arm_Nm_per_m * (s.beyond_x_m - std::clamp(s.beyond_x_m, -arm_m, arm_m));
     const double wanted_Nm = stands ? state_.share * part.wanted_Nm : 0;
     const double most_Nm = most_effort * part.axis.effort_max_Nm;
     const double bounded_Nm = std::clamp(wanted_Nm, -most_Nm, most_Nm);

@@ -24,7 +24,7 @@
 // stiffly works against the trunk and the soles: its gains have to be small there. A sole that is pressed to its edge
 // without any delay chatters on the ground; smooth_s prevents that.
 //
-// Joints      of each side, the leg joints that shall bear load, and *_shoulder_pitch.
+// Joints      of each side, the leg joints that shall bear load, and shoulders that turn about y.
 // Options     left_foot, right_foot: the links that stand; required.
 // Parameters  Config. `share` fades all torques in and out; a change by 1 takes 0.2 s.
 // Signals     State, and <joint>.effort_Nm.
@@ -118,6 +118,7 @@ class Stance final : public ControlObject {
   struct Part {
     JointAxis axis;
     bool arm = false;
+    double sign = 1;  // of an arm: -1 when it turns about -y
     double wanted_Nm = 0, effort_Nm = 0;
   };
   void declare_pressure(Declaration& declaration);

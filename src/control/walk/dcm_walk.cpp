@@ -30,13 +30,11 @@ enum Channel : std::uint32_t {
 
 }  // namespace
 
-DcmWalk::Leg DcmWalk::leg(const ObjectSetup& setup, const char* side, std::size_t foot) const {
-  Leg made{{.inverse = LegInverse(setup.model, axes_, side)}, LegLoad(setup.model, foot), {}};
+DcmWalk::Leg DcmWalk::leg(const ObjectSetup& setup, std::size_t foot) const {
+  Leg made{{.inverse = LegInverse(setup.model, axes_, foot)}, LegLoad(setup.model, foot), {}};
   for (std::size_t j = 0; j < leg_joints; ++j) {
     const auto bearings = made.load.bearings();
     const auto found = std::ranges::find(bearings, made.inverse.axis(j).joint, &LegLoad::Bearing::joint);
-    if (found == bearings.end())
-      throw std::invalid_argument(made.inverse.axis(j).name + " does not carry the foot of its side");
     made.bearing[j] = static_cast<std::size_t>(found - bearings.begin());
   }
   return made;
@@ -45,7 +43,7 @@ DcmWalk::Leg DcmWalk::leg(const ObjectSetup& setup, const char* side, std::size_
 DcmWalk::DcmWalk(const ObjectSetup& setup)
     : axes_(joint_axes(setup)),
       over_feet_(setup),
-      legs_{leg(setup, "l", over_feet_.feet()[0]), leg(setup, "r", over_feet_.feet()[1])},
+      legs_{leg(setup, over_feet_.feet()[0]), leg(setup, over_feet_.feet()[1])},
       weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {}
 
 void DcmWalk::declare(Declaration& d) {

@@ -14,7 +14,7 @@
 //   both bear   After the last step: the load is shared so that xi comes to rest in the middle.
 // clang-format on
 //
-// Joints      of both legs *_hip_yaw, *_hip_roll, *_hip_pitch, *_knee, *_ankle_pitch.
+// Joints      of both legs those about z, x and y at the hip, the knee and the ankle about y (leg_parts.h).
 // Options     left_foot, right_foot: the links that stand; required. The foot sensors are in this order too.
 // Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand; it reads 1 until it
 // stands.
@@ -78,7 +78,7 @@ class DcmWalk final : public ControlObject {
     std::array<std::size_t, leg_joints> bearing;  // the joint's place in load.bearings()
   };
 
-  Leg leg(const ObjectSetup& setup, const char* side, std::size_t foot) const;
+  Leg leg(const ObjectSetup& setup, std::size_t foot) const;
   void declare_plan(Declaration& declaration);
   void declare_kick(Declaration& declaration);
   void declare_signals(Declaration& declaration);
