@@ -96,3 +96,62 @@ TEST_CASE("A configuration that is there is not overwritten unasked, a wrong pla
   CHECK(wrong.exit_code == 2);
   CHECK(has(wrong.err, "did you mean 'control.posture.l_knee.kd_Nms_per_rad'?"));
 }
+
+namespace {
+
+// A program that scores: a bowl whose bottom is at x = 3, y = 10, and what it was asked last.
+fs::path bowl_project() {
+  const auto folder = project_copy("tune_program");
+  write(folder / "bowl.sh", R"(#!/bin/sh
+echo "$2 $3" >last_$1
+[ "${2#x=}" = 7 ] && exit 3
+echo "a line before"
+awk -v x="${2#x=}" -v y="${3#y=}" 'BEGIN { printf "{\"off\": %.9f}\n", (x - 3) ^ 2 + (log(y / 10)) ^ 2 }'
+)");
+  fs::permissions(folder / "bowl.sh", fs::perms::owner_all);
+  write(folder / "config/tuning/plan.json",
+        R"({"name": "bowl", "program": ["bowl.sh", "search"], "check_program": ["bowl.sh", "check"],
+            "tune": {"x": {"min": -10, "max": 10, "start": 0}, "y": {"min": 1, "max": 1000, "log": true, "start": 100}},
+            "population": 8, "generations": 25, "score": "off", "failed_score": 1000})");
+  return folder;
+}
+
+}  // namespace
+
+TEST_CASE("What a program scores is tuned to its optimum, and another program judges it") {
+  const auto folder = bowl_project();
+  const Outcome outcome = run(plan + "--json --write found.json", folder);
+  REQUIRE(outcome.exit_code == 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  CHECK(json["parameters"]["x"].get<double>() == doctest::Approx(3).epsilon(0.02));
+  CHECK(json["parameters"]["y"].get<double>() == doctest::Approx(10).epsilon(0.05));
+  CHECK(json["before"]["off"].get<double>() > 10);
+  CHECK(json["after"]["off"].get<double>() < 0.01);
+  CHECK(nlohmann::json::parse(read(folder / "found.json")) == json["parameters"]);
+  CHECK(fs::exists(folder / "last_check"));
+  CHECK(run(plan + "--json", folder).out == outcome.out);
+  const Outcome kept = run(plan + "--generations 1 --write found.json", folder);
+  CHECK(kept.exit_code == 2);
+  CHECK(has(kept.err, "--overwrite"));
+}
+
+TEST_CASE("A program that fails at the start ends the tuning, and a plan that mixes it with scenarios is refused") {
+  const auto folder = bowl_project();
+  const fs::path file = folder / "config/tuning/plan.json";
+  CHECK(has(run("check config/tuning/plan.json", folder).out, "2 parameters, 25 generations of 8 candidates"));
+  REQUIRE(edit(file, "\"start\": 0", "\"start\": 7"));
+  const Outcome fails = run(plan, folder);
+  CHECK(fails.exit_code == 2);
+  CHECK(has(fails.err, "ended with exit code 3"));
+  REQUIRE(edit(file, "\"score\": \"off\"", "\"score\": \"on\""));
+  REQUIRE(edit(file, "\"start\": 7", "\"start\": 1"));
+  CHECK(has(run(plan, folder).err, "gave no number on"));
+  CHECK(has(run(plan + "--shard 0/2", folder).err, "--shard is for tunings of scenarios"));
+  REQUIRE(edit(file, "\"program\"", "\"runs\": 3, \"scenarios\": [\"config/scenarios/squat.json\"], \"program\""));
+  REQUIRE(edit(file, ", \"start\": 100", ""));
+  const Outcome wrong = run("check config/tuning/plan.json", folder);
+  CHECK(wrong.exit_code == 2);
+  CHECK(has(wrong.err, "scenarios means nothing beside program"));
+  CHECK(has(wrong.err, "runs means nothing beside program"));
+  CHECK(has(wrong.err, "start is missing: a program has no configuration"));
+}

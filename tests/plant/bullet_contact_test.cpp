@@ -75,6 +75,24 @@ TEST_CASE("Soft ground without damping swings a box at its own frequency, and ga
   CHECK(0.015 - lowest_m > 1.8 * 4 * g / (4 * 1000));
 }
 
+TEST_CASE("Soft ground keeps its damping under what bounces elsewhere: a critically damped box does not hop") {
+  for (const double restitution : {0.0, 0.6}) {
+    Robot robot = box(4, {0.22, 0.1, 0.03});
+    robot.settings.ground_restitution = restitution;
+    robot.settings.ground_stiffness_N_per_m = 10000;
+    robot.settings.ground_damping_Ns_per_m = 200;  // of four corners: critical for 4 kg
+    robot.settings.stand_on_ground = false;
+    robot.settings.base.position_m = {0, 0, 0.215};
+    BulletWorld plant(robot.model, robot.settings, 1);
+    double highest_m = 0;
+    for (int tick = 0; tick < 1000; ++tick) {
+      plant.step(ms);
+      if (tick > 210) highest_m = std::max(highest_m, plant.truth().base.position_m[2]);
+    }
+    CHECK(highest_m < 0.016);
+  }
+}
+
 TEST_CASE("A ground that gives speed back lets a box hop, a hard one without does not") {
   for (const double restitution : {0.0, 0.6}) {
     Robot robot = box(4, {0.22, 0.1, 0.03});

@@ -53,7 +53,9 @@ void add_tune(CLI::App& app, TuneOptions& options) {
   tune->add_option("--out", options.out,
                    "Folder of the results; runs that have a result there are not run again (default: in tunings/)")
       ->type_name("FOLDER");
-  tune->add_option("--write", options.write, "File of the tuned configuration (default: robot.json in that folder)")
+  tune->add_option(
+          "--write", options.write,
+          "File of the tuned configuration (default: robot.json in that folder), or of the values for a program")
       ->type_name("FILE");
   tune->add_flag("--overwrite", options.overwrite, "Overwrite that file if it exists");
   tune->add_flag("--json", options.json, "Print one JSON object instead of text");
@@ -106,6 +108,10 @@ std::vector<TunedAxis> tuned_axes(const TunePlan& plan, const Robot& robot) {
 
 std::string check_tune_plan(const std::string& file, const PluginGate& gate) {
   const TunePlan plan = read_tune_plan(file);
+  if (!plan.program.empty()) {
+    return "tuning: " + std::to_string(plan.tune.size()) + " parameters, " + std::to_string(plan.generations) +
+           " generations of " + std::to_string(plan.population) + " candidates, scored by " + plan.program.front().name;
+  }
   const std::vector<SweepSubject> subjects = read_sweep_subjects(plan, gate);
   const std::size_t parameters = tuned_axes(plan, tuned_robot(plan, gate)).size();
   return "tuning: " + std::to_string(parameters) + " parameters, " + std::to_string(plan.generations) +

@@ -23,6 +23,7 @@
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
 #include "kadans/signal/random.h"
+#include "program_tuning.h"
 #include "signal/content_hash.h"
 #include "signal/durable_file.h"
 
@@ -33,7 +34,7 @@ namespace kadans {
 // generation.
 class Tuning {
  public:
-  explicit Tuning(const TuneOptions& options);
+  Tuning(const TuneOptions& options, TunePlan plan);  // keeps a reference to the options
 
   int run();
 
@@ -74,14 +75,6 @@ TunePlan read_plan(const TuneOptions& options) {
   return plan;
 }
 
-CmaEs make_search(const TunePlan& plan, const std::vector<TunedAxis>& axes) {
-  return CmaEs({.start = start_point(axes),
-                .population = plan.population,
-                .generations = plan.generations,
-                .step = plan.step,
-                .seed = plan.seed});
-}
-
 std::uint64_t check_seed(const TunePlan& plan) { return RandomStream(plan.seed, "tune.check").next() >> 11U; }
 
 // A hash of everything on which the search depends.
@@ -110,9 +103,17 @@ std::string generation_name(std::size_t generation) {
 
 }  // namespace
 
-Tuning::Tuning(const TuneOptions& options)
+CmaEs make_search(const TunePlan& plan, const std::vector<TunedAxis>& axes) {
+  return CmaEs({.start = start_point(axes),
+                .population = plan.population,
+                .generations = plan.generations,
+                .step = plan.step,
+                .seed = plan.seed});
+}
+
+Tuning::Tuning(const TuneOptions& options, TunePlan plan)
     : options_(options),
-      plan_(read_plan(options)),
+      plan_(std::move(plan)),
       version_(build_version()),
       robot_(tuned_robot(plan_)),
       subjects_(read_sweep_subjects(plan_)),
@@ -261,7 +262,8 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   catch_interrupts();
-  return Tuning(options).run();
+  TunePlan plan = read_plan(options);
+  return plan.program.empty() ? Tuning(options, std::move(plan)).run() : tune_by_program(options, plan);
 }
 
 }  // namespace

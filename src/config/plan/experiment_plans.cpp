@@ -9,7 +9,7 @@
 
 namespace kadans {
 
-void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& problems) {
+void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& problems, Need need_scenarios) {
   std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
   f.string("based_on", base, "another plan; this file says only what is different");
@@ -17,7 +17,7 @@ void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& proble
   f.string("doc", experiment.doc, "what it shows, one or two sentences");
   std::vector<PlacedName> scenarios;
   f.strings("scenarios", scenarios, {1, 1000}, "files, from the project root; the cases use them in turn",
-            Need::required);
+            need_scenarios);
   for (const PlacedName& scenario : scenarios) {
     experiment.scenarios.push_back(
         {scenario.name, resolve_file(scenario.name, scenario.place, "scenarios", problems).string(), scenario.place});
@@ -130,7 +130,7 @@ FieldInfo describe_sweep_plan() {
 
 namespace {
 
-void parameter_fields(Fields& e, TunedParameter& parameter, Problems& problems) {
+void parameter_fields(Fields& e, bool of_program, TunedParameter& parameter, Problems& problems) {
   double min = 0, max = 0, start = 0;
   bool log = false;
   e.number("min", min, {}, "least value, in the parameter's unit", Need::required);
@@ -145,6 +145,11 @@ void parameter_fields(Fields& e, TunedParameter& parameter, Problems& problems) 
   if (parameter.start && !(start >= min && start <= max))
     problems.add(e.place("start"), e.path("start") + " must be between min and max");
   const std::string& name = parameter.pattern.name;
+  if (of_program) {
+    if (!parameter.start)
+      problems.add(e.place("start"), e.path("start") + " is missing: a program has no configuration");
+    return;
+  }
   if (!name.starts_with("control.") || name.ends_with("_scale") || name.find('.', 8) == std::string::npos ||
       name.substr(8, name.find('.', 8) - 8).find('*') != std::string::npos) {
     problems.add(parameter.pattern.place,
@@ -154,11 +159,31 @@ void parameter_fields(Fields& e, TunedParameter& parameter, Problems& problems) 
   }
 }
 
+// What a program scores has nothing of scenarios.
+void verify_program(const Fields& f, const TunePlan& plan, Problems& problems) {
+  if (plan.program.empty()) {
+    if (plan.scenarios.empty())
+      problems.add(f.place("scenarios"), "scenarios is missing: what is scored, if it is not a program");
+    if (!plan.check_program.empty()) problems.add(f.place("check_program"), "check_program needs program");
+    verify_metric(plan.score, plan, problems);
+    return;
+  }
+  for (const char* key : {"scenarios", "vary", "metrics", "runs", "check_runs", "sample_randomise"}) {
+    if (f.has(key)) problems.add(f.place(key), std::string(key) + " means nothing beside program");
+  }
+}
+
 void plan_fields(Fields& f, TunePlan& plan, Problems& problems) {
-  experiment_fields(f, plan, problems);
+  experiment_fields(f, plan, problems, Need::optional);
+  f.strings(
+      "program", plan.program, {1, 100},
+      "in place of scenarios: a program and its arguments; NAME=VALUE of each parameter follows them, and the last "
+      "line that it prints is a JSON object of metrics");
+  f.strings("check_program", plan.check_program, {1, 100},
+            "the program that judges the values found, in the same way (default: the same program)");
   f.map("tune", "parameters to be tuned, by a pattern of their names", [&](Fields& e) {
     TunedParameter parameter{.pattern = {e.key(), e.key_place()}, .range = {}, .start = {}};
-    parameter_fields(e, parameter, problems);
+    parameter_fields(e, !plan.program.empty(), parameter, problems);
     if (e.reading()) plan.tune.push_back(std::move(parameter));
   });
   f.integer("runs", plan.runs, {1, 10'000},
@@ -174,7 +199,7 @@ void plan_fields(Fields& f, TunePlan& plan, Problems& problems) {
   f.number("failed_score", plan.failed_score, {}, "score of a run that did not pass or has no value", Need::required);
   if (!f.reading()) return;
   if (plan.tune.empty()) problems.add(f.place("tune"), "tune is missing: the parameters that are sought");
-  verify_metric(plan.score, plan, problems);
+  verify_program(f, plan, problems);
 }
 
 }  // namespace

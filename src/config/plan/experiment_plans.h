@@ -39,7 +39,7 @@ struct ExperimentConfig {
 };
 
 // Reads the fields and adds their mistakes to `problems`. Throws nothing.
-void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& problems);
+void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& problems, Need scenarios = Need::required);
 
 // Adds a problem when `name` is none of the metrics. An empty name is allowed: no metric is wanted.
 void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, Problems& problems);
@@ -76,7 +76,7 @@ SweepPlan read_sweep_plan_text(const std::string& text, const std::string& file)
 FieldInfo describe_sweep_plan();
 
 // A tuning, in one JSON file: it searches values for parameters of control objects that make a metric of the scenarios
-// as small as possible over many randomised runs.
+// as small as possible over many randomised runs. Or a program of any kind takes the parameters and gives the metrics.
 
 // One number that is searched; all parameters that the pattern chooses get it.
 struct TunedParameter {
@@ -86,6 +86,9 @@ struct TunedParameter {
 };
 
 struct TunePlan : ExperimentConfig {
+  // In place of scenarios: with PARAMETER=VALUE... appended, it prints the metrics as a JSON object in its last line.
+  std::vector<PlacedName> program;
+  std::vector<PlacedName> check_program;  // that judges the values found, in the same way; none: `program` does
   std::vector<TunedParameter> tune;
   std::uint32_t runs = 8;         // runs of each candidate; all candidates have the same ones
   std::uint32_t check_runs = 40;  // runs before and after the tuning, with other seeds

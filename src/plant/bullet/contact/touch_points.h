@@ -71,7 +71,7 @@ TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b);
 
 // The combined properties of two surfaces: friction is the product, restitution the greater of both, softness that of
 // the one that is soft. A body that bounces has a contact only when it touches: if the solver held it back before, it
-// would lose speed before the bounce.
+// would lose speed before the bounce. On a soft surface its spring and damper say what is given back, no restitution.
 class ContactSurface {
  public:
   ContactSurface(const btCollisionObject& a, const btCollisionObject& b)
@@ -81,6 +81,7 @@ class ContactSurface {
       if ((one->getCollisionFlags() & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) == 0) continue;
       stiffness_N_per_m_ = one->getContactStiffness();
       damping_Ns_per_m_ = one->getContactDamping();
+      restitution_ = 0;
     }
   }
 
@@ -94,7 +95,7 @@ class ContactSurface {
       point.m_combinedContactStiffness1 = stiffness_N_per_m_;
       point.m_combinedContactDamping1 = damping_Ns_per_m_;
     }
-    if (restitution_ == 0) return;
+    if (restitution_ == 0) return;  // Bullet keeps a contact's own ERP in the same place as its damping
     point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
     point.m_contactERP = bounce_erp;  // pushing an overlap out must not add to the bounce
   }

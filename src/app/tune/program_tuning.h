@@ -1,0 +1,18 @@
+// A tuning whose candidates a program scores: any program that takes NAME=VALUE and prints metrics as a JSON object in
+// its last line. So what no scenario can express can be fitted too, such as a model to recordings of the real thing.
+#pragma once
+
+#include <vector>
+
+#include "app/commands.h"
+#include "campaign/tuning/cma_es.h"
+
+namespace kadans {
+
+CmaEs make_search(const TunePlan& plan, const std::vector<TunedAxis>& axes);  // main.cpp
+
+// Searches, then judges the values found against those at the start, and reports. Returns the exit code. Throws
+// InputError for options that mean nothing here, and when the program fails at the values of the start.
+int tune_by_program(const TuneOptions& options, const TunePlan& plan);
+
+}  // namespace kadans
