@@ -7,7 +7,7 @@
 #include "app/run/read_only_plant.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
-#include "plant/emulated_drives.h"
+#include "kadans/plant/emulated_drives.h"
 #include "plant/imu/emulator/imu_world.h"
 #include "plant/imu/imu_plant.h"
 #include "scenario/disturb/planned_faults.h"

@@ -20,7 +20,7 @@
 #include <thread>
 #include <vector>
 
-#include "emulated_drives.h"
+#include "kadans/plant/emulated_drives.h"
 
 namespace kadans {
 

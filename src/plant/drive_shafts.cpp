@@ -1,4 +1,4 @@
-#include "drive_shafts.h"
+#include "kadans/plant/drive_shafts.h"
 
 #include <algorithm>
 

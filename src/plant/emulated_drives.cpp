@@ -1,4 +1,4 @@
-#include "emulated_drives.h"
+#include "kadans/plant/emulated_drives.h"
 
 #include <algorithm>
 #include <cmath>

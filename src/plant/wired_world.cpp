@@ -1,4 +1,4 @@
-#include "wired_world.h"
+#include "kadans/plant/wired_world.h"
 
 namespace kadans {
 

@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$KADANS_SOURCE_DIR"
 
-mapfile -d '' files < <(find src include tests -name node_modules -prune -o -type f \( -name '*.h' -o -name '*.cpp' \) -print0)
+mapfile -d '' files < <(find src include plugins tests -name node_modules -prune -o -type f \( -name '*.h' -o -name '*.cpp' \) -print0)
 [ ${#files[@]} -gt 0 ]
 clang-format --dry-run -Werror "${files[@]}"
 echo "${#files[@]} files"

@@ -74,9 +74,25 @@ TEST_CASE("what is installed includes nothing that is not") {
         Findings{"kadans/a.h:2: includes engine/b.h, which is not installed"});
 }
 
+TEST_CASE("a plug-in includes what is installed, what lies beside it and what is made of its messages, alone") {
+  std::size_t checked = 0;
+  for (const fs::path& file : files_below(root / "plugins")) {
+    if (!is_code(file)) continue;
+    for (const std::string& finding : check_public(fs::relative(file, root).generic_string(), read(file))) {
+      const auto begin = finding.find("includes ") + 9;
+      fs::path beside = file.parent_path() / finding.substr(begin, finding.find(',') - begin);
+      if (!fs::exists(beside) && !fs::exists(beside.replace_extension(".idl"))) FAIL_CHECK(finding);
+    }
+    ++checked;
+  }
+  CHECK(checked > 10);
+  const fs::path rules = root / "plugins/unitree/CMakeLists.txt";
+  CHECK(read(rules).find("src/") == std::string::npos);
+}
+
 TEST_CASE("no folder has more than 25 files") {
   std::map<fs::path, std::size_t> count;
-  for (const char* folder : {"src", "include"}) {
+  for (const char* folder : {"src", "include", "plugins"}) {
     for (const fs::path& file : files_below(root / folder)) ++count[fs::relative(file.parent_path(), root)];
   }
   for (const auto& [folder, files] : count) {
@@ -97,7 +113,7 @@ TEST_CASE("no layer's CMakeLists.txt links a layer below it") {
 
 TEST_CASE("no file is longer than 400 lines, and no source of src than 700") {
   std::size_t checked = 0;
-  for (const char* folder : {"src", "include", "tests", "behaviors", "scripts", "cmake"}) {
+  for (const char* folder : {"src", "include", "plugins", "tests", "behaviors", "scripts", "cmake"}) {
     for (const fs::path& file : files_below(root / folder)) {
       const std::string text = read(file);
       if (is_written_by_hand(file, text)) report(check_length(fs::relative(file, root).generic_string(), text));
@@ -108,7 +124,8 @@ TEST_CASE("no file is longer than 400 lines, and no source of src than 700") {
 }
 
 TEST_CASE("the name of every file and folder says what is in it") {
-  for (const char* folder : {"src", "include", "tests", "behaviors", "scripts", "cmake", "config", "models", "docs"}) {
+  for (const char* folder :
+       {"src", "include", "plugins", "tests", "behaviors", "scripts", "cmake", "config", "models", "docs"}) {
     for (const fs::path& file : files_below(root / folder))
       report(check_name(fs::relative(file, root).generic_string()));
   }

@@ -64,6 +64,20 @@ EOF
   grep -q '""' written/build/openmodelica/openmodelica_state.h
 fi
 
+# The plug-in of plugins/unitree, built by itself: it needs nothing of the tree.
+if [ -x "$work/moved/bin/kadans" ] && command -v idlc >/dev/null; then
+  cp -r "$here/../../plugins/unitree" unitree
+  cmake -S unitree -B unitree/build -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$1" >>"$work/configure.log"
+  cmake --build unitree/build --parallel "$(nproc)"
+  [ -s "$work/moved/lib/kadans/unitree.so" ] || { echo "the plug-in unitree is not installed"; exit 1; }
+  cat >"$share/config/jiwiy/unitree.json" <<EOF
+{ "based_on": "config/jiwiy/robot.json", "plugins": ["$PWD/unitree/build/unitree.so"],
+  "plant": { "unitree": { "robot": "go2", "motors": { "pan": { "number": 0 }, "tilt": { "number": 1 } } } } }
+EOF
+  "$work/moved/bin/kadans" check --plugins "$share/config/jiwiy/unitree.json"
+  rm "$share/config/jiwiy/unitree.json"  # it names this machine
+fi
+
 if [ -x "$work/moved/bin/kadans" ]; then
   mkdir "$share/plugins"
   cp "$work/build/bench_plugin.so" written/build/second_try/second_try.so written/build/twenty_sim/twenty_sim.so "$share/plugins"

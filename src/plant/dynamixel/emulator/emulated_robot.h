@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "emulated_bus.h"
+#include "kadans/plant/drive_shafts.h"
 #include "kadans/plant/plant_type.h"
 #include "plant/drive_server.h"
-#include "plant/drive_shafts.h"
 #include "plant/dynamixel/settings.h"
 
 namespace kadans::dynamixel {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "plant/drive_shafts.h"
+#include "kadans/plant/drive_shafts.h"
 
 namespace kadans::dynamixel {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "emulated_robot.h"
+#include "kadans/plant/wired_world.h"
 #include "plant/dynamixel/dynamixel_plant.h"
-#include "plant/wired_world.h"
 
 namespace kadans::dynamixel {
 

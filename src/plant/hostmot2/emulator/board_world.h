@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "emulated_machine.h"
+#include "kadans/plant/wired_world.h"
 #include "plant/hostmot2/hostmot2_plant.h"
 #include "plant/hostmot2/lbp_link.h"
-#include "plant/wired_world.h"
 #include "register_file.h"
 
 namespace kadans::hostmot2 {

@@ -13,8 +13,8 @@
 
 #include "emulated_board.h"
 #include "emulated_wire.h"
+#include "kadans/plant/drive_shafts.h"
 #include "plant/drive_server.h"
-#include "plant/drive_shafts.h"
 #include "plant/hostmot2/settings.h"
 
 namespace kadans::hostmot2 {

@@ -4,8 +4,8 @@
 #include <array>
 
 #include "emulated_imu.h"
+#include "kadans/plant/wired_world.h"
 #include "plant/serial/serial_port.h"
-#include "plant/wired_world.h"
 
 namespace kadans::imu {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "emulated_drives.h"
+#include "kadans/plant/emulated_drives.h"
 #include "kadans/plant/world.h"
 
 namespace kadans {
