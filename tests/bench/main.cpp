@@ -9,9 +9,11 @@
 int main(int argc, char** argv) {
   using namespace kadans::bench;
   const std::map<std::string, void (*)(Report&)> parts = {
-      {"body", bench_body},     {"bus", bench_bus},     {"control", bench_control}, {"exchange", bench_exchange},
-      {"live", bench_live},     {"lua", bench_lua},     {"objects", bench_objects}, {"plant", bench_plant},
-      {"record", bench_record}, {"start", bench_start}, {"switch", bench_switch},   {"wall", bench_wall}};
+      {"body", bench_body},         {"bus", bench_bus},     {"control", bench_control},
+      {"exchange", bench_exchange}, {"live", bench_live},   {"lua", bench_lua},
+      {"objects", bench_objects},   {"plant", bench_plant}, {"precision", bench_precision},
+      {"record", bench_record},     {"start", bench_start}, {"switch", bench_switch},
+      {"wall", bench_wall}};
   CLI::App app("Kadans benchmarks", "kadans_bench");
   std::vector<std::string> only;
   bool json = false;

@@ -68,6 +68,7 @@ void bench_live(Report& report);
 void bench_lua(Report& report);
 void bench_objects(Report& report);
 void bench_plant(Report& report);
+void bench_precision(Report& report);
 void bench_record(Report& report);
 void bench_rfsm(Report& report);  // part of bench_lua; nothing without KADANS_RFSM
 void bench_simulation(Report& report);

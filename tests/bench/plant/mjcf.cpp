@@ -17,7 +17,10 @@ class Writer {
 
   std::string write(const MjcfOptions& options) {
     out_ << "<mujoco><compiler angle=\"radian\" autolimits=\"false\"/><option timestep=\"" << options.time_step_s
-         << "\" solver=\"" << options.solver << "\"/><size njmax=\"2000\" nconmax=\"500\"/><worldbody>\n"
+         << "\" solver=\"" << options.solver << "\" integrator=\"" << options.integrator
+         << "\"/><size njmax=\"2000\" nconmax=\"500\"/>\n";
+    hulls();
+    out_ << "<worldbody>\n"
          << "<geom type=\"plane\" size=\"0 0 1\" contype=\"0\" conaffinity=\"1\" friction=\"0.8 0.005 0.0001\"/>\n";
     link(0);
     for (const WorldObject& object : settings_.world.objects) ball(object);
@@ -35,6 +38,26 @@ class Writer {
     out_ << '"';
   }
 
+  static std::string hull_name(std::size_t link, std::size_t geometry) {
+    return "hull" + std::to_string(link) + "_" + std::to_string(geometry);
+  }
+
+  void hulls() {
+    out_ << "<asset>\n";
+    for (std::size_t i = 0; i < model_.links.size(); ++i) {
+      for (std::size_t j = 0; j < model_.links[i].collisions.size(); ++j) {
+        const auto* const mesh = std::get_if<Mesh>(&model_.links[i].collisions[j].shape);
+        if (mesh == nullptr || mesh->corners_m.empty()) continue;
+        std::vector<double> all;
+        for (const Vec3& corner : mesh->corners_m) all.insert(all.end(), corner.begin(), corner.end());
+        out_ << "<mesh name=\"" << hull_name(i, j) << '"';
+        numbers("vertex", all);
+        out_ << "/>\n";
+      }
+    }
+    out_ << "</asset>\n";
+  }
+
   void link(std::size_t index) {
     const Link& link = model_.links[index];
     const Pose pose = index == 0 ? settings_.base : model_.joints[index - 1].origin;
@@ -49,7 +72,7 @@ class Writer {
     numbers("pos", i.com_m);
     numbers("fullinertia", std::array{i.xx, i.yy, i.zz, i.xy, i.xz, i.yz});
     out_ << "/>\n";
-    for (const Geometry& geometry : link.collisions) geom(geometry);
+    for (std::size_t j = 0; j < link.collisions.size(); ++j) geom(link.collisions[j], hull_name(index, j));
     for (std::size_t child = 0; child < model_.joints.size(); ++child) {
       if (model_.joints[child].parent == index) this->link(child + 1);
     }
@@ -70,7 +93,9 @@ class Writer {
     out_ << "/>\n";
   }
 
-  void geom(const Geometry& geometry) {
+  void geom(const Geometry& geometry, const std::string& hull) {
+    const auto* const mesh = std::get_if<Mesh>(&geometry.shape);
+    if (mesh != nullptr && mesh->corners_m.empty()) return;
     out_ << "<geom contype=\"1\" conaffinity=\"2\" friction=\"0.8 0.005 0.0001\"";
     numbers("pos", geometry.pose.position_m);
     numbers("quat", geometry.pose.orientation);
@@ -83,6 +108,8 @@ class Writer {
     } else if (const auto* cylinder = std::get_if<Cylinder>(&geometry.shape)) {
       out_ << " type=\"cylinder\"";
       numbers("size", std::array{cylinder->radius_m, cylinder->length_m / 2});
+    } else {
+      out_ << " type=\"mesh\" mesh=\"" << hull << '"';
     }
     out_ << "/>\n";
   }

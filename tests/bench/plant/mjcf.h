@@ -1,7 +1,7 @@
 // Our robot as a MuJoCo model (MJCF), so that both engines step the same thing: links, inertias, joints with their
-// limits, collision shapes, and rigid drives as MuJoCo knows them: armature, damping, spring, a motor a joint. Solver,
-// tolerance, iterations, cone and contact parameters are MuJoCo's defaults. Links collide with the ground and the ball,
-// not with each other.
+// limits, collision shapes (meshes as the same hulls), and rigid drives as MuJoCo knows them: armature, damping,
+// spring, a motor a joint. Solver, tolerance, iterations, cone and contact parameters are MuJoCo's defaults. Links
+// collide with the ground and the ball, not with each other.
 #pragma once
 
 #include <string>
@@ -12,7 +12,8 @@
 namespace kadans::bench {
 
 struct MjcfOptions {
-  std::string solver = "Newton";  // or CG
+  std::string solver = "Newton";     // or CG
+  std::string integrator = "Euler";  // or RK4
   double time_step_s = 1e-3;
 };
 

@@ -32,8 +32,8 @@ std::unique_ptr<mjModel, FreeModel> load(const std::string& xml) {
 
 class MujocoEngine final : public Engine {
  public:
-  MujocoEngine(const RobotModel& model, const PlantSettings& settings, const std::string& solver)
-      : model_(load(mjcf(model, settings, {.solver = solver}))), data_(mj_makeData(model_.get())) {
+  MujocoEngine(const RobotModel& model, const PlantSettings& settings, const MjcfOptions& options)
+      : model_(load(mjcf(model, settings, options))), data_(mj_makeData(model_.get())) {
     for (const Joint& joint : model.joints) {
       const int id = mj_name2id(model_.get(), mjOBJ_JOINT, joint.name.c_str());
       positions_.push_back(static_cast<std::size_t>(model_->jnt_qposadr[id]));
@@ -58,7 +58,8 @@ class MujocoEngine final : public Engine {
       const mjtNum* at = data_->xpos + 3 * foot;
       state.feet_m.push_back({at[0], at[1], at[2]});
     }
-    state.base_height_m = data_->qpos[2];
+    const mjtNum* const q = data_->qpos;
+    state.base = {{q[0], q[1], q[2]}, {q[3], q[4], q[5], q[6]}};
     return state;
   }
   int contact_count() const override { return data_->ncon; }
@@ -72,9 +73,11 @@ class MujocoEngine final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> mujoco_engine(const RobotModel& model, const PlantSettings& settings,
-                                      const std::string& solver) {
-  return std::make_unique<MujocoEngine>(model, settings, solver);
+std::unique_ptr<Engine> mujoco_engine(const RobotModel& model, const PlantSettings& settings, const std::string& solver,
+                                      std::int64_t step_ns, const std::string& integrator) {
+  const MjcfOptions options{
+      .solver = solver, .integrator = integrator, .time_step_s = 1e-9 * static_cast<double>(step_ns)};
+  return std::make_unique<MujocoEngine>(model, settings, options);
 }
 
 }  // namespace kadans::bench
