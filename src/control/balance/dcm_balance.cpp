@@ -22,7 +22,7 @@ DcmBalance::DcmBalance(const ObjectSetup& setup)
       throw std::invalid_argument("joint " + axis.name +
                                   " has no part in balance: in a leg it is neither the first nor the last that turns "
                                   "about y, nor the first about x; and it is no shoulder that turns about y");
-    parts_.push_back({.axis = std::move(axis), .part = part.part, .sign = part.sign});
+    parts_.push_back({{.axis = std::move(axis)}, part.part, part.sign});
   }
 }
 
@@ -97,14 +97,10 @@ double DcmBalance::law_Nm(LegPart part) const noexcept {
 
 void DcmBalance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const bool stands = measure(input);
-  const double most = standing_share_per_s * input.dt_s;
-  state_.share = stands ? state_.share + std::clamp(config_.share - state_.share, -most, most) : 0;
-  const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
+  state_.share = faded_share(state_.share, config_.share, stands, input.dt_s);
   for (Part& part : parts_) {
-    const double wanted_Nm = stands ? state_.share * part.sign * law_Nm(part.part) : 0;
-    const double bounded_Nm = std::clamp(wanted_Nm, -part.axis.effort_max_Nm, part.axis.effort_max_Nm);
-    part.effort_Nm = stands ? part.effort_Nm + smooth * (bounded_Nm - part.effort_Nm) : 0;
-    actuation.joints[part.axis.joint] = {.effort_Nm = part.effort_Nm, .mode = ActuationMode::effort};
+    part.wanted_Nm = part.sign * law_Nm(part.part);
+    part.give(state_.share, stands, 1, config_.smooth_s, input.dt_s, actuation);
   }
 }
 

@@ -23,9 +23,9 @@
 #include <memory>
 #include <vector>
 
+#include "balance_joint.h"
 #include "dcm_measure.h"
 #include "kadans/control/control_object.h"
-#include "kadans/control/joint_axis.h"
 #include "leg_parts.h"
 
 namespace kadans {
@@ -65,11 +65,9 @@ class DcmBalance final : public ControlObject {
   const State& state() const noexcept { return state_; }
 
  private:
-  struct Part {
-    JointAxis axis;
+  struct Part : BalanceJoint {
     LegPart part = LegPart::none;
     double sign = 1;
-    double effort_Nm = 0;
   };
   bool measure(const ControlInput& input) noexcept;
   double law_Nm(LegPart part) const noexcept;

@@ -67,7 +67,7 @@ Stance::Stance(const ObjectSetup& setup)
                                   " has no part in a stance: no foot hangs on it, and it is no shoulder that turns "
                                   "about y");
     }
-    parts_.push_back({.axis = std::move(axis), .arm = arm, .sign = part.sign});
+    parts_.push_back({{.axis = std::move(axis)}, arm, part.sign});
   }
 }
 
@@ -221,8 +221,7 @@ void Stance::load(std::size_t side, double share) noexcept {
 
 void Stance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const bool stands = standing_.update(input);
-  const double most = standing_share_per_s * input.dt_s;
-  state_.share = stands ? state_.share + std::clamp(config_.share - state_.share, -most, most) : 0;
+  state_.share = faded_share(state_.share, config_.share, stands, input.dt_s);
   if (stands) {
     find_pressure(input.status.base);
     find_force();
@@ -231,15 +230,10 @@ void Stance::step(const ControlInput& input, ActuationFrame& actuation) noexcept
   }
   const State& s = state_;
   const double arm_m = config_.arm_from_m;
-  const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
   for (Part& part : parts_) {
     if (part.arm)
       part.wanted_Nm = part.sign * config_.arm_Nm_per_m * (s.beyond_x_m - std::clamp(s.beyond_x_m, -arm_m, arm_m));
-    const double wanted_Nm = stands ? state_.share * part.wanted_Nm : 0;
-    const double most_Nm = most_effort * part.axis.effort_max_Nm;
-    const double bounded_Nm = std::clamp(wanted_Nm, -most_Nm, most_Nm);
-    part.effort_Nm = stands ? part.effort_Nm + smooth * (bounded_Nm - part.effort_Nm) : 0;
-    actuation.joints[part.axis.joint] = {.effort_Nm = part.effort_Nm, .mode = ActuationMode::effort};
+    part.give(s.share, stands, most_effort, config_.smooth_s, input.dt_s, actuation);
   }
 }
 

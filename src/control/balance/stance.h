@@ -37,9 +37,9 @@
 #include <span>
 #include <vector>
 
+#include "balance_joint.h"
 #include "dcm_measure.h"
 #include "kadans/control/control_object.h"
-#include "kadans/control/joint_axis.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/model/robot_model.h"
 
@@ -115,11 +115,9 @@ class Stance final : public ControlObject {
   const State& state() const noexcept { return state_; }
 
  private:
-  struct Part {
-    JointAxis axis;
+  struct Part : BalanceJoint {
     bool arm = false;
     double sign = 1;  // of an arm: -1 when it turns about -y
-    double wanted_Nm = 0, effort_Nm = 0;
   };
   void declare_pressure(Declaration& declaration);
   void declare_trunk(Declaration& declaration);

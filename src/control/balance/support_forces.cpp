@@ -162,12 +162,13 @@ void SupportForces::declare_signals(Declaration& d) {
   d.signal({"share", "", "Share of its torques that acts."}, &s.share);
   for (Foot& foot : feet_)
     d.signal({foot.name + ".force_z_N", "N", "Force on the foot that is wanted, upward."}, &foot.force_N[2]);
-  for (Part& part : parts_) d.signal({part.axis.name + ".effort_Nm", "Nm", "Torque asked for."}, &part.effort_Nm);
+  for (BalanceJoint& part : parts_)
+    d.signal({part.axis.name + ".effort_Nm", "Nm", "Torque asked for."}, &part.effort_Nm);
 }
 
 void SupportForces::start(const ControlInput&) noexcept {
   state_ = {};
-  for (Part& part : parts_) part.effort_Nm = 0;
+  for (BalanceJoint& part : parts_) part.effort_Nm = 0;
 }
 
 Vec3 SupportForces::com_over_feet(const ControlInput& input, double ahead_s) noexcept {
@@ -225,13 +226,13 @@ void SupportForces::load_legs() noexcept {
   }
   distribute({points_m_.data(), feet_.size()}, state_.force_N, state_.moment_Nm, config_.grip,
              {forces_N_.data(), feet_.size()});
-  for (Part& part : parts_) part.wanted_Nm = 0;
+  for (BalanceJoint& part : parts_) part.wanted_Nm = 0;
   for (std::size_t i = 0; i < feet_.size(); ++i) {
     Foot& foot = feet_[i];
     foot.force_N = forces_N_[i];
     foot.load.update(body_.kinematics(), foot.force_N, foot.point_m);
     for (const LegLoad::Bearing& bearing : foot.load.bearings()) {
-      for (Part& part : parts_) {
+      for (BalanceJoint& part : parts_) {
         if (part.axis.joint == bearing.joint) part.wanted_Nm += bearing.effort_Nm;
       }
     }
@@ -240,20 +241,13 @@ void SupportForces::load_legs() noexcept {
 
 void SupportForces::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const bool stands = measure(input);
-  const double most = standing_share_per_s * input.dt_s;
-  state_.share = stands ? state_.share + std::clamp(config_.share - state_.share, -most, most) : 0;
+  state_.share = faded_share(state_.share, config_.share, stands, input.dt_s);
   if (stands) {
     find_force(input.status.base);
     load_legs();
   }
-  const double smooth = config_.smooth_s > input.dt_s ? input.dt_s / config_.smooth_s : 1;
-  for (Part& part : parts_) {
-    const double wanted_Nm = stands ? state_.share * part.wanted_Nm : 0;
-    const double most_Nm = effort_share_max * part.axis.effort_max_Nm;
-    const double bounded_Nm = std::clamp(wanted_Nm, -most_Nm, most_Nm);
-    part.effort_Nm = stands ? part.effort_Nm + smooth * (bounded_Nm - part.effort_Nm) : 0;
-    actuation.joints[part.axis.joint] = {.effort_Nm = part.effort_Nm, .mode = ActuationMode::effort};
-  }
+  for (BalanceJoint& part : parts_)
+    part.give(state_.share, stands, effort_share_max, config_.smooth_s, input.dt_s, actuation);
 }
 
 std::unique_ptr<ControlObject> make_support_forces(const ObjectSetup& setup) {

@@ -32,9 +32,9 @@
 #include <string>
 #include <vector>
 
+#include "balance_joint.h"
 #include "dcm_measure.h"
 #include "kadans/control/control_object.h"
-#include "kadans/control/joint_axis.h"
 #include "stance.h"
 
 namespace kadans {
@@ -77,16 +77,12 @@ class SupportForces final : public ControlObject {
   void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
   void pass_state(StateBytes& bytes) noexcept override {
-    for (Part& part : parts_) bytes(part.effort_Nm);
+    for (BalanceJoint& part : parts_) bytes(part.effort_Nm);
     bytes(state_);
   }
   const State& state() const noexcept { return state_; }
 
  private:
-  struct Part {
-    JointAxis axis;
-    double wanted_Nm = 0, effort_Nm = 0;
-  };
   struct Foot {
     std::size_t link = 0;
     std::string name;
@@ -103,7 +99,7 @@ class SupportForces final : public ControlObject {
 
   BodyAhead body_;
   std::vector<Foot> feet_;
-  std::vector<Part> parts_;
+  std::vector<BalanceJoint> parts_;
   double weight_N_;
   Vec3 com_m_{}, velocity_m_s_{};  // from the feet's middle
   std::array<Vec3, max_feet> points_m_{}, forces_N_{};
