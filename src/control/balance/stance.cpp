@@ -24,6 +24,10 @@ LegLoad::LegLoad(const RobotModel& model, std::size_t foot) : model_(&model) {
   }
 }
 
+bool LegLoad::bears(std::size_t joint) const noexcept {
+  return std::ranges::any_of(bearings_, [joint](const Bearing& bearing) { return bearing.joint == joint; });
+}
+
 void LegLoad::update(const Kinematics& kinematics, const Vec3& force_N, const Vec3& point_m) noexcept {
   Vec3 force = force_N;
   Vec3 about_origin = moment(point_m, force_N);  // about the origin
@@ -48,10 +52,6 @@ namespace {
 constexpr double most_effort = 0.9;   // of a joint's; the posture adds its own
 constexpr double narrowest_m = 0.02;  // feet apart by less do not share by p_y
 
-bool bears(std::span<const LegLoad::Bearing> bearings, std::size_t joint) {
-  return std::ranges::any_of(bearings, [joint](const LegLoad::Bearing& b) { return b.joint == joint; });
-}
-
 }  // namespace
 
 Stance::Stance(const ObjectSetup& setup)
@@ -62,7 +62,7 @@ Stance::Stance(const ObjectSetup& setup)
   for (JointAxis& axis : joint_axes(setup)) {
     const JointPart& part = parts[axis.joint];
     const bool arm = part.part == LegPart::swing;
-    if (!arm && !bears(legs_[0].bearings(), axis.joint) && !bears(legs_[1].bearings(), axis.joint)) {
+    if (!arm && !legs_[0].bears(axis.joint) && !legs_[1].bears(axis.joint)) {
       throw std::invalid_argument("joint " + axis.name +
                                   " has no part in a stance: no foot hangs on it, and it is no shoulder that turns "
                                   "about y");

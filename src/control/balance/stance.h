@@ -65,6 +65,7 @@ class LegLoad {
   void update(const Kinematics& kinematics, const Vec3& force_N, const Vec3& point_m) noexcept;
 
   std::span<const Bearing> bearings() const noexcept { return bearings_; }  // from the foot upwards
+  bool bears(std::size_t joint) const noexcept;
 
  private:
   const RobotModel* model_;

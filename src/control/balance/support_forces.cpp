@@ -18,7 +18,6 @@ using WrenchMap = Eigen::Matrix<double, 6, 3>;
 
 constexpr double damping = 1e-6;  // of the least squares: what two feet cannot do is not asked of them with all might
 constexpr double effort_share_max = 0.9;  // of a joint's; the posture adds its own
-constexpr double highest_share = 1;       // of the weight, on one foot
 
 // What a force at the point does, moments in units of `length_m`.
 WrenchMap map_of(const Vec3& p, double length_m) noexcept {
@@ -44,19 +43,21 @@ void distribute(std::span<const Vec3> points_m, const Vec3& force_N, const Vec3&
   wanted << force_N[0], force_N[1], force_N[2], moment_Nm[0] / length_m, moment_Nm[1] / length_m,
       moment_Nm[2] / length_m;
   std::array<bool, max_feet> bears{};
-  std::fill_n(bears.begin(), points_m.size(), true);
+  std::array<WrenchMap, max_feet> maps;
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    bears[i] = true;
+    maps[i] = map_of(points_m[i], length_m);
+  }
   for (std::size_t round = 0; round < points_m.size(); ++round) {
     Eigen::Matrix<double, 6, 6> together = Eigen::Matrix<double, 6, 6>::Identity() * damping;
     for (std::size_t i = 0; i < points_m.size(); ++i) {
-      if (!bears[i]) continue;
-      const WrenchMap map = map_of(points_m[i], length_m);
-      together += map * map.transpose();
+      if (bears[i]) together += maps[i] * maps[i].transpose();
     }
     const Wrench multipliers = together.ldlt().solve(wanted);
     std::size_t worst = points_m.size();
     for (std::size_t i = 0; i < points_m.size(); ++i) {
       const Eigen::Vector3d force =
-          bears[i] ? Eigen::Vector3d(map_of(points_m[i], length_m).transpose() * multipliers) : Eigen::Vector3d::Zero();
+          bears[i] ? Eigen::Vector3d(maps[i].transpose() * multipliers) : Eigen::Vector3d::Zero();
       forces_N[i] = {force[0], force[1], force[2]};
       if (force[2] < 0 && (worst == points_m.size() || force[2] < forces_N[worst][2])) worst = i;
     }
@@ -66,7 +67,7 @@ void distribute(std::span<const Vec3> points_m, const Vec3& force_N, const Vec3&
   }
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     Vec3& force = forces_N[i];
-    force[2] = std::clamp(force[2], 0.0, highest_share * std::max(force_N[2], 0.0));
+    force[2] = std::clamp(force[2], 0.0, std::max(force_N[2], 0.0));
     const double along_N = std::hypot(force[0], force[1]), most_N = grip * force[2];
     if (along_N <= most_N) continue;
     force[0] *= most_N / along_N;
@@ -102,9 +103,7 @@ SupportForces::SupportForces(const ObjectSetup& setup)
   for (const std::size_t link : feet_of(setup))
     feet_.push_back({.link = link, .name = setup.model.links[link].name, .load = LegLoad(setup.model, link)});
   const auto bears = [this](std::size_t joint) {
-    return std::ranges::any_of(feet_, [joint](const Foot& foot) {
-      return std::ranges::find(foot.load.bearings(), joint, &LegLoad::Bearing::joint) != foot.load.bearings().end();
-    });
+    return std::ranges::any_of(feet_, [joint](const Foot& foot) { return foot.load.bears(joint); });
   };
   for (JointAxis& axis : joint_axes(setup)) {
     if (!bears(axis.joint))
