@@ -5,24 +5,11 @@
 #include <numbers>
 #include <string>
 
-#include "signal/nearest_name.h"
+#include "control/option_link.h"
 
 namespace kadans {
-namespace {
-
-std::size_t foot_of(const ObjectSetup& setup, const char* option) {
-  const std::string* const name = setup.options.find(option);
-  if (name == nullptr) throw OptionError(option, "it needs the option '" + std::string(option) + "': a foot's link");
-  const auto link = setup.model.find_link(*name);
-  if (!link)
-    throw OptionError(option, "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
-  return *link;
-}
-
-}  // namespace
-
 std::array<std::size_t, 2> two_feet(const ObjectSetup& setup) {
-  return {foot_of(setup, "left_foot"), foot_of(setup, "right_foot")};
+  return {required_link(setup, "left_foot", "a foot's link"), required_link(setup, "right_foot", "a foot's link")};
 }
 
 void BodyAhead::update(const ControlInput& input, const Quat& upright, double ahead_s) noexcept {

@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "signal/nearest_name.h"
+#include "control/option_link.h"
 
 namespace kadans {
 namespace {
@@ -83,12 +83,10 @@ std::vector<std::size_t> feet_of(const ObjectSetup& setup) {
   std::vector<std::size_t> feet;
   std::istringstream words(*names);
   for (std::string name; words >> name;) {
-    const auto link = setup.model.find_link(name);
-    if (!link)
-      throw OptionError("feet", "there is no link '" + name + "'" + did_you_mean(name, setup.model.link_names()));
-    if (*link == 0) throw OptionError("feet", "'" + name + "' is the base: no leg leads to it");
-    if (std::ranges::find(feet, *link) != feet.end()) throw OptionError("feet", "'" + name + "' is named twice");
-    feet.push_back(*link);
+    const std::size_t link = link_named(setup, "feet", name);
+    if (link == 0) throw OptionError("feet", "'" + name + "' is the base: no leg leads to it");
+    if (std::ranges::find(feet, link) != feet.end()) throw OptionError("feet", "'" + name + "' is named twice");
+    feet.push_back(link);
   }
   if (feet.size() < SupportForces::least_feet || feet.size() > max_feet)
     throw OptionError("feet", std::to_string(feet.size()) + " feet are named, 3 to " + std::to_string(max_feet) +

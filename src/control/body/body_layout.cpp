@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "control/option_link.h"
 #include "kadans/model/kinematics.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {
@@ -13,10 +13,7 @@ namespace {
 std::optional<std::size_t> link_of(const ObjectSetup& setup, const char* option) {
   const std::string* const name = setup.options.find(option);
   if (name == nullptr) return std::nullopt;
-  const auto link = setup.model.find_link(*name);
-  if (!link)
-    throw OptionError(option, "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
-  return link;
+  return link_named(setup, option, *name);
 }
 
 // With all joints at zero, as the model stands.

@@ -29,11 +29,11 @@
 #include <utility>
 #include <vector>
 
+#include "control/option_link.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/effort_takeover.h"
 #include "kadans/control/joint_axis.h"
 #include "kadans/control/limb_chain.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 
@@ -108,18 +108,10 @@ namespace {
 constexpr double point_max_m = 1;
 constexpr const char* direction_names[] = {"x", "y", "z"};
 
-std::size_t link_of(const ObjectSetup& setup) {
-  const std::string* const name = setup.options.find("link");
-  if (name == nullptr) throw OptionError("link", "it needs the option 'link': the link at the limb's end");
-  const auto link = setup.model.find_link(*name);
-  if (!link)
-    throw OptionError("link", "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
-  return *link;
-}
-
 }  // namespace
 
-TaskImpedance::TaskImpedance(const ObjectSetup& setup) : chain_(setup.model, link_of(setup)) {
+TaskImpedance::TaskImpedance(const ObjectSetup& setup)
+    : chain_(setup.model, required_link(setup, "link", "the link at the limb's end")) {
   const auto segments = chain_.segments();
   for (JointAxis& axis : joint_axes(setup)) {
     const auto moves = [&](const LimbChain::Segment& segment) { return segment.joint == axis.joint; };

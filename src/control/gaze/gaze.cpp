@@ -43,13 +43,13 @@
 #include <string>
 #include <vector>
 
+#include "control/option_link.h"
 #include "gaze_solver.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/handover.h"
 #include "kadans/control/joint_axis.h"
 #include "kadans/control/minimum_jerk.h"
 #include "kadans/exchange/latest.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 
@@ -159,19 +159,10 @@ constexpr double back_per_s = 6;  // how fast the joints go back to the middle
 constexpr double back_rad = 0.1;  // where they are near enough to it
 constexpr const char* axis_names[] = {"x", "y", "z"};
 
-std::size_t link_of(const ObjectSetup& setup, const std::string& option, const char* meaning) {
-  const std::string* const name = setup.options.find(option);
-  if (name == nullptr) throw OptionError(option, "it needs the option '" + option + "': " + meaning);
-  const auto link = setup.model.find_link(*name);
-  if (!link)
-    throw OptionError(option, "there is no link '" + *name + "'" + did_you_mean(*name, setup.model.link_names()));
-  return *link;
-}
-
 GazeLinks links_of(const ObjectSetup& setup) {
-  return {.head = link_of(setup, "head", "the link that carries the eyes"),
-          .left_eye = link_of(setup, "left_eye", "a link that looks along its x axis"),
-          .right_eye = link_of(setup, "right_eye", "a link that looks along its x axis")};
+  return {.head = required_link(setup, "head", "the link that carries the eyes"),
+          .left_eye = required_link(setup, "left_eye", "a link that looks along its x axis"),
+          .right_eye = required_link(setup, "right_eye", "a link that looks along its x axis")};
 }
 
 }  // namespace
