@@ -13,7 +13,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 images=$(realpath "${KADANS_IMAGE:-build/image/i386}" 2>/dev/null || true)
 arch=$(basename "$images")
 kadans=$PWD/build/kadans
-emulator=qemu-system-i386 cpu=coreduo
+emulator=qemu-system-i386 cpu=coreduo uefi=/usr/share/ovmf/OVMF.fd
 [ "$arch" != amd64 ] || emulator=qemu-system-x86_64 cpu=Penryn
 
 skip() {
@@ -21,6 +21,7 @@ skip() {
   exit 77
 }
 command -v $emulator >/dev/null || skip "no $emulator: scripts/setup image"
+[ "$arch" != amd64 ] || [ -e $uefi ] || skip "no $uefi: scripts/setup image"
 [ -e "$images/kadans.img" ] || skip "no image in ${images:-build/image/i386}: scripts/image $arch"
 
 work=$(mktemp -d)
