@@ -100,6 +100,19 @@ TEST_CASE("The hull of a box is its eight corners, whatever lies inside") {
   CHECK(corners.back() == Vec3{1, 2, 3});
 }
 
+TEST_CASE("All triangles of a mesh are read, faces of more corners cut into them") {
+  const Meshes meshes;
+  const auto triangles = mesh_triangles(meshes.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"));
+  REQUIRE(triangles.size() == 2);
+  double area = 0;
+  for (const MeshTriangle& t : triangles)
+    area += static_cast<double>(std::abs((t[3] - t[0]) * (t[7] - t[1]) - (t[6] - t[0]) * (t[4] - t[1]))) / 2;
+  CHECK(area == 1);
+  CHECK(mesh_triangles(meshes.write("ball.stl", ball_stl(400))).size() == 400);
+  CHECK_THROWS_WITH_AS((void)mesh_triangles(meshes.write("none.stl", "solid")),
+                       doctest::Contains("cannot be read as a mesh: "), InputError);
+}
+
 TEST_CASE("A Collada file counts in its own unit, with its nodes, and its axes as they stand") {
   const Meshes meshes;
   for (const char* const up : {"Z_UP", "Y_UP"}) {

@@ -131,8 +131,8 @@ class BulletRobot {
 
 }  // namespace
 
-TEST_CASE("Dynamics finds the forces that Bullet's forward dynamics was given, in 50 states of two robots") {
-  for (const RobotModel& model : {tulip(), skew_tree()}) {
+TEST_CASE("Dynamics finds the forces that Bullet's forward dynamics was given, in 50 states of three robots") {
+  for (const RobotModel& model : {tulip(), skew_tree(), bare_tree()}) {
     for (const auto base : {Dynamics::Base::fixed, Dynamics::Base::floating}) {
       const bool fixed = base == Dynamics::Base::fixed;
       CAPTURE(model.name);

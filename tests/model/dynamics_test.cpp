@@ -20,10 +20,10 @@ void place(Dynamics& dynamics, const State& state) {
   dynamics.update(state.position_rad, state.velocity_rad_s, state.base);
 }
 
-// check(dynamics, state) for both robots, both kinds of base, ten states each.
+// check(model, dynamics, state) for all robots, both kinds of base, ten states each.
 template <typename Check>
 void everywhere(Check&& check) {
-  for (const RobotModel& model : {skew_tree(), tulip()}) {
+  for (const RobotModel& model : {skew_tree(), bare_tree(), tulip()}) {
     for (const auto base : {Dynamics::Base::fixed, Dynamics::Base::floating}) {
       CAPTURE(model.name);
       Dynamics dynamics(model, {.base = base});
@@ -32,7 +32,7 @@ void everywhere(Check&& check) {
         State state = random_state(model, random);
         if (base == Dynamics::Base::fixed) state.base.velocity_m_s = state.base.angular_velocity_rad_s = {};
         place(dynamics, state);
-        check(dynamics, state);
+        check(model, dynamics, state);
       }
     }
   }
@@ -77,7 +77,7 @@ TEST_CASE("Dynamics gives a pendulum's torque and inertia as its formula does") 
 
 TEST_CASE("Dynamics' Jacobians are how points and the centre of mass move") {
   const Vec3 point_m{0.05, -0.1, 0.2};
-  everywhere([&](Dynamics& dynamics, const State& state) {
+  everywhere([&](const RobotModel&, Dynamics& dynamics, const State& state) {
     const auto n = static_cast<Index>(dynamics.size());
     const std::size_t link = state.position_rad.size();  // the last one
     MatrixXd jacobian(6, n), com(3, n);
@@ -100,7 +100,7 @@ TEST_CASE("Dynamics' Jacobians are how points and the centre of mass move") {
 }
 
 TEST_CASE("Dynamics' gravity forces are the slope of the potential energy, and their gradient its curvature") {
-  everywhere([](Dynamics& dynamics, const State& state) {
+  everywhere([](const RobotModel&, Dynamics& dynamics, const State& state) {
     const auto n = static_cast<Index>(dynamics.size()), joints = static_cast<Index>(state.position_rad.size());
     const VectorXd gravity = dynamics.gravity();
     MatrixXd gradient(joints, joints);
@@ -120,9 +120,7 @@ TEST_CASE("Dynamics' gravity forces are the slope of the potential energy, and t
 }
 
 TEST_CASE("Dynamics' mass matrix holds the kinetic energy and is symmetric and positive definite") {
-  const RobotModel models[] = {skew_tree(), tulip()};
-  everywhere([&](Dynamics& dynamics, const State& state) {
-    const RobotModel& model = state.position_rad.size() == models[0].joints.size() ? models[0] : models[1];
+  everywhere([&](const RobotModel& model, Dynamics& dynamics, const State& state) {
     const MatrixXd& mass = dynamics.mass_matrix();
     const VectorXd v = velocities(state, dynamics);
     CHECK(0.5 * v.dot(mass * v) == doctest::Approx(kinetic_energy_J(model, dynamics, v)).epsilon(1e-12));
@@ -132,7 +130,7 @@ TEST_CASE("Dynamics' mass matrix holds the kinetic energy and is symmetric and p
 }
 
 TEST_CASE("Dynamics' inverse dynamics is mass matrix times acceleration plus bias, rotors included") {
-  for (const RobotModel& model : {skew_tree(), tulip()}) {
+  for (const RobotModel& model : {skew_tree(), bare_tree(), tulip()}) {
     Dynamics dynamics(model, {.base = Dynamics::Base::floating,
                               .rotor_inertia_kg_m2 = std::vector<double>(model.joints.size(), 0.02)});
     RandomStream random(5, "states");

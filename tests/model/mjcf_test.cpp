@@ -68,6 +68,22 @@ constexpr const char* walker = R"(<mujoco model="walker">
 </mujoco>
 )";
 
+// A root that slides twice and turns, a head on two axes apart from each other, and one body more.
+constexpr const char* many_axes = R"(<mujoco><compiler angle="radian"/><worldbody>
+  <body name="hip" pos="0 0 1" euler="0.1 0.2 0.3">
+    <joint name="x" type="slide" axis="1 0 0"/><joint name="z" type="slide" axis="0 0 1"/>
+    <joint name="pitch" axis="0 1 0" pos="0.1 0 0"/>
+    <geom type="box" size="0.1 0.2 0.3"/>
+    <body name="head" pos="0 0.1 0.5" euler="0 0.3 0">
+      <joint name="pan" axis="0 0 1" pos="0.02 0 0"/>
+      <joint name="tilt" axis="0.1 1 0" pos="0.02 0 0.1" ref="0.2" armature="0.01"/>
+      <geom type="capsule" fromto="0 0 0 0.1 0.1 0.3" size="0.05"/>
+      <body pos="0.1 0 0.2"><joint axis="1 0 0"/><geom type="box" size="0.1 0.05 0.02"/></body>
+    </body>
+  </body></worldbody>
+  <actuator><motor joint="tilt" ctrllimited="true" ctrlrange="-3 3"/></actuator></mujoco>
+)";
+
 RobotModel model_of(const RobotDescription& robot) { return read_urdf_text(robot.urdf, "made.urdf"); }
 
 std::string error_of(const test::TemporaryFolder& files, const std::string& text) {
@@ -167,16 +183,36 @@ TEST_CASE("An MJCF without actuators has the motors that its joints' ranges of f
   CHECK(model_of(read_mjcf(files.write("driven.xml", body + motor))).joints[0].effort_max_Nm == 0);
 }
 
-TEST_CASE("A motor of a joint that was refused is not told as well") {
+TEST_CASE("A body with several joints hangs on links without mass, one a joint, in one warning") {
   const test::TemporaryFolder files;
-  const std::string text = R"(<mujoco><worldbody><body><joint name="a"/><joint name="b" axis="0 1 0"/><geom size="0.1"/>
-    </body></worldbody><actuator><motor joint="b"/></actuator></mujoco>)";
-  try {
-    (void)read_mjcf(files.write("two.xml", text));
-    FAIL_CHECK("accepted");
-  } catch (const InputError& error) {
-    CHECK(std::string(error.what()).find("which does not exist") == std::string::npos);
-  }
+  std::vector<InputProblem> warnings;
+  const RobotDescription robot = read_mjcf(files.write("many.xml", many_axes), {}, &warnings);
+  const RobotModel model = model_of(robot);
+  CHECK(model.joint_names() == std::vector<std::string>{"x", "z", "pitch", "pan", "tilt", "body_6_joint"});
+  const std::vector<std::string> names{"world", "hip_x", "hip_z", "hip", "head_pan", "head", "body_6"};
+  for (std::size_t i = 0; i < names.size(); ++i) CHECK(model.links[i].name == names[i]);
+  for (const std::size_t between : {1U, 2U, 4U}) CHECK(model.links[between].inertia.mass_kg == 0);
+  CHECK(model.joints[4].effort_max_Nm == 3);
+  const Vec3& apart = model.joints[4].origin.position_m;  // tilt is 0.1 above pan
+  CHECK(apart[2] == doctest::Approx(0.1));
+  std::string told;
+  for (const InputProblem& warning : warnings) told += warning.text() + "\n";
+  CHECK(told.find("body 'hip' moves on 3 joints of its own: it hangs on links without mass, one a joint, named "
+                  "'hip_JOINT' (2 such: also in line") != std::string::npos);
+  CHECK(told.find("and has no mass") == std::string::npos);
+}
+
+TEST_CASE("Slides along x, y and z and a ball let a root float as a free joint does") {
+  const test::TemporaryFolder files;
+  const std::string text =
+      "<mujoco><worldbody><body name=\"base\"><joint type=\"slide\" axis=\"1 0 0\"/><joint type=\"slide\" axis=\"0 1 "
+      "0\"/><joint type=\"slide\" axis=\"0 0 1\"/><joint type=\"ball\"/><geom size=\"1\"/><body><joint/><geom "
+      "size=\"1\"/></body></body></worldbody><keyframe><key qpos=\"1 2 3 1 0 0 0 0.5\"/></keyframe></mujoco>";
+  const RobotDescription robot = read_mjcf(files.write("free.xml", text));
+  CHECK(model_of(robot).links[0].name == "base");
+  CHECK(model_of(robot).joints.size() == 1);
+  REQUIRE(robot.poses.size() == 1);
+  CHECK(robot.poses[0].position[0].second == 0.5);
 }
 
 TEST_CASE("What a file includes is read in its place, and problems are told of the file that they stand in") {
@@ -207,7 +243,10 @@ TEST_CASE("What would be another robot is refused, with its line and what to do"
   const std::vector<std::pair<std::string, std::string>> table{
       {"<robot/>", "1: the first element is <robot>, an MJCF's is <mujoco>"},
       {"<mujoco><worldbody><geom size=\"1\"/></worldbody></mujoco>", "1: this MJCF has no body with a joint"},
-      {with("<joint name=\"b\"/>"), "5: body 'base' moves on 2 joints of its own: write a body of a small mass"},
+      {with("<joint name=\"b\" type=\"slide\" axis=\"1 0 0\"/>"),
+       "3: link 'base_way' has no mass, and nothing resists when joints 'way' and 'b' move against each other: give "
+       "one"},
+      {with("<freejoint/>"), "3: body 'base' is free, and has another joint"},
       {with("<body><joint type=\"ball\"/><geom size=\"1\"/></body>"), "5: joint 'body_2_joint' is a ball"},
       {with("<body><joint type=\"hing\"/><geom size=\"1\"/></body>"),
        "5: joint 'body_2_joint' has the unknown type 'hing', did you mean 'hinge'?"},
@@ -273,13 +312,21 @@ TEST_CASE("A damaged MJCF is read or refused, and what was made of it is a URDF 
 }
 
 #ifdef KADANS_MUJOCO
-TEST_CASE("Masses and forces of an MJCF are those that libmujoco computes, in 400 states of motion") {
+TEST_CASE(
+    "Masses, forces, accelerations and Jacobians of an MJCF are those that libmujoco computes, in 400 states of "
+    "motion") {
   const test::TemporaryFolder files;
-  const test::JudgedRobot judged = test::judge(files.write("walker.xml", walker), 400);
-  REQUIRE_MESSAGE(judged.judged, judged.why);
-  CHECK(judged.mass < 1e-9);
-  CHECK(judged.mass_matrix < 1e-9);
-  CHECK(judged.bias < 1e-9);
+  std::string named = many_axes;
+  named.replace(named.find("<joint axis=\"1 0 0\"/>"), 6, "<joint name=\"body_6_joint\"");
+  for (const std::string& text : {std::string(walker), named}) {
+    const test::JudgedRobot judged = test::judge(files.write("judged.xml", text), 400);
+    REQUIRE_MESSAGE(judged.judged, judged.why);
+    CHECK(judged.mass < 1e-9);
+    CHECK(judged.mass_matrix < 1e-9);
+    CHECK(judged.bias < 1e-9);
+    CHECK(judged.acceleration < 1e-9);
+    CHECK(judged.jacobian < 1e-9);
+  }
   // Files of somebody else: KADANS_MJCF names a list of them, a line each.
   const char* const list = std::getenv("KADANS_MJCF");
   std::ifstream others(list == nullptr ? "" : list);
@@ -291,10 +338,13 @@ TEST_CASE("Masses and forces of an MJCF are those that libmujoco computes, in 40
         MESSAGE(file, " is not judged: ", robot.why);
         continue;
       }
-      MESSAGE(file, " differs by ", robot.mass, ", ", robot.mass_matrix, ", ", robot.bias);
+      MESSAGE(file, " differs by ", robot.mass, ", ", robot.mass_matrix, ", ", robot.bias, ", ", robot.acceleration,
+              ", ", robot.jacobian);
       CHECK(robot.mass < 1e-9);
       CHECK(robot.mass_matrix < 1e-9);
       CHECK(robot.bias < 1e-6);
+      CHECK(robot.acceleration < 1e-6);
+      CHECK(robot.jacobian < 1e-9);
     } catch (const InputError& error) {
       MESSAGE(error.what());
     }

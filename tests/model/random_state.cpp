@@ -57,6 +57,13 @@ RobotModel skew_tree() {
   return model;
 }
 
+RobotModel bare_tree() {
+  RobotModel model = skew_tree();
+  model.name = "bare";
+  model.links[1].inertia = model.links[4].inertia = {};
+  return model;
+}
+
 RobotModel tulip() { return read_urdf(KADANS_SOURCE_DIR "/models/tulip/tulip.urdf"); }
 
 State random_state(const RobotModel& model, RandomStream& random) {

@@ -11,6 +11,8 @@ namespace kadans::test {
 
 // A branched tree of eight links, skew axes, full inertia tensors, two of the joints sliding.
 RobotModel skew_tree();
+// The same, where two of the links have no mass: one between two joints, one that carries two others.
+RobotModel bare_tree();
 RobotModel tulip();
 
 struct State {

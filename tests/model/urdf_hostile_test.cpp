@@ -56,7 +56,7 @@ bool sound(const RobotModel& model) {
   if (model.links.size() != model.joints.size() + 1 || model.joints.size() > max_joints) return false;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     const Joint& joint = model.joints[i];
-    if (joint.parent > i || !(model.links[i + 1].inertia.mass_kg > 0) || !(joint.lower_rad <= joint.upper_rad))
+    if (joint.parent > i || !(model.links[i + 1].inertia.mass_kg >= 0) || !(joint.lower_rad <= joint.upper_rad))
       return false;
   }
   return true;

@@ -31,23 +31,24 @@ TEST_CASE("A link that is wrong or odd is told with its place, what is wrong and
        "warning: duo.urdf:4:5: link 'base' has an <inertial> without mass, and counts as one without it"},
       {"inertial without inertia", R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)", "",
        "duo.urdf:4:5: the inertia of link 'base' is not positive definite: its principal moments are 0, 0, 0 kg m2, "
-       "all must be > 0"},
+       "all must be > 0; compute it anew from the shape, about the centre of mass, in kg m2"},
       {"inertia without ixz", R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)",
        R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" iyz="0"/>)",
        "warning: duo.urdf:6:7: <inertia> has not all of ixy, ixz and iyz: what is missing is taken as 0"},
       {"inertia not positive definite", R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)",
        R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0.03" ixz="0" iyz="0"/>)",
        "duo.urdf:6:7: the inertia of link 'base' is not positive definite: its principal moments are -0.01, 0.02, 0.05 "
-       "kg m2, all must be > 0"},
+       "kg m2, all must be > 0; compute it anew from the shape, about the centre of mass, in kg m2"},
       {"inertia zero", R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)",
        R"(<inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/>)",
        "duo.urdf:6:7: the inertia of link 'base' is not positive definite: its principal moments are 0, 0, 0 kg m2, "
-       "all must be > 0"},
+       "all must be > 0; compute it anew from the shape, about the centre of mass, in kg m2"},
       {"inertia against the triangle inequality",
        R"(<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/>)",
        R"(<inertia ixx="0.02" iyy="0.02" izz="0.05" ixy="0" ixz="0" iyz="0"/>)",
        "duo.urdf:6:7: the inertia of link 'base' breaks the triangle inequality: of its principal moments 0.02, 0.02, "
-       "0.05 kg m2 no one may exceed the sum of the other two, here 0.04"},
+       "0.05 kg m2 no one may exceed the sum of the other two, here 0.04; compute it anew from the shape, "
+       "about the centre of mass, in kg m2"},
       {"mass twice", R"(<mass value="2.5"/>)", R"(<mass value="2.5"/><mass value="3"/>)",
        "warning: duo.urdf:5:26: a second <mass> in <inertial>: the first counts"},
       {"unknown geometry", R"(<sphere radius="0.1"/>)", R"(<capsule radius="0.1" length="1"/>)", "nothing"},

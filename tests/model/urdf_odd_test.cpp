@@ -25,6 +25,15 @@ std::string inertia(const std::string& izz) {
   return R"(<inertia ixx="0.02" iyy="0.02" izz=")" + izz + R"(" ixy="0" ixz="0" iyz="0"/>)";
 }
 
+// The text of a link, and that between it and the axis of its joint.
+const std::string bare_upper_arm = "<link name=\"upper_arm\"/>\n";
+std::string from_to(const std::string& from, const std::string& to) {
+  const std::size_t at = duo_urdf.find(from);
+  return duo_urdf.substr(at, duo_urdf.find(to, at) - at);
+}
+std::string upper_arm() { return from_to("<link name=\"upper_arm\">", "  <link name=\"fore_arm\">"); }
+std::string between() { return from_to("  <link name=\"fore_arm\">", "0 1 0"); }
+
 std::string transmission(const std::string& type, const std::string& joint, const std::string& reduction = "") {
   return "<transmission name=\"t\"><type>" + type + "</type><joint name=\"" + joint + "\"/><actuator name=\"m\">" +
          reduction + "</actuator></transmission></robot>";
@@ -91,7 +100,20 @@ warning: duo.urdf:27:47: the inertia of link 'tip' breaks the triangle inequalit
        "rounding"},
       {"the triangle inequality missed by more", inertia("0.02"), inertia("0.043"),
        "duo.urdf:6:7: the inertia of link 'base' breaks the triangle inequality: of its principal moments 0.02, 0.02, "
-       "0.043 kg m2 no one may exceed the sum of the other two, here 0.04"},
+       "0.043 kg m2 no one may exceed the sum of the other two, here 0.04; compute it anew from the shape, about the "
+       "centre of mass, in kg m2"},
+      {"a link without mass that carries one with mass", upper_arm(), bare_upper_arm,
+       "warning: duo.urdf:11:3: link 'upper_arm' moves on joint 'shoulder' and has no mass: what hangs on it gives it "
+       "all "
+       "its inertia"},
+      {"two axes in a line with no mass between", upper_arm() + between() + "0 1 0",
+       bare_upper_arm + between() + "1 0 0",
+       R"(duo.urdf:11:3: link 'upper_arm' has no mass, and nothing resists when joints 'shoulder' and 'elbow' move against each other: give one of them a rotor inertia (<dynamics armature=...>, in MJCF armature), or the link an <inertial>)"},
+      {"two axes in a line, one with a rotor", upper_arm() + between() + "0 1 0\"/>",
+       bare_upper_arm + between() + "1 0 0\"/><dynamics armature=\"0.1\"/>",
+       "warning: duo.urdf:11:3: link 'upper_arm' moves on joint 'shoulder' and has no mass: what hangs on it gives it "
+       "all "
+       "its inertia"},
       {"an inertial without a mass", end, fixed("<inertial/>"),
        "warning: duo.urdf:27:18: link 'tip' has an <inertial> without mass, and counts as one without it"},
   };

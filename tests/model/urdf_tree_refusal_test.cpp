@@ -42,7 +42,7 @@ duo.urdf:24:44: child link 'fore_arm' of joint 'elbow' does not exist)"},
        R"(  <link name="fore_arm">
 )",
        "duo.urdf:14:3: link 'fore_arm' moves on joint 'elbow' but has no mass: it, or a link fixed to it, needs an "
-       "<inertial>"},
+       "<inertial>; or make the joint fixed"},
       {"robot without name", R"(<robot name="duo">)", "<robot>",
        "warning: duo.urdf:1:1: this <robot> has no name that can be used, and gets its file's"},
       {"robot of another version", R"(<robot name="duo">)", R"(<robot name="duo" version="2.0">)",

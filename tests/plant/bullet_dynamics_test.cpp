@@ -1,8 +1,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Cholesky>
 #include <doctest/doctest.h>
 
+#include "kadans/model/dynamics.h"
 #include "kadans/model/kinematics.h"
 #include "small_robots.h"
 
@@ -127,6 +129,53 @@ TEST_CASE("Drives inside a free robot move its parts and not its centre of mass"
   for (std::size_t i = 0; i < 3; ++i) {
     CHECK(std::abs(plant.truth().com_velocity_m_s[i]) < 2e-3);
     CHECK(std::abs(plant.truth().com_m[i] - com[i]) < 1e-3);
+  }
+}
+
+// Links without mass between joints, as of universal joints, on a fixed and on a free base.
+TEST_CASE("A robot with links without mass moves as its equations of motion say, with both solvers") {
+  for (const bool fixed : {true, false}) {
+    for (const auto solver : {ContactSolver::tree, ContactSolver::stock}) {
+      Robot robot = tumbling_chain();
+      robot.model.links.push_back(robot.model.links[2]);
+      robot.model.links.push_back(robot.model.links[1]);
+      robot.model.links[1].inertia = robot.model.links[3].inertia = {};
+      for (const std::size_t parent : {1U, 3U}) {
+        Joint joint = robot.model.joints[1];
+        joint.name = "further" + std::to_string(parent);
+        joint.parent = parent;
+        joint.axis = {0.6, 0.8, 0};
+        robot.model.joints.push_back(joint);
+        robot.model.links[robot.model.joints.size()].name = joint.name;
+        robot.settings.drives.emplace_back();
+        robot.settings.encoders.emplace_back();
+        robot.settings.drives.back().torque_max_Nm = 1;
+      }
+      robot.settings.solver = solver;
+      robot.settings.fixed_base = fixed;
+      robot.settings.gravity_m_s2 = {0, 0, -g};
+      robot.settings.position_rad = {0.3, -0.4, 0.5, 0.6};
+      BulletWorld plant(robot.model, robot.settings, 1);
+      Dynamics dynamics(robot.model, {.base = fixed ? Dynamics::Base::fixed : Dynamics::Base::floating});
+      ActuationFrame actuation;
+      actuation.joint_count = 4;
+      for (std::size_t j = 0; j < 4; ++j) actuation.joints[j] = {.effort_Nm = 0.2, .mode = ActuationMode::effort};
+      for (int i = 0; i < 50; ++i) {
+        const PlantTruth before = plant.truth();
+        dynamics.update(before.position_rad, before.velocity_rad_s,
+                        {before.base, before.base_velocity_m_s, before.base_angular_velocity_rad_s});
+        Eigen::VectorXd force = -dynamics.bias();
+        force.tail(4).array() += 0.2;
+        const Eigen::VectorXd wanted = dynamics.mass_matrix().ldlt().solve(force);
+        plant.write(actuation);
+        plant.step(ms);
+        for (std::size_t j = 0; j < 4; ++j) {
+          const double found = (plant.truth().velocity_rad_s[j] - before.velocity_rad_s[j]) / 1e-3;
+          CHECK(found == doctest::Approx(wanted[wanted.size() - 4 + static_cast<Eigen::Index>(j)]).epsilon(1e-8));
+        }
+      }
+      CHECK(std::abs(plant.truth().velocity_rad_s[0]) > 0.05);
+    }
   }
 }
 

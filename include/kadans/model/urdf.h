@@ -3,6 +3,7 @@
 // limits. Everything else is a warning that says what was made of it. docs/urdf.md.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -22,10 +23,16 @@ using UrdfPackages = std::map<std::string, std::string>;  // folders by the name
 // file that is no mesh: that one is left out, with a warning.
 using MeshHull = std::function<std::vector<Vec3>(const std::string& file)>;
 
+// The triangles of a mesh, in the file's unit: three corners each, x y z. None: it cannot be read here. Throws
+// InputError on a file that is no mesh.
+using MeshTriangle = std::array<float, 9>;
+using MeshTriangles = std::function<std::vector<MeshTriangle>(const std::string& file)>;
+
 struct UrdfOptions {
-  MeshHull mesh_hull{};     // as which meshes collide; without it they have no corners, and collide nowhere
-  bool strict = false;      // warnings are mistakes
-  UrdfPackages packages{};  // where packages are; else see find_urdf_file
+  MeshHull mesh_hull{};            // as which meshes collide; without it they have no corners, and collide nowhere
+  MeshTriangles mesh_triangles{};  // which weigh bodies of an MJCF; without it, those without <inertial> are refused
+  bool strict = false;             // warnings are mistakes
+  UrdfPackages packages{};         // where packages are; else see find_urdf_file
 };
 
 // Throws InputError (signal/input_error.h) on any mistake: one message with all mistakes that were found, one per line;

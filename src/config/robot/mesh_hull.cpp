@@ -1,6 +1,7 @@
 #include "mesh_hull.h"
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -60,6 +61,12 @@ std::string read_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+[[noreturn]] void refuse(const std::string& file, const ProgramOutput& made) {
+  std::string why = shown_text(std::string_view(made.err).substr(0, made.err.find('\n')));
+  if (why.empty()) why = "its reader ended without a word";
+  throw InputError({.file = file, .message = "cannot be read as a mesh: " + why});
+}
+
 void keep(const fs::path& file, std::string_view text) {
   try {
     fs::create_directories(file.parent_path());
@@ -86,13 +93,23 @@ std::vector<Vec3> mesh_hull(const std::string& file) {
   const ProgramOutput made =
       run_program({program.string(), fs::absolute(file).string(), std::to_string(mesh_corners_max)});
   const auto corners = made.exit_code == 0 ? corners_in(made.out) : std::nullopt;
-  if (!corners) {
-    std::string why = shown_text(std::string_view(made.err).substr(0, made.err.find('\n')));
-    if (why.empty()) why = "its reader ended without a word";
-    throw InputError({.file = file, .message = "cannot be read as a mesh: " + why});
-  }
+  if (!corners) refuse(file, made);
   if (!folder.empty()) keep(kept, made.out);
   return *corners;
+}
+
+std::vector<MeshTriangle> mesh_triangles(const std::string& file) {
+  const fs::path program = hull_program();
+  if (program.empty()) return {};
+  const ProgramOutput made = run_program({program.string(), fs::absolute(file).string(), "triangles"});
+  if (made.exit_code != 0 || made.out.empty() || made.out.size() % sizeof(MeshTriangle) != 0) refuse(file, made);
+  std::vector<MeshTriangle> triangles(made.out.size() / sizeof(MeshTriangle));
+  std::memcpy(triangles.data(), made.out.data(), made.out.size());
+  for (const MeshTriangle& triangle : triangles) {
+    for (const float part : triangle)
+      if (!std::isfinite(part)) refuse(file, made);
+  }
+  return triangles;
 }
 
 }  // namespace kadans

@@ -11,6 +11,8 @@
 #include "kadans/model/kinematics.h"
 #include "kadans/model/mjcf.h"
 #include "kadans/signal/capacity.h"
+#include "mjcf_motors.h"
+#include "mjcf_solid.h"
 #include "mjcf_source.h"
 #include "mjcf_values.h"
 #include "model/urdf/urdf_description.h"
@@ -25,7 +27,6 @@ namespace {
 using Xml = tinyxml2::XMLElement;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double assumed_force = 100;   // N or Nm, of an actuator that says none
 constexpr double density_kg_m3 = 1000;  // MuJoCo's default
 constexpr std::size_t most_bodies = 1000;
 
@@ -37,8 +38,8 @@ Inertia tensor(double mass_kg, const Vec3& moments) {
 
 class MjcfReader {
  public:
-  MjcfReader(UrdfDocument& document, std::vector<MjcfPose>& poses)
-      : document_(document), defaults_(document), poses_(poses) {}
+  MjcfReader(UrdfDocument& document, const UrdfOptions& options, std::vector<MjcfPose>& poses)
+      : document_(document), options_(options), defaults_(document), poses_(poses) {}
 
   UrdfDescription run() {
     const Xml& root = document_.root();
@@ -51,10 +52,8 @@ class MjcfReader {
     name_robot(root);
     world(root);
     if (robot_.links.empty()) document_.stop(at(root), "this MJCF has no body with a joint, so it has no robot");
-    each(root, "tendon", [&](const Xml& e) { tendons(e); });
-    each(root, "equality", [&](const Xml& e) { equalities(e); });
-    each(root, "actuator", [&](const Xml& e) { actuators(e); });
-    bound_efforts();
+    if (total_mass_kg_ > 0) scale_masses();
+    read_mjcf_motors(document_, defaults_, {limits_by_range_, joint_most_}, robot_);
     each(root, "keyframe", [&](const Xml& e) { keyframes(e); });
     tell_unused(root);
     return std::move(robot_);
@@ -72,6 +71,10 @@ class MjcfReader {
   struct Asset {
     std::string file;
     Vec3 scale{1, 1, 1};
+    MeshWeight weight = MeshWeight::legacy;
+    bool in_its_frame = true, weighed = false;
+    Inertia inertia{};  // at a density of 1 kg/m3
+    std::string why_not{};
   };
   struct Address {  // in qpos
     std::string joint;
@@ -109,8 +112,11 @@ class MjcfReader {
       document_.refuse(
           e.at(),
           "global coordinates are no longer MuJoCo's: save the model once by MuJoCo 2, which writes local ones");
-    if (e.number("settotalmass", -1) > 0)
-      document_.refuse(e.at(), "'settotalmass' scales masses that stand in the file: write the scaled ones");
+    exact_meshes_ = e.flag("exactmeshinertia", exact_meshes_).value_or(false);
+    const auto groups = e.numbers("inertiagrouprange", 2, 2, {weighed_groups_[0], weighed_groups_[1]});
+    weighed_groups_ = {groups[0], groups[1]};
+    total_mass_kg_ = e.number("settotalmass", total_mass_kg_);
+    if (total_mass_kg_ > 0) total_mass_at_ = e.at();
   }
 
   void name_robot(const Xml& root) {
@@ -129,10 +135,14 @@ class MjcfReader {
       if (file.empty())
         document_.warn(e.at(), "mesh " + shown_quoted(name) + " is given by its vertices, and is left out",
                        "mesh of vertices");
-      if (e.has("refpos") || e.has("refquat"))
+      const std::string weight = e.text("inertia", exact_meshes_ ? "exact" : "legacy");
+      const bool placed = e.has("refpos") || e.has("refquat");
+      if (placed)
         document_.warn(e.at(), "'refpos' and 'refquat' of mesh " + shown_quoted(name) + " are not used", "refpos");
-      meshes_by_name_[name] = {file.empty() ? "" : (std::filesystem::path(meshes_) / file).string(),
-                               vec3(e.numbers("scale", 3, 3, {1, 1, 1}))};
+      meshes_by_name_[name] = {.file = file.empty() ? "" : (std::filesystem::path(meshes_) / file).string(),
+                               .scale = vec3(e.numbers("scale", 3, 3, {1, 1, 1})),
+                               .weight = weight == "exact" ? MeshWeight::exact : MeshWeight::legacy,
+                               .in_its_frame = !placed && (weight == "exact" || weight == "legacy")};
     });
     each(all, "material", [&](const Xml& xml) {
       const MjcfElement e = element(xml);
@@ -175,7 +185,7 @@ class MjcfReader {
     std::vector<std::pair<const Xml*, Pose>> moved;
     std::copy_if(bodies.begin(), bodies.end(), std::back_inserter(moved),
                  [](const auto& body) { return is_moved(*body.first); });
-    const auto is_free = [&](const auto& body) { return free_joint(*body.first) != nullptr; };
+    const auto is_free = [&](const auto& body) { return free_motion(*body.first) != nullptr; };
     const std::size_t free = static_cast<std::size_t>(std::ranges::count_if(moved, is_free));
     if (free > 1 || (free == 1 && moved.size() > 1))
       document_.stop(at(*moved[1].first), "several robots stand in this MJCF: give each a file of its own");
@@ -188,7 +198,8 @@ class MjcfReader {
     for (const auto& [body, pose] : bodies) {
       if (!is_moved(*body)) {
         skip_positions(*body);
-        if (free_joint(*body) != nullptr)
+        has_scenery_ = true;
+        if (free_motion(*body) != nullptr)
           document_.warn(at(*body),
                          "body " + shown_quoted(name_of(*body)) +
                              " is no part of the robot: it is left out; objects are a scenario's (world)",
@@ -216,26 +227,37 @@ class MjcfReader {
                                   "(mj_saveLastXML), which writes them");
   }
 
-  static const Xml* free_joint(const Xml& body) {
+  // What lets a body of the world move freely: a free joint, or what older files have in its place, slides along x, y
+  // and z and a ball, in this order.
+  static const Xml* free_motion(const Xml& body) {
+    std::string types;
+    const Xml* first = nullptr;
     for (const Xml* e = body.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
-      const char* const type = e->Attribute("type");
       if (std::string_view(e->Name()) == "freejoint") return e;
-      if (std::string_view(e->Name()) == "joint" && type != nullptr && type == std::string_view("free")) return e;
+      if (std::string_view(e->Name()) != "joint") continue;
+      const char *const type = e->Attribute("type"), *const axis = e->Attribute("axis");
+      if (type != nullptr && type == std::string_view("free")) return e;
+      if (first == nullptr) first = e;
+      types += type == nullptr ? "hinge" : type;
+      types += axis == nullptr ? ";" : std::string(" ") + axis + ";";
     }
-    return nullptr;
+    return types == "slide 1 0 0;slide 0 1 0;slide 0 0 1;ball;" ? first : nullptr;
   }
 
+  // Its other joints.
   static std::vector<const Xml*> joints_of(const Xml& body) {
     std::vector<const Xml*> all;
-    const Xml* const free = free_joint(body);
+    const Xml* const free = free_motion(body);
+    const char* const type = free == nullptr ? nullptr : free->Attribute("type");
+    const bool in_parts = type != nullptr && type == std::string_view("slide");
     each(body, "joint", [&](const Xml& e) {
-      if (&e != free) all.push_back(&e);
+      if (&e != free && !in_parts) all.push_back(&e);
     });
     return all;
   }
 
   void skip_positions(const Xml& body) {
-    if (free_joint(body) != nullptr) positions_ += 7;
+    if (free_motion(body) != nullptr) positions_ += 7;
     each(body, "body", [&](const Xml& e) { skip_positions(e); });
   }
 
@@ -247,55 +269,80 @@ class MjcfReader {
   void body(const Xml& xml, const std::optional<Frame>& parent, const std::string& of_class) {
     if (robot_.links.size() >= most_bodies) document_.stop(at(xml), "more than 1000 bodies");
     const MjcfElement e = element(xml, of_class);
-    UrdfLink link{.name = name_of(xml),
+    UrdfLink link{.name = unused_link(name_of(xml)),
                   .at = e.at(),
                   .name_at = UrdfElement(document_, xml).at_value("name"),
                   .inertia_at = e.at()};
-    for (const std::string taken = link.name; !link_names_.insert(link.name).second;)
-      link.name = taken + "_" + std::to_string(link_names_.size());
-    const std::size_t number = robot_.links.size();
     const std::vector<const Xml*> joints = joints_of(xml);
-    const Xml* const free = free_joint(xml);
+    const Xml* const free = free_motion(xml);
     if (free != nullptr) {
       positions_ += 7;
       if (parent)
         document_.refuse(at(*free),
                          "body " + shown_quoted(link.name) + " is free inside of another body: a robot is one tree");
+      if (!joints.empty())
+        document_.refuse(at(*joints[0]), "body " + shown_quoted(link.name) + " is free, and has another joint");
     }
-    if (joints.size() > 1)
-      document_.refuse(at(*joints[1]),
-                       "body " + shown_quoted(link.name) + " moves on " + std::to_string(joints.size()) +
-                           " joints of its own: write a body of a small mass and inertia for each of them but the "
-                           "last, one inside of the other",
-                       "several joints");
-    for (std::size_t i = 1; i < joints.size(); ++i) {
-      if (const char* const name = joints[i]->Attribute("name"); name != nullptr) refused_joints_.insert(name);
+    Frame own{robot_.links.size(), {}, e.class_name()};
+    if (parent) {
+      own = hang(e, *parent, joints, std::move(link));
+    } else {
+      robot_.links.push_back(std::move(link));
     }
-    Frame own{number, {}, e.class_name()};
-    if (!joints.empty()) {
-      const Vec3 anchor = vec3(element(*joints[0], own.of_class).numbers("pos", 3, 3, {0, 0, 0}));
-      own.in_link.position_m = {-anchor[0], -anchor[1], -anchor[2]};
-    }
-    robot_.links.push_back(std::move(link));
-    if (parent) hang(e, *parent, own, joints);
     contents(xml, own);
   }
 
-  // The joint between a body and the one around it; without <joint> it stands fast.
-  void hang(const MjcfElement& body, const Frame& parent, const Frame& own, const std::vector<const Xml*>& joints) {
+  std::string unused_link(const std::string& wanted) {
+    std::string name = wanted;
+    while (!link_names_.insert(name).second) name = wanted + "_" + std::to_string(link_names_.size());
+    return name;
+  }
+
+  // A body on the one around it. Without a joint it stands fast. MuJoCo lets the joints of a body act one after
+  // another, the first one outermost: links without mass stand between them.
+  Frame hang(const MjcfElement& body, const Frame& parent, const std::vector<const Xml*>& joints, UrdfLink&& link) {
+    if (joints.size() > 1) {
+      document_.warn(at(*joints[1]),
+                     "body " + shown_quoted(link.name) + " moves on " + std::to_string(joints.size()) +
+                         " joints of its own: it hangs on links without mass, one a joint, named " +
+                         shown_quoted(link.name + "_JOINT"),
+                     "several joints");
+    }
+    Frame carrier{parent.link, compose(parent.in_link, body.pose(angles_)), body.class_name()};
+    for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
+      const MjcfElement joint = element(*joints[i], body.class_name());
+      UrdfLink between{.name = unused_link(link.name + "_" + joint.text("name", std::to_string(i + 1))),
+                       .at = joint.at(),
+                       .name_at = joint.at(),
+                       .inertia_at = joint.at(),
+                       .between_joints = true};
+      carrier = join(body, carrier, joints[i], std::move(between));
+    }
+    return join(body, carrier, joints.empty() ? nullptr : joints.back(), std::move(link));
+  }
+
+  // `carrier`: where the body is before the joint moves it. Where it is behind it.
+  Frame join(const MjcfElement& body, const Frame& carrier, const Xml* moved_by, UrdfLink&& link) {
+    Frame behind{robot_.links.size(), {}, carrier.of_class};
     UrdfJoint joint;
-    const Pose anchor{{-own.in_link.position_m[0], -own.in_link.position_m[1], -own.in_link.position_m[2]},
-                      {1, 0, 0, 0}};
-    joint.joint.origin = compose(compose(parent.in_link, body.pose(angles_)), anchor);
-    joint.parent = {robot_.links[parent.link].name, body.at()};
-    joint.child = {robot_.links[own.link].name, body.at()};
+    if (moved_by != nullptr) {
+      const Vec3 anchor = vec3(element(*moved_by, carrier.of_class).numbers("pos", 3, 3, {0, 0, 0}));
+      joint.joint.origin = compose(carrier.in_link, {anchor, {1, 0, 0, 0}});
+      behind.in_link.position_m = {-anchor[0], -anchor[1], -anchor[2]};
+    } else {
+      joint.joint.origin = carrier.in_link;
+    }
+    joint.parent = {robot_.links[carrier.link].name, body.at()};
+    joint.child = {link.name, body.at()};
     joint.at = joint.name_at = body.at();
     joint.name = joint.child.link + "_fixed";
-    joint.moves = !joints.empty();
-    if (joint.moves) move(element(*joints[0], own.of_class), joint);
+    joint.moves = moved_by != nullptr;
+    if (joint.moves) move(element(*moved_by, carrier.of_class), joint);
     while (!joint_names_.insert(joint.name).second) joint.name += "_" + std::to_string(joint_names_.size());
     joint.joint.name = joint.name;
+    robot_.links.push_back(std::move(link));
     robot_.joints.push_back(std::move(joint));
+    return behind;
   }
 
   void move(const MjcfElement& e, UrdfJoint& to) {
@@ -380,6 +427,19 @@ class MjcfReader {
     if (body.mass_kg > 0) weld(own.link, moved(body, compose(own.in_link, e.pose(angles_))));
   }
 
+  void scale_masses() {
+    if (has_scenery_)
+      return document_.refuse(total_mass_at_, "'settotalmass' scales the masses of objects too: write the scaled ones");
+    double sum_kg = 0;
+    for (const UrdfLink& link : robot_.links) sum_kg += link.inertia ? link.inertia->mass_kg : 0;
+    for (UrdfLink& link : robot_.links) {
+      if (!link.inertia || !(sum_kg > 0)) continue;
+      Inertia& i = *link.inertia;
+      for (double* const part : {&i.mass_kg, &i.xx, &i.yy, &i.zz, &i.xy, &i.xz, &i.yz})
+        *part *= total_mass_kg_ / sum_kg;
+    }
+  }
+
   // Geoms
 
   void geom(const MjcfElement& e, const Frame& own, bool weigh) {
@@ -400,63 +460,73 @@ class MjcfReader {
         size[1] = length(way) / 2;
     }
     const Pose in_link = compose(own.in_link, pose);
-    std::vector<std::pair<Shape, double>> pieces;  // a shape, and how far along z it is
-    double volume_m3 = 0;
-    Vec3 moments{};  // of a mass of 1
-    const double a = size[0], b = size[1], c = size[2];
-    if (type == "sphere") {
-      pieces = {{Sphere{a}, 0}};
-      volume_m3 = 4.0 / 3 * std::numbers::pi * a * a * a;
-      moments = {0.4 * a * a, 0.4 * a * a, 0.4 * a * a};
-    } else if (type == "box") {
-      pieces = {{Box{{2 * a, 2 * b, 2 * c}}, 0}};
-      volume_m3 = 8 * a * b * c;
-      moments = {(b * b + c * c) / 3, (a * a + c * c) / 3, (a * a + b * b) / 3};
-    } else if (type == "cylinder") {
-      pieces = {{Cylinder{a, 2 * b}, 0}};
-      volume_m3 = std::numbers::pi * a * a * 2 * b;
-      moments = {a * a / 4 + b * b / 3, a * a / 4 + b * b / 3, a * a / 2};
-    } else if (type == "capsule") {
-      pieces = {{Cylinder{a, 2 * b}, 0}, {Sphere{a}, b}, {Sphere{a}, -b}};
-      const double tube = std::numbers::pi * a * a * 2 * b, ball = 4.0 / 3 * std::numbers::pi * a * a * a;
-      volume_m3 = tube + ball;
-      const double t = tube / volume_m3, s = ball / volume_m3;  // two half balls, each 3/8 a beyond its end of the tube
-      const double across = t * (a * a / 4 + b * b / 3) + s * (0.4 * a * a + b * b + 0.75 * a * b);
-      moments = {across, across, t * a * a / 2 + s * 0.4 * a * a};
-    } else if (type == "ellipsoid") {
-      document_.warn(e.at(), "an ellipsoid collides and is drawn as a box", "ellipsoid");
-      pieces = {{Box{{2 * a, 2 * b, 2 * c}}, 0}};
-      volume_m3 = 4.0 / 3 * std::numbers::pi * a * b * c;
-      moments = {(b * b + c * c) / 5, (a * a + c * c) / 5, (a * a + b * b) / 5};
-    } else if (type == "mesh") {
-      const auto found = meshes_by_name_.find(mesh);
-      if (found == meshes_by_name_.end()) {
-        std::vector<std::string> names;
-        for (const auto& [name, asset] : meshes_by_name_) names.push_back(name);
-        document_.refuse(e.at(), "mesh " + shown_quoted(mesh) + " is in no <asset>" + did_you_mean(mesh, names));
-      } else if (!found->second.file.empty()) {
-        pieces = {{Mesh{found->second.file, found->second.scale}, 0}};
-      }
-    } else {
+    const double group = e.number("group", 0);
+    weigh = weigh && group >= weighed_groups_[0] && group <= weighed_groups_[1];
+    if (type == "mesh") return mesh_geom(e, own, in_link, mesh, weigh);
+    const MjcfSolid solid = mjcf_primitive(type, {size[0], size[1], size[2]});
+    if (solid.pieces.empty())
       document_.warn(e.at(), "a geom of type " + shown_quoted(type) + " is left out", "geom type");
-    }
-    if (type != "mesh" && !pieces.empty() && !(volume_m3 > 0))
+    else if (!(solid.inertia.mass_kg > 0))
       return document_.refuse(e.at(), "a geom of type " + type + " needs sizes above 0");
-    if (weigh) weigh_geom(e, own, in_link, type, volume_m3, moments);
-    add_shapes(e, own, in_link, pieces);
+    else if (type == "ellipsoid")
+      document_.warn(e.at(), "an ellipsoid collides and is drawn as a box", "ellipsoid");
+    if (weigh) weigh_geom(e, own, in_link, solid.inertia);
+    add_shapes(e, own, in_link, solid.pieces);
   }
 
-  void weigh_geom(const MjcfElement& e, const Frame& own, const Pose& in_link, const std::string& type,
-                  double volume_m3, const Vec3& moments) {
-    const double mass_kg = e.has("mass") ? e.number("mass", 0) : e.number("density", density_kg_m3) * volume_m3;
-    if (type == "mesh" && (e.has("mass") ? mass_kg > 0 : e.number("density", density_kg_m3) > 0))
-      return document_.refuse(e.at(),
-                              "link " + shown_quoted(robot_.links[own.link].name) +
-                                  " has no <inertial>, and its mesh would give it one: let MuJoCo compile and save the "
-                                  "model (mj_saveLastXML), which writes it, or give the geom mass=\"0\"",
-                              "mesh inertia");
-    if (!(mass_kg > 0)) return;
-    weld(own.link, moved(tensor(mass_kg, {moments[0] * mass_kg, moments[1] * mass_kg, moments[2] * mass_kg}), in_link));
+  void mesh_geom(const MjcfElement& e, const Frame& own, const Pose& in_link, const std::string& mesh, bool weigh) {
+    const auto found = meshes_by_name_.find(mesh);
+    if (found == meshes_by_name_.end()) {
+      std::vector<std::string> names;
+      for (const auto& [name, asset] : meshes_by_name_) names.push_back(name);
+      return document_.refuse(e.at(), "mesh " + shown_quoted(mesh) + " is in no <asset>" + did_you_mean(mesh, names));
+    }
+    Asset& asset = found->second;
+    const double weight = e.has("mass") ? e.number("mass", 0) : e.number("density", density_kg_m3);
+    if (weigh && weight > 0) {
+      if (!asset.weighed) asset.inertia = weighed(asset, asset.why_not);
+      asset.weighed = true;
+      if (!(asset.inertia.mass_kg > 0))
+        return document_.refuse(e.at(),
+                                "link " + shown_quoted(robot_.links[own.link].name) +
+                                    " has no <inertial>, and its mesh would give it one" + asset.why_not +
+                                    ": let MuJoCo compile and save the model (mj_saveLastXML), which writes it, or "
+                                    "give the geom mass=\"0\"",
+                                "mesh inertia");
+      weigh_geom(e, own, in_link, asset.inertia);
+    }
+    if (!asset.file.empty()) add_shapes(e, own, in_link, {{Mesh{asset.file, asset.scale}, 0}});
+  }
+
+  // At a density of 1 kg/m3; without mass when it cannot be weighed, and why not.
+  Inertia weighed(const Asset& asset, std::string& why_not) const {
+    if (!options_.mesh_triangles || asset.file.empty() || !asset.in_its_frame) return {};
+    const auto file = find_urdf_file(asset.file, document_.file(), options_.packages);
+    if (!file) {
+      why_not = ", but " + shown_quoted(asset.file) + " is not there";
+      return {};
+    }
+    try {
+      const std::vector<MeshTriangle> triangles = options_.mesh_triangles(*file);
+      if (triangles.empty()) return {};
+      const Inertia inertia = mesh_inertia(triangles, asset.scale, asset.weight);
+      if (!(inertia.mass_kg > 0)) why_not = ", but " + shown_quoted(asset.file) + " encloses no volume";
+      return inertia;
+    } catch (const InputError& error) {
+      why_not = ", but " + shown_quoted(asset.file) + " " + error.problems().front().message;
+      return {};
+    }
+  }
+
+  // `solid`: at a density of 1 kg/m3.
+  void weigh_geom(const MjcfElement& e, const Frame& own, const Pose& in_link, const Inertia& solid) {
+    if (!(solid.mass_kg > 0)) return;
+    Inertia body = solid;
+    const double share = e.has("mass") ? e.number("mass", 0) / solid.mass_kg : e.number("density", density_kg_m3);
+    if (!(share > 0)) return;
+    for (double* const part : {&body.mass_kg, &body.xx, &body.yy, &body.zz, &body.xy, &body.xz, &body.yz})
+      *part *= share;
+    weld(own.link, moved(body, in_link));
   }
 
   // What collides is drawn where its body has nothing else to be drawn.
@@ -478,127 +548,6 @@ class MjcfReader {
     }
   }
 
-  // What ties joints together and moves them
-
-  UrdfJoint* joint_named(const std::string& name) {
-    const auto found =
-        std::ranges::find_if(robot_.joints, [&](const UrdfJoint& joint) { return joint.moves && joint.name == name; });
-    return found == robot_.joints.end() ? nullptr : &*found;
-  }
-
-  UrdfJoint* joint_of(const MjcfElement& e, const char* attribute) {
-    const auto given = e.find(attribute);
-    if (!given) return nullptr;
-    UrdfJoint* const joint = joint_named(given->text);
-    std::vector<std::string> names;
-    for (const UrdfJoint& each : robot_.joints)
-      if (each.moves) names.push_back(each.name);
-    if (joint == nullptr && !refused_joints_.contains(given->text))
-      document_.refuse(given->at, "<" + shown(e.name()) + "> is of joint " + shown_quoted(given->text) +
-                                      ", which does not exist" + did_you_mean(given->text, names));
-    return joint;
-  }
-
-  void tendons(const Xml& all) {
-    for (const Xml* e = all.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
-      const char* const name = e->Attribute("name");
-      std::vector<std::pair<std::string, double>>& parts = tendons_[name == nullptr ? "" : name];
-      if (std::string_view(e->Name()) != "fixed") {
-        document_.warn(at(*e), "a <" + shown(e->Name()) + "> tendon is left out", "tendon");
-        continue;
-      }
-      each(*e, "joint", [&](const Xml& part) {
-        const MjcfElement of = element(part);
-        parts.emplace_back(of.text("joint"), of.number("coef", 1));
-      });
-    }
-  }
-
-  void equalities(const Xml& all) {
-    for (const Xml* xml = all.FirstChildElement(); xml != nullptr; xml = xml->NextSiblingElement()) {
-      const MjcfElement e = element(*xml);
-      if (!e.flag("active", true).value_or(true)) continue;
-      if (e.name() == "connect" || e.name() == "weld") {
-        document_.refuse(e.at(),
-                         "<" + shown(e.name()) +
-                             "> closes a loop, which no tree of joints has: leave the rod out, and write what drives "
-                             "it as a <transmission> of two joints, or its joint as one that mimics another",
-                         "closed loop");
-        continue;
-      }
-      if (e.name() != "joint") {
-        document_.warn(e.at(), "<" + shown(e.name()) + "> in <equality> is not used", "equality");
-        continue;
-      }
-      UrdfJoint* const follower = joint_of(e, "joint1");
-      UrdfJoint* const leader = joint_of(e, "joint2");
-      const auto curve = e.numbers("polycoef", 1, 5, {0, 1, 0, 0, 0});
-      const bool straight =
-          std::all_of(curve.begin() + std::min<std::ptrdiff_t>(2, static_cast<std::ptrdiff_t>(curve.size())),
-                      curve.end(), [](double c) { return c == 0; });
-      if (follower == nullptr || leader == nullptr || !straight) {
-        document_.warn(e.at(),
-                       "this <joint> of <equality> is not used: a joint may follow another one along a line alone",
-                       "equality");
-        continue;
-      }
-      follower->mimic = UrdfMimic{leader->name, curve.size() > 1 ? curve[1] : 0, curve[0], e.at(), e.at()};
-    }
-  }
-
-  void actuators(const Xml& all) {
-    for (const Xml* xml = all.FirstChildElement(); xml != nullptr; xml = xml->NextSiblingElement()) {
-      const MjcfElement e = element(*xml);
-      std::vector<std::pair<UrdfJoint*, double>> moved;
-      for (const char* const by : {"joint", "jointinparent"}) {
-        if (UrdfJoint* const joint = joint_of(e, by)) moved.emplace_back(joint, 1);
-      }
-      if (const auto tendon = e.find("tendon")) {
-        for (const auto& [joint, share] : tendons_[tendon->text]) {
-          if (UrdfJoint* const part = joint_named(joint)) moved.emplace_back(part, std::abs(share));
-        }
-      }
-      if (moved.empty()) {
-        document_.warn(e.at(), "a <" + shown(e.name()) + "> that moves no joint of the robot is left out", "actuator");
-        continue;
-      }
-      const double most = force_of(e) * std::abs(e.numbers("gear", 1, 6, {1})[0]);
-      for (const auto& [joint, share] : moved) joint->joint.effort_max_Nm += share * most;
-    }
-  }
-
-  // The most that an actuator gives before its gear; infinite when it does not say.
-  double force_of(const MjcfElement& e) const {
-    const auto larger = [](const std::vector<double>& range) {
-      return std::max(std::abs(range[0]), std::abs(range[1]));
-    };
-    const bool bounded = e.flag("forcelimited").value_or(limits_by_range_ && e.has("forcerange"));
-    const double force = bounded ? larger(e.numbers("forcerange", 2, 2, {0, 0})) : infinite;
-    const bool direct = e.name() == "motor" || (e.name() == "general" && e.text("biastype", "none") == "none" &&
-                                                e.text("gaintype", "fixed") == "fixed");
-    const bool commanded = e.flag("ctrllimited").value_or(limits_by_range_ && e.has("ctrlrange"));
-    if (!direct || !commanded) return force;
-    const double gain = e.name() == "general" ? std::abs(e.numbers("gainprm", 1, 10, {1})[0]) : 1;
-    return std::min(force, gain * larger(e.numbers("ctrlrange", 2, 2, {0, 0})));
-  }
-
-  // An MJCF without actuators, driven by the program around it, says what its joints' motors give by their ranges.
-  void bound_efforts() {
-    const bool driven =
-        std::ranges::any_of(robot_.joints, [](const UrdfJoint& joint) { return joint.joint.effort_max_Nm > 0; });
-    for (UrdfJoint& joint : robot_.joints) {
-      double& effort = joint.joint.effort_max_Nm;
-      if (const auto most = joint_most_.find(joint.name); most != joint_most_.end() && (effort > 0 || !driven))
-        effort = driven ? std::min(effort, most->second) : most->second;
-      if (!std::isinf(effort)) continue;
-      document_.warn(joint.at,
-                     "joint " + shown_quoted(joint.name) +
-                         " has an actuator without a limit of force: 100 Nm are assumed; forcerange says it",
-                     "no force");
-      effort = assumed_force;
-    }
-  }
-
   void keyframes(const Xml& all) {
     each(all, "key", [&](const Xml& xml) {
       const MjcfElement e = element(xml);
@@ -617,18 +566,22 @@ class MjcfReader {
   }
 
   UrdfDocument& document_;
+  const UrdfOptions& options_;
   MjcfDefaults defaults_;
   std::vector<MjcfPose>& poses_;
   UrdfDescription robot_;
-  bool limits_by_range_ = true, strip_ = false;
+  bool limits_by_range_ = true, strip_ = false, exact_meshes_ = false;
+  std::array<double, 2> weighed_groups_{0, 5};
+  double total_mass_kg_ = -1;  // of the file, with its scenery; < 0: as it stands
+  std::size_t total_mass_at_ = 0;
+  bool has_scenery_ = false;
   std::optional<bool> from_geoms_;
   std::string meshes_;
   MjcfAngles angles_;
   std::map<std::string, Asset> meshes_by_name_;
   std::map<std::string, Material> materials_;
-  std::map<std::string, std::vector<std::pair<std::string, double>>> tendons_;  // joints and their shares
-  std::map<std::string, double> joint_most_;                                    // actuatorfrcrange
-  std::set<std::string> link_names_, joint_names_, refused_joints_;
+  std::map<std::string, double> joint_most_;  // actuatorfrcrange
+  std::set<std::string> link_names_, joint_names_;
   std::vector<Address> addresses_;
   std::size_t positions_ = 0, moving_ = 0;
 };
@@ -650,7 +603,7 @@ RobotDescription read_mjcf_text(const std::string& text, const std::string& file
   try {
     UrdfDocument document(source.text(), file);
     RobotDescription robot;
-    UrdfDescription description = MjcfReader(document, robot.poses).run();
+    UrdfDescription description = MjcfReader(document, options, robot.poses).run();
     document.throw_if_refused();  // what follows would be consequences
     check_description(document, description, options);
     document.throw_if_refused();

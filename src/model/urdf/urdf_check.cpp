@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "kadans/model/inertia.h"
-#include "kadans/model/kinematics.h"
 #include "signal/nearest_name.h"
 #include "urdf_description.h"
 
@@ -38,7 +36,7 @@ class TreeCheck {
     if (!sound_) return;  // what follows would be consequences
     check_roots();
     check_loops();
-    if (sound_) check_masses();
+    if (sound_) check_masses(document_, robot_);
   }
 
  private:
@@ -117,51 +115,6 @@ class TreeCheck {
     refuse(above_.at(start)->at, "joints in a loop: " + text + "; a URDF is a tree with one root");
   }
 
-  // A body is a link with all that is fixed to it. The root may be without mass: a base that is bolted to the world.
-  void check_masses() {
-    std::map<std::string, Inertia> bodies;  // by the link at the top
-    for (const UrdfLink& link : robot_.links) {
-      if (!link.inertia) continue;
-      std::string at = link.name;
-      Pose pose;
-      for (auto up = above_.find(at); up != above_.end() && !up->second->moves; up = above_.find(at)) {
-        pose = compose(up->second->joint.origin, pose);
-        at = up->second->parent.link;
-      }
-      Inertia& body = bodies[at];
-      body = combined(body, moved(*link.inertia, pose));
-      tops_.emplace(link.name, at);
-    }
-    for (const UrdfJoint& joint : robot_.joints) {
-      const std::string& child = joint.child.link;
-      if (!joint.moves || bodies.contains(child)) continue;
-      refuse(links_.at(child)->at,
-             "link " + shown_quoted(child) + " moves on joint " + shown_quoted(joint.name) +
-                 " but has no mass: it, or a link fixed to it, needs an <inertial>",
-             "no mass");
-    }
-    for (const UrdfLink& link : robot_.links) {
-      if (link.inertia) check_inertia(link, bodies.at(tops_.at(link.name)));
-    }
-  }
-
-  // What other links of its body make good can be simulated, and so can what rounding to two digits has done.
-  void check_inertia(const UrdfLink& link, const Inertia& body) {
-    constexpr double rounded = 0.05;
-    const std::string what = "the inertia of link " + shown_quoted(link.name) + " ";
-    const Inertia& own = *link.inertia;
-    const bool point = own.xx == 0 && own.yy == 0 && own.zz == 0 && own.xy == 0 && own.xz == 0 && own.yz == 0;
-    const auto defect = inertia_defect(own);
-    if (!defect || (point && !inertia_defect(body, rounded))) return;
-    if (!inertia_defect(own, rounded))
-      document_.warn(link.inertia_at, what + *defect + "; by so little that it is rounding", "inertia rounded");
-    else if (!inertia_defect(body, rounded))
-      document_.warn(link.inertia_at, what + *defect + "; with what is fixed to it, it makes a possible body",
-                     "inertia of a part");
-    else
-      refuse(link.inertia_at, what + *defect);
-  }
-
   void check_mimics() {
     std::set<std::string> in_rings;
     for (const UrdfJoint& joint : robot_.joints) {
@@ -200,7 +153,6 @@ class TreeCheck {
   std::map<std::string, const UrdfLink*> links_;
   std::map<std::string, const UrdfJoint*> joints_;
   std::map<std::string, const UrdfJoint*> above_;  // child link -> its joint
-  std::map<std::string, std::string> tops_;        // link with mass -> top link of its body
   bool sound_ = true;
 };
 

@@ -36,6 +36,7 @@ struct UrdfLink {
   std::optional<Inertia> inertia;  // in the link's frame; none: no mass
   std::vector<UrdfGeometry> collisions, visuals;
   std::size_t at = 0, name_at = 0, inertia_at = 0;
+  bool between_joints = false;  // of one body: it was told that it has no mass
 };
 
 struct UrdfEnd {  // of a joint
@@ -88,6 +89,9 @@ void read_transmission(UrdfDocument& document, const tinyxml2::XMLElement& eleme
 // ring; meshes that may not collide or are not there. The files of those that are there stand in the description
 // afterwards; the others are gone.
 void check_description(UrdfDocument& document, UrdfDescription& robot, const UrdfOptions& options);
+
+// The part of it that looks at masses. Names and tree are sound.
+void check_masses(UrdfDocument& document, const UrdfDescription& robot);
 
 // The model: fixed joints disappear, what hung on them moves into the parent. The description has been checked.
 RobotModel merged(const UrdfDescription& robot, UrdfDocument& document);

@@ -267,7 +267,14 @@ LinkPairs touching_pairs(Body& body, const std::vector<double>& position_rad, Pa
 PairMask known_pair_mask(const RobotModel& model, const PlantSettings& settings) {
   PairMask mask(model.links.size());
   if (!settings.self_collision) mask.forbid_all();
-  for (std::size_t i = 0; i < model.joints.size(); ++i) mask.forbid(model.joints[i].parent, i + 1);
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    std::size_t carrier = model.joints[i].parent;
+    mask.forbid(carrier, i + 1);
+    while (carrier > 0 && model.links[carrier].inertia.mass_kg == 0) {  // it joins two links, and is none itself
+      carrier = model.joints[carrier - 1].parent;
+      mask.forbid(carrier, i + 1);
+    }
+  }
   for (const auto& [first, second] : settings.passing) {
     const auto a = model.find_link(first), b = model.find_link(second);
     if (a && b) mask.forbid(*a, *b);
