@@ -206,6 +206,24 @@ class FakeXacro {
 
 }  // namespace
 
+TEST_CASE("check puts in values for what a URDF has left of xacro, and says which; more of it the program expands") {
+  const auto project = project_copy("check_xacro_values");
+  const std::string file = "models/jiwiy/jiwiy.urdf";
+  REQUIRE(edit(project / file, "</robot>",
+               "<xacro:arg name=\"cap\" default=\"cap\"/><link name=\"$(arg cap)\"/><joint name=\"cap\" "
+               "type=\"fixed\"><parent link=\"base\"/><child link=\"cap\"/></joint></robot>"));
+  const Outcome told = run("check " + file, project);
+  CHECK_MESSAGE(told.exit_code == 0, told.err);
+  CHECK(has(told.out, "values are put in for names of xacro: 'cap' is 'cap' (its default)"));
+  CHECK(has(run("check --strict " + file, project).err, "values are put in for names of xacro"));
+  CHECK(has(run("check config/jiwiy/robot.json", project).err, "this is xacro, expand it first"));
+  REQUIRE(edit(project / file, "<xacro:arg ", "<xacro:include filename=\"none\"/><xacro:arg "));
+  CHECK(has(run("check " + file, project).err, "<xacro:include>: this is xacro, expand it first"));
+  std::filesystem::create_directories(project / "bin");
+  const FakeXacro xacro(project, "sed 's/<xacro:[^>]*>//g; s/$(arg cap)/cap/' \"$1\"");
+  CHECK(run("check " + file, project).exit_code == 0);
+}
+
 TEST_CASE("check expands xacro with the program xacro, shows its errors, and says what to do without it") {
   const auto project = project_copy("check_xacro");
   std::filesystem::create_directories(project / "bin");

@@ -56,6 +56,41 @@ TEST_CASE("new robot writes robots that stand or are held, and play their behavi
   }
 }
 
+TEST_CASE("new robot lets an arm sink that its motors cannot hold stretched out, and holds it from the first tick") {
+  const auto folder = fresh_folder("new_robot_weak");
+  const WithoutPictures none;
+  std::string text = arm();  // its second joint bears 12.6 Nm when it is level
+  const std::string stands = "<origin xyz=\"0 0 0.1\"";
+  REQUIRE(has(text, stands));
+  text.replace(text.find(stands), stands.size(), stands + " rpy=\"0 1.5708 0\"");
+  for (std::size_t at = 0; (at = text.find("effort=\"", at)) != std::string::npos;) {
+    at += 8;
+    text.replace(at, text.find('"', at) - at, "10");
+  }
+  write(folder / "from.urdf", text);
+  const Outcome made = run("new robot from.urdf", folder);
+  CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
+  CHECK(has(made.out, "no faults"));
+  const std::string robot = read(folder / "config/arm/robot.json");
+  CHECK(has(robot, "\"from_off\": \"at_once\""));
+}
+
+TEST_CASE("new robot takes meshes of a package along that it is told of") {
+  const auto folder = fresh_folder("new_robot_package");
+  std::string text = arm();
+  text.insert(
+      text.find("<link"),
+      "<link name=\"cap\"><visual><geometry><mesh filename=\"package://caps/cap.stl\"/></geometry></visual></link>"
+      "<joint name=\"cap\" type=\"fixed\"><parent link=\"base\"/><child link=\"cap\"/></joint>");
+  write(folder / "from.urdf", text);
+  std::filesystem::create_directories(folder / "there");
+  write(folder / "there/cap.stl", "solid");
+  const Outcome made = run("new robot from.urdf --package caps=there --no-run", folder);
+  CHECK_MESSAGE(made.exit_code == 0, made.err);
+  CHECK(std::filesystem::exists(folder / "models/arm/meshes/cap.stl"));
+  CHECK(has(run("new robot from.urdf --name b --package caps --no-run", folder).err, "must be NAME=FOLDER"));
+}
+
 TEST_CASE("Behaviors know the feet of a robot with four legs by name, and what each bears") {
   const auto folder = fresh_folder("new_robot_feet");
   write(folder / "from.urdf", quadruped());

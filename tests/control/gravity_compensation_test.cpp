@@ -1,5 +1,7 @@
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include <doctest/doctest.h>
 
@@ -63,6 +65,24 @@ TEST_CASE("GravityCompensation takes over without a step in torque, and reaches 
   bench.set("gain", 0.5);
   CHECK(kadans::test::largest_step(bench, 400) < 0.02);
   CHECK(bench.signal("gain") == 0.5);
+}
+
+TEST_CASE("GravityCompensation gives a joint whose drive was off all its torque at once, where that is asked") {
+  const auto first_Nm = [](const char* from_off, ActuationMode before) {
+    ArmBench bench(make_gravity_compensation,
+                   ObjectOptions(std::map<std::string, std::string>{{"from_off", from_off}}));
+    bench.place(0.9, 0);
+    bench.written.joints[0] = {.effort_Nm = before == ActuationMode::off ? 0.0 : -2.0, .mode = before};
+    bench.start();
+    bench.update();
+    bench.object->step(bench.input(), bench.computed);
+    return bench.effort_Nm(0);
+  };
+  const double whole_Nm = straight_Nm * std::sin(0.9);
+  CHECK(first_Nm("at_once", ActuationMode::off) == doctest::Approx(whole_Nm).epsilon(1e-6));
+  CHECK(first_Nm("at_once", ActuationMode::effort) == doctest::Approx(-2));
+  CHECK(std::abs(first_Nm("fade", ActuationMode::off)) < 0.1);
+  CHECK_THROWS_WITH_AS(first_Nm("now", ActuationMode::off), "must be fade or at_once", OptionError);
 }
 
 TEST_CASE("GravityCompensation limits its torque and says so") {

@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <filesystem>
 
 #include <CLI/CLI.hpp>
 
@@ -7,6 +6,7 @@
 #include "app/terminal.h"
 #include "config/robot/mesh_hull.h"
 #include "file_checks.h"
+#include "robot_description.h"
 
 namespace kadans {
 
@@ -24,24 +24,16 @@ void add_check(CLI::App& app, CheckOptions& options) {
   check->add_flag("--plugins", options.plugins,
                   "Load the plug-ins that robots name, and check what uses them; this runs code of the plug-ins");
   check->add_flag("--strict", options.strict, "Warnings of a URDF are mistakes");
-  check
-      ->add_option("--package", options.packages,
-                   "Folder of a package that a URDF names in package://NAME/... (default: ROS_PACKAGE_PATH, and the "
-                   "URDF's folder upwards)")
-      ->type_name("NAME=FOLDER")
-      ->allow_extra_args(false);
+  check->add_option("--package", options.packages, package_help)->type_name("NAME=FOLDER")->allow_extra_args(false);
 }
 
 int run_check(const CheckOptions& options) {
   int code = exit_passed;
   bool any = false;
-  UrdfOptions urdf{.mesh_hull = mesh_hull, .strict = options.strict};
-  for (const std::string& package : options.packages) {
-    const std::size_t end = package.find('=');
-    if (end == 0 || end == std::string::npos || !std::filesystem::is_directory(package.substr(end + 1)))
-      throw InputError({.file = "--package " + package, .message = "must be NAME=FOLDER, with a folder that is there"});
-    urdf.packages[package.substr(0, end)] = package.substr(end + 1);
-  }
+  const UrdfOptions urdf{.mesh_hull = mesh_hull,
+                         .mesh_triangles = mesh_triangles,
+                         .strict = options.strict,
+                         .packages = packages_of(options.packages)};
   FileChecks checks(options.robot, options.plugins, urdf);
   for (const CheckedFile& checked : files_to_check(options.files, false)) {
     try {

@@ -1,8 +1,10 @@
 #include "robot_description.h"
 
+#include <optional>
 #include <system_error>
 
 #include "kadans/signal/input_error.h"
+#include "model/urdf/xacro_values.h"
 #include "realtime/machine/child_process.h"
 #include "signal/input_file.h"
 #include "signal/shell_word.h"
@@ -45,12 +47,35 @@ bool is_robot_description(const std::filesystem::path& file) {
   }
 }
 
+UrdfPackages packages_of(const std::vector<std::string>& options) {
+  UrdfPackages packages;
+  for (const std::string& package : options) {
+    const std::size_t end = package.find('=');
+    if (end == 0 || end == std::string::npos || !std::filesystem::is_directory(package.substr(end + 1)))
+      throw InputError({.file = "--package " + package, .message = "must be NAME=FOLDER, with a folder that is there"});
+    packages[package.substr(0, end)] = package.substr(end + 1);
+  }
+  return packages;
+}
+
 RobotDescription read_robot_description(const std::filesystem::path& file, const UrdfOptions& options,
                                         std::vector<InputProblem>* warnings) {
   if (file.extension() == ".xml") return read_mjcf(file.string(), options, warnings);
   RobotDescription robot;
-  robot.urdf = file.extension() == ".xacro" ? expanded_xacro(file) : read_input_file(file.string(), urdf_max_bytes);
+  const bool is_xacro = file.extension() == ".xacro";
+  robot.urdf = is_xacro ? expanded_xacro(file) : read_input_file(file.string(), urdf_max_bytes);
+  std::optional<XacroValues> values;
+  if (!is_xacro) values = with_xacro_values(robot.urdf, file.string());
+  if (values) robot.urdf = values->text;
+  if (!is_xacro && !values && robot.urdf.find("<xacro:") != std::string::npos) {
+    try {
+      robot.urdf = expanded_xacro(file);
+    } catch (const InputError&) {  // the program is not there, or knows no better: the reader tells the places
+    }
+  }
   robot.model = read_urdf_text(robot.urdf, file.string(), options, warnings);
+  if (values && options.strict) throw InputError(values->told);
+  if (values && warnings != nullptr) warnings->insert(warnings->begin(), values->told);
   return robot;
 }
 

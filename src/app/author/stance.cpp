@@ -170,9 +170,12 @@ class StanceSearch {
       stance.stand = stance.low = position_;
       for (std::size_t i = 0; i < position_.size(); ++i) {
         if (model_.joints[i].passive()) continue;
-        const double aside = within(i, position_[i] + 0.3, 0.1);
-        stance.low[i] = aside > position_[i] + 0.1 ? aside : within(i, position_[i] - 0.3, 0.1);
+        const double way = std::min(0.3, 0.8 * model_.joints[i].velocity_max_rad_s * sway_s / peak_speed);
+        const double aside = within(i, position_[i] + way, 0.1);
+        stance.low[i] = aside > position_[i] + way / 3 ? aside : within(i, position_[i] - way, 0.1);
       }
+      relieve(stance.stand);
+      relieve(stance.low);
       lift(stance);
       return stance;
     }
@@ -222,6 +225,27 @@ class StanceSearch {
       narrowest = std::min(narrowest, high - low);
     }
     return narrowest;
+  }
+
+  // Joints that bear more than their motors can give sink as they would by themselves, until there is some to spare.
+  void relieve(std::vector<double>& position) {
+    constexpr double share = 0.8, step_rad = 0.02;
+    constexpr int rounds = 300;
+    for (int round = 0; round < rounds; ++round) {
+      body_.place(position);
+      const Eigen::VectorXd gravity_Nm = body_.dynamics().gravity().tail(static_cast<Eigen::Index>(position.size()));
+      bool sinks = false;
+      for (std::size_t i = 0; i < position.size(); ++i) {
+        const Joint& joint = model_.joints[i];
+        const double bears_Nm = gravity_Nm[static_cast<Eigen::Index>(i)];
+        if (joint.passive() || joint.type == JointType::prismatic || std::abs(bears_Nm) <= share * joint.effort_max_Nm)
+          continue;
+        const double lower = within(i, position[i] - std::copysign(step_rad, bears_Nm), 0);
+        sinks = sinks || lower != position[i];
+        position[i] = lower;
+      }
+      if (!sinks) return;
+    }
   }
 
   // As high as keeps all its links off the ground.
@@ -378,6 +402,7 @@ class StanceSearch {
   }
 
   static constexpr std::size_t level_joints = 5;
+  static constexpr double sway_s = 2, peak_speed = 1.875;  // of the written behavior: in units of its mean speed
   static constexpr double narrowest_m = 0.06;
 
   const RobotModel& model_;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -17,7 +18,8 @@ struct NewControlObjectOptions {
 };
 struct NewRobotOptions {
   std::string urdf, srdf, name;
-  std::string folder = ".";  // the project
+  std::vector<std::string> packages;  // NAME=FOLDER
+  std::string folder = ".";           // the project
   bool no_run = false;
 };
 // Of a behavior, a scenario or a sweep.

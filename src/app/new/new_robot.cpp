@@ -72,7 +72,7 @@ local k = require "kadans"
 
 describe("sway", function()
   it("goes there and back as often as it is told", function()
-    local run = k.play "sway.lua"
+    local run = k.play("sway.lua", { plant = "bullet" })
     run:set_parameter("repeats", 1)
     expect(run:finish(30)).to_equal "done"
   end)
@@ -102,7 +102,7 @@ std::string name_from(const std::string& text) {
 }
 
 // The URDF's text with its meshes in a folder beside it; `copies` gets the name there of each mesh's file.
-std::string with_own_meshes(const std::string& text, const std::string& file,
+std::string with_own_meshes(const std::string& text, const std::string& file, const UrdfPackages& packages,
                             std::map<std::string, std::string>& copies) {
   std::string result;
   std::set<std::string> taken;
@@ -116,7 +116,7 @@ std::string with_own_meshes(const std::string& text, const std::string& file,
     const std::string name = text.substr(open + 1, close - open - 1);
     result += text.substr(at, open + 1 - at);
     at = close;
-    const std::optional<std::string> there = find_urdf_file(name, file);
+    const std::optional<std::string> there = find_urdf_file(name, file, packages);
     if (!there) {
       result += name;
       continue;
@@ -311,7 +311,10 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
     hold["sum"].push_back(object["name"]);
   };
   if (const Json hanging = hanging_joints(model, stance, motors); !hanging.empty())
-    sum_up({{"name", "weight"}, {"type", "gravity_compensation"}, {"joints", hanging}},
+    sum_up({{"name", "weight"},
+            {"type", "gravity_compensation"},
+            {"joints", hanging},
+            {"options", {{"from_off", "at_once"}}}},
            "Holds its joints, and carries the weight of what hangs.");
   if (stance.stands_on().size() == 2)
     sum_up(balance_json(model, stance), "Holds its joints, and keeps its centre of mass over its soles.");
@@ -405,6 +408,7 @@ void add_new_robot(CLI::App& made, NewRobotOptions& options) {
   robot->add_option("urdf", options.urdf, "URDF, xacro or MJCF of the robot")->required()->type_name("FILE");
   robot->add_option("--srdf", options.srdf, "SRDF of the robot: its pairs of links pass through each other")
       ->type_name("FILE");
+  robot->add_option("--package", options.packages, package_help)->type_name("NAME=FOLDER")->allow_extra_args(false);
   robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: that of the file)")
       ->type_name("NAME");
   robot->add_option("--in", options.folder, "Project to which its files are added (default: this folder)")
@@ -413,7 +417,9 @@ void add_new_robot(CLI::App& made, NewRobotOptions& options) {
 }
 
 int run_new_robot(const NewRobotOptions& options) {
-  const RobotDescription description = read_robot_description(options.urdf, {.mesh_hull = mesh_hull});
+  const UrdfPackages packages = packages_of(options.packages);
+  const RobotDescription description = read_robot_description(
+      options.urdf, {.mesh_hull = mesh_hull, .mesh_triangles = mesh_triangles, .packages = packages});
   const RobotModel& model = description.model;
   const std::string name = options.name.empty() ? name_from(model.name) : options.name;
   if (name.empty() || name != name_from(name))
@@ -434,7 +440,7 @@ int run_new_robot(const NewRobotOptions& options) {
   const std::string srdf = options.srdf.empty() ? touching_srdf(model, name, stance) : read_input_file(options.srdf);
   if (!srdf.empty()) robot["plant"]["srdf"] = "models/" + name + "/" + name + ".srdf";
   std::map<std::string, std::string> meshes;
-  const std::string own = with_own_meshes(description.urdf, options.urdf, meshes);
+  const std::string own = with_own_meshes(description.urdf, options.urdf, packages, meshes);
   std::string test(sway_test_template);
   test.replace(test.find("@name@"), 6, name);
   std::vector<NewFile> files{{models / (name + ".urdf"), own},

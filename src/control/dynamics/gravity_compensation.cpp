@@ -8,10 +8,13 @@
 // base's orientation from the estimator: limbs in the air, or a robot on a stand. It does not hold for the legs of a
 // standing robot, which carry it from below.
 //
+// Option      from_off: what a joint gets whose drive was off before, so that something else held it: "fade", as below,
+//             or "at_once", all of the torque with the first G of this activation. An arm that the world holds until
+//             the run begins sinks while the torque comes up, and stays where it is when it has all of it.
 // Parameters  gain (0..1; a new value is reached within 0.2 s) and <joint>.effort_max_Nm.
 // Signals     <joint>.effort_Nm, <joint>.saturated, gain, and model_age_s: the time since the measurement that G comes
 //             from, or since the start while G is older than the start.
-// Start       the torque from before continues. The part that gravity does not explain fades within 0.2 s after the
+// Start       the torque from before continues, but for from_off. The part that gravity does not explain fades within 0.2 s after the
 //             first G of this activation.
 // Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops; for the
 //             other joints it counts as at q0. A snapshot that is not finite gives no new G: the last one stays.
@@ -19,6 +22,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -67,8 +71,10 @@ class GravityCompensation final : public ControlObject {
     double effort_max_Nm = 0;
     State state;
     EffortTakeover takeover;
+    bool at_once = false;  // until the first G of this activation
   };
 
+  bool at_once_from_off_;              // any thread
   std::vector<Part> parts_;            // control thread
   Config config_;                      // control thread
   double gain_ = 1;                    // control thread: on its way to config_.gain
@@ -85,9 +91,17 @@ namespace {
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 constexpr double gain_rate_per_s = 1 / FadingEffort::fade_s;
 
+bool at_once_from_off(const ObjectOptions& options) {
+  const std::string* const given = options.find("from_off");
+  if (given == nullptr || *given == "fade") return false;
+  if (*given != "at_once") throw OptionError("from_off", "must be fade or at_once");
+  return true;
+}
+
 }  // namespace
 
-GravityCompensation::GravityCompensation(const ObjectSetup& setup) : model_(std::make_unique<ModelState>(setup.model)) {
+GravityCompensation::GravityCompensation(const ObjectSetup& setup)
+    : at_once_from_off_(at_once_from_off(setup.options)), model_(std::make_unique<ModelState>(setup.model)) {
   for (JointAxis& axis : joint_axes(setup)) parts_.push_back({.axis = std::move(axis)});
   const auto joints = static_cast<Eigen::Index>(setup.model.joints.size());
   slope_.setZero(joints, joints);
@@ -130,6 +144,7 @@ void GravityCompensation::start(const ControlInput& input) noexcept {
   gain_ = config_.gain;
   for (Part& part : parts_) {
     const std::size_t joint = part.axis.joint;
+    part.at_once = at_once_from_off_ && input.last.joints[joint].mode == ActuationMode::off;
     part.takeover.start(effort_before_Nm({input.joints.joints[joint], input.last.joints[joint], input.dt_s}));
   }
 }
@@ -152,6 +167,10 @@ void GravityCompensation::step(const ControlInput& input, ActuationFrame& actuat
     State& s = part.state;
     const bool measured = std::isfinite(input.joints.joints[part.axis.joint].position_rad);
     const double law_Nm = measured ? gain_ * (data.gravity_Nm[i] + change_Nm[i]) : not_measured;
+    if (part.at_once && known && measured) {
+      part.takeover.start(law_Nm);  // which goes on
+      part.at_once = false;
+    }
     const double offset_Nm = part.takeover.step(law_Nm, known, input.dt_s);
     s.effort_Nm = std::clamp(law_Nm + offset_Nm, -part.effort_max_Nm, part.effort_max_Nm);
     s.saturated = s.effort_Nm != law_Nm + offset_Nm;
@@ -161,7 +180,10 @@ void GravityCompensation::step(const ControlInput& input, ActuationFrame& actuat
 }
 
 void GravityCompensation::pass_state(StateBytes& bytes) noexcept {
-  for (Part& part : parts_) bytes(part.state, part.takeover);
+  for (Part& part : parts_) {
+    bytes(part.state, part.takeover);
+    if (at_once_from_off_) bytes(part.at_once);
+  }
   bytes(gain_, started_ns_, model_age_s_);
   bytes.newest(data_);
 }
