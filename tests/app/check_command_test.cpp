@@ -206,7 +206,8 @@ class FakeXacro {
 
 }  // namespace
 
-TEST_CASE("check puts in values for what a URDF has left of xacro, and says which; more of it the program expands") {
+TEST_CASE(
+    "check puts in values for what a URDF has left of xacro, says which, and leaves more of it to the program xacro") {
   const auto project = project_copy("check_xacro_values");
   const std::string file = "models/jiwiy/jiwiy.urdf";
   REQUIRE(edit(project / file, "</robot>",

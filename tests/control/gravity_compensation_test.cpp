@@ -82,7 +82,7 @@ TEST_CASE("GravityCompensation gives a joint whose drive was off all its torque 
   CHECK(first_Nm("at_once", ActuationMode::off) == doctest::Approx(whole_Nm).epsilon(1e-6));
   CHECK(first_Nm("at_once", ActuationMode::effort) == doctest::Approx(-2));
   CHECK(std::abs(first_Nm("fade", ActuationMode::off)) < 0.1);
-  CHECK_THROWS_WITH_AS(first_Nm("now", ActuationMode::off), "must be fade or at_once", OptionError);
+  CHECK_THROWS_WITH_AS(first_Nm("now", ActuationMode::off), "from_off is 'now', must be fade or at_once", OptionError);
 }
 
 TEST_CASE("GravityCompensation limits its torque and says so") {

@@ -1,8 +1,8 @@
-// Reads MJCF, MuJoCo's XML, as the robots of its menagerie are written: one robot of bodies with one joint each, geoms
-// of primitive shapes and meshes, classes of defaults, actuators, equalities of two joints, keyframes. It becomes a
-// URDF (urdf.h), which is what a robot's files here hold: page, records and ROS know the robot by it. What cannot be
-// said in it and would make another robot is refused with its place and what to do (closed loops, joints of several
-// axes, bodies that move without inertia); everything else is a warning that says what was made of it. docs/urdf.md.
+// Reads MJCF, MuJoCo's XML, as the robots of its menagerie are written: one robot of bodies with joints of one axis,
+// geoms of primitive shapes and meshes, classes of defaults, actuators, equalities of two joints, keyframes. It becomes
+// a URDF (urdf.h), which is what a robot's files here hold: page, records and ROS know the robot by it. What cannot be
+// said in it and would make another robot is refused with its place and what to do (closed loops, balls,
+// bodies that move without any mass); everything else is a warning that says what was made of it. docs/urdf.md.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
 // Reads URDF as the world writes it. What cannot be simulated as it was meant is refused, with its place and what to
-// do: no root, a loop, a parent that does not exist, a moving link without mass or inertia, a negative mass, crossed
-// limits. Everything else is a warning that says what was made of it. docs/urdf.md.
+// do: no root, a loop, a parent that does not exist, a moving link that has no mass and carries none, a negative mass,
+// crossed limits. Everything else is a warning that says what was made of it. docs/urdf.md.
 #pragma once
 
 #include <array>

@@ -14,7 +14,8 @@
 // Parameters  gain (0..1; a new value is reached within 0.2 s) and <joint>.effort_max_Nm.
 // Signals     <joint>.effort_Nm, <joint>.saturated, gain, and model_age_s: the time since the measurement that G comes
 //             from, or since the start while G is older than the start.
-// Start       the torque from before continues, but for from_off. The part that gravity does not explain fades within 0.2 s after the
+// Start       the torque from before continues, but for from_off. The part that gravity does not explain fades within
+// 0.2 s after the
 //             first G of this activation.
 // Not finite  a joint that is not measured gets a torque that is not finite, which the safety layer stops; for the
 //             other joints it counts as at q0. A snapshot that is not finite gives no new G: the last one stays.
@@ -94,7 +95,7 @@ constexpr double gain_rate_per_s = 1 / FadingEffort::fade_s;
 bool at_once_from_off(const ObjectOptions& options) {
   const std::string* const given = options.find("from_off");
   if (given == nullptr || *given == "fade") return false;
-  if (*given != "at_once") throw OptionError("from_off", "must be fade or at_once");
+  if (*given != "at_once") throw OptionError("from_off", "from_off is '" + *given + "', must be fade or at_once");
   return true;
 }
 
