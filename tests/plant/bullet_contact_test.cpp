@@ -174,10 +174,14 @@ TEST_CASE("A box that stands under a swaying load does not creep") {
   CHECK(std::hypot(plant.truth().base.position_m[0], plant.truth().base.position_m[1]) < 1e-4);
 }
 
-TEST_CASE("An arm that swings in stops at the torso, and swings through when self-collision is off, or theirs") {
-  enum class Case : std::uint8_t { stops, off, passes };
-  for (const Case of : {Case::stops, Case::off, Case::passes}) {
+TEST_CASE("An arm that swings in stops at the torso, and swings through where the two may pass or no mass is between") {
+  enum class Case : std::uint8_t { stops, off, passes, neighbours };
+  for (const Case of : {Case::stops, Case::off, Case::passes, Case::neighbours}) {
     Robot robot = torso_with_arm(0.03);
+    if (of == Case::neighbours) {
+      robot.model.links[1].inertia = {};
+      robot.model.joints[0].axis = {0, 1, 0};
+    }
     robot.settings.self_collision = of != Case::off;
     if (of == Case::passes)
       robot.settings.passing.emplace_back(robot.model.links.back().name, robot.model.links.front().name);
