@@ -75,6 +75,18 @@ TEST_CASE("new robot lets an arm sink that its motors cannot hold stretched out,
   CHECK(has(robot, "\"from_off\": \"at_once\""));
 }
 
+TEST_CASE("new robot balances a trunk on a waist whose motor cannot hold it as it leans at 0") {
+  const auto folder = fresh_folder("new_robot_waist");
+  std::string text = biped();
+  text.erase(text.find("</robot>"));
+  text += link("trunk", 8, "", 0.3);  // leans by 0.25 rad: 5.8 Nm
+  text += joint("waist", "pelvis", "trunk", "0 0 0.4\" rpy=\"0 0.25 0", "0 1 0", "lower=\"-1\" upper=\"1\"");
+  text.replace(text.rfind("effort=\"60\""), 11, "effort=\"5\"");
+  write(folder / "from.urdf", text + "</robot>");
+  REQUIRE(run("new robot from.urdf --no-run", folder).exit_code == 0);
+  CHECK(has(read(folder / "config/biped/robot.json"), "\"waist\": -0.08"));  // in steps of 0.02
+}
+
 TEST_CASE("new robot takes meshes of a package along that it is told of") {
   const auto folder = fresh_folder("new_robot_package");
   std::string text = arm();

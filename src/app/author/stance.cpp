@@ -179,6 +179,7 @@ class StanceSearch {
       lift(stance);
       return stance;
     }
+    relieve(position_);
     bend();
     stance.stand = solve(0);
     body_.place(stance.stand);
@@ -227,24 +228,35 @@ class StanceSearch {
     return narrowest;
   }
 
-  // Joints that bear more than their motors can give sink as they would by themselves, until there is some to spare.
+  // Joints that bear more than their motors can give, but those of legs, move until there is some to spare: what stands
+  // on them to where it is balanced, and what hangs on them down, as it would by itself.
   void relieve(std::vector<double>& position) {
     constexpr double share = 0.8, step_rad = 0.02;
     constexpr int rounds = 300;
+    std::vector<bool> of_legs(position.size());
+    for (const Leg& leg : legs_) {
+      for (const std::size_t joint : leg.joints) of_legs[joint] = true;
+    }
+    const auto joints = static_cast<Eigen::Index>(position.size());
+    Eigen::MatrixXd slope_Nm_per_rad(joints, joints);
     for (int round = 0; round < rounds; ++round) {
       body_.place(position);
-      const Eigen::VectorXd gravity_Nm = body_.dynamics().gravity().tail(static_cast<Eigen::Index>(position.size()));
-      bool sinks = false;
+      const Eigen::VectorXd gravity_Nm = body_.dynamics().gravity().tail(joints);
+      body_.dynamics().gravity_gradient(slope_Nm_per_rad);
+      bool moves = false;
       for (std::size_t i = 0; i < position.size(); ++i) {
         const Joint& joint = model_.joints[i];
-        const double bears_Nm = gravity_Nm[static_cast<Eigen::Index>(i)];
-        if (joint.passive() || joint.type == JointType::prismatic || std::abs(bears_Nm) <= share * joint.effort_max_Nm)
+        const auto at = static_cast<Eigen::Index>(i);
+        const double bears_Nm = gravity_Nm[at];
+        if (of_legs[i] || joint.passive() || joint.type == JointType::prismatic ||
+            std::abs(bears_Nm) <= share * joint.effort_max_Nm)
           continue;
-        const double lower = within(i, position[i] - std::copysign(step_rad, bears_Nm), 0);
-        sinks = sinks || lower != position[i];
-        position[i] = lower;
+        const bool stands = slope_Nm_per_rad(at, at) < -std::abs(bears_Nm);  // within 45 degrees of its balance
+        const double next = within(i, position[i] + std::copysign(step_rad, stands ? bears_Nm : -bears_Nm), 0);
+        moves = moves || next != position[i];
+        position[i] = next;
       }
-      if (!sinks) return;
+      if (!moves) return;
     }
   }
 
