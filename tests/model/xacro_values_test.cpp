@@ -46,6 +46,12 @@ TEST_CASE("What is more than names of values is left to the program xacro") {
   CHECK(radius("<xacro:if value=\"1\"/><xacro:arg name=\"r\" default=\"1\"/>", "$(arg r)") == "nothing");
   CHECK(radius("<xacro:property name=\"b\"><origin/></xacro:property>", "$(optenv NONE 1)") == "nothing");
   CHECK(!with_xacro_values("<robot", "a.urdf"));
+  std::string growing = "<xacro:property name=\"v0\" value=\"0123456789\"/>";
+  for (int i = 1; i < 60; ++i) {
+    const std::string before = "${v" + std::to_string(i - 1) + "}";
+    growing += "\n<xacro:property name=\"v" + std::to_string(i) + "\" value=\"" + before + before + "\"/>";
+  }
+  CHECK(radius(growing, "${v1}") == "nothing");
 }
 
 TEST_CASE("The text with its values is a URDF with each element in its line, and one message says what was taken") {

@@ -65,6 +65,9 @@ class XacroReader {
   }
 
  private:
+  // Values of values grow by themselves: no robot needs that much.
+  static constexpr std::size_t most_grown = std::size_t{2} << 20U;
+
   // False for what is more than names of values.
   bool read(const XmlTag& tag) {
     std::map<std::string, std::string> values;  // of its attributes
@@ -73,6 +76,7 @@ class XacroReader {
       const std::size_t end = text_.find(text_[attribute.value_at - 1], attribute.value_at);
       const std::string_view given = std::string_view(text_).substr(attribute.value_at, end - attribute.value_at);
       std::string value = with_values(given, attribute.value_at);
+      if (grown_ > most_grown) return false;
       if (value != given) edits.push_back({attribute.value_at, given.size(), value});
       values[std::string(attribute.name)] = std::move(value);
     }
@@ -115,6 +119,8 @@ class XacroReader {
       }
       if (first_ == 0) first_ = at + i;
       result += *value;
+      grown_ += value->size();
+      if (grown_ > most_grown) return result;
       i = end + 1;
     }
     return result;
@@ -147,7 +153,7 @@ class XacroReader {
   SourceText source_;
   std::map<std::string, std::string> arguments_, properties_, taken_;
   std::vector<Edit> edits_;
-  std::size_t first_ = 0;
+  std::size_t first_ = 0, grown_ = 0;
 };
 
 }  // namespace

@@ -15,7 +15,8 @@ struct XacroValues {
 
 // Puts in what $(arg NAME) has as the default of its <xacro:arg>, ${NAME} as the value of its <xacro:property>, and
 // $(env NAME) and $(optenv NAME DEFAULT) of the environment. What has no value stays as it is. Nothing when the text
-// has none of these, is not XML, or has more of xacro: macros, conditions, files that it includes.
+// has none of these, is not XML, has more of xacro (macros, conditions, files that it includes), or would grow by more
+// than 2 MiB, as values of values can.
 std::optional<XacroValues> with_xacro_values(const std::string& text, const std::string& file);
 
 }  // namespace kadans
