@@ -1,6 +1,7 @@
 #include "event_topics.h"
 
 #include <algorithm>
+#include <array>
 
 #include "config/json/foreign_json.h"
 #include "messages.h"  // made by idlc from messages.idl
@@ -14,6 +15,18 @@ constexpr std::int32_t events_depth = 16;  // that may wait, of a topic
 template <typename Value>
 std::string data_of(const std::string& field, const Value& value) {
   return json_text(Json{{field, value}});
+}
+
+// Forward, to the left, turning: in the order of a Twist that moves on the ground.
+constexpr std::array velocity_fields{"forward_m_s", "left_m_s", "turn_rad_s"};
+
+bool is_velocity(const ScriptEvent& event) {
+  if (event.name != "cmd_vel" || event.fields.size() != velocity_fields.size()) return false;
+  return std::ranges::all_of(velocity_fields, [&](const char* name) {
+    return std::ranges::any_of(event.fields, [&](const auto& field) {
+      return field.name == name && field.type == ScriptEvent::Field::Type::number;
+    });
+  });
 }
 
 }  // namespace
@@ -30,7 +43,9 @@ void EventTopics::listen(const std::vector<BehaviorReport>& behaviors) {
 void EventTopics::add(const ScriptEvent& event) {
   constexpr Type types[] = {Type::number, Type::flag, Type::text};
   Topic topic{.event = event.name};
-  if (event.fields.size() == 1) {
+  if (is_velocity(event)) {
+    topic.type = Type::velocity;
+  } else if (event.fields.size() == 1) {
     topic.field = event.fields.front().name;
     topic.type = types[static_cast<std::size_t>(event.fields.front().type)];
   } else if (!event.fields.empty()) {
@@ -40,7 +55,8 @@ void EventTopics::add(const ScriptEvent& event) {
   if (topic.type == Type::empty) described = &std_msgs_msg_dds__Empty__desc;
   if (topic.type == Type::number) described = &std_msgs_msg_dds__Float64__desc;
   if (topic.type == Type::flag) described = &std_msgs_msg_dds__Bool__desc;
-  std::string name = "rt/kadans/event/" + event.name;
+  if (topic.type == Type::velocity) described = &geometry_msgs_msg_dds__Twist__desc;
+  std::string name = topic.type == Type::velocity ? "rt/cmd_vel" : "rt/kadans/event/" + event.name;
   std::ranges::replace(name, '.', '/');
   topic.reader = domain_.reader(*described, name, {.depth = events_depth});
   topics_.push_back(std::move(topic));
@@ -66,6 +82,11 @@ bool EventTopics::take(const Topic& topic, std::string& data) {
     case Type::flag:
       return domain_.take<std_msgs_msg_dds__Bool_>(topic.reader,
                                                    [&](const auto& m) { data = data_of(topic.field, m.data); });
+    case Type::velocity:
+      return domain_.take<geometry_msgs_msg_dds__Twist_>(topic.reader, [&](const auto& m) {
+        const auto& [forward, left, turn] = velocity_fields;
+        data = json_text(Json{{forward, m.linear.x}, {left, m.linear.y}, {turn, m.angular.z}});
+      });
     case Type::text:
     case Type::fields:
       break;

@@ -5,6 +5,9 @@
 //   one         Float64, Bool or String, by the field's type
 //   several     String: the data as an order has them, {"distance_m": 1.2, "left": true}
 //
+// The event cmd_vel with the numbers forward_m_s, left_m_s and turn_rad_s has the topic /cmd_vel with the type Twist,
+// as everything that drives robots has it.
+//
 // An event becomes the text order `emit` (text_orders.h), so its data are checked and answered as those of any other
 // sender. One thread, that of the domain.
 #pragma once
@@ -31,7 +34,7 @@ class EventTopics {
   [[nodiscard]] bool take(std::string& order);
 
  private:
-  enum class Type : std::uint8_t { empty, number, flag, text, fields };
+  enum class Type : std::uint8_t { empty, number, flag, text, fields, velocity };
   struct Topic {
     std::string event, field;
     Type type = Type::empty;

@@ -34,9 +34,9 @@ namespace kadans {
 // Translates a robot's row of signals into joints, frames and IMU values: positions, velocities and efforts of the
 // joints, the pose of the base in the world, and the pose of each frame of the URDF in its parent frame.
 //
-// The position and heading of the base are the true ones when the plant is a model. Otherwise heading and height are
-// the estimate, and x and y are 0. Roll, pitch and the rates are always the estimate. The acceleration is the IMU's
-// measurement.
+// The position and heading of the base are the true ones when the plant is a model. Otherwise they are those of the
+// odometry; without feet x and y are 0. Roll, pitch and the rates are always the estimate. The acceleration is the
+// IMU's measurement.
 class RobotReadings {
  public:
   // Make it when all signals are declared. The catalog must outlive it. Throws InputError on a wrong URDF.
@@ -56,6 +56,13 @@ class RobotReadings {
   const Vec3& acceleration_m_s2() const noexcept { return acceleration_m_s2_; }
   bool acceleration_known() const noexcept { return acceleration_m_s2_ != Vec3{}; }
 
+  // Where the base is by its feet, and its velocity along its own heading; nothing where the odometry is not valid.
+  struct Odometry {
+    Pose pose;
+    Vec3 velocity_m_s{};
+  };
+  const std::optional<Odometry>& odometry() const noexcept { return odometry_; }
+
   struct Frame {
     std::string parent, child;
     Pose pose;
@@ -68,11 +75,18 @@ class RobotReadings {
 
  private:
   using Signal = std::optional<SignalId>;
+  struct Place {
+    Signal x, y, heading, valid, height;
+  };
+  void take_odometry(const LatestRow::View& row, double elapsed_s) noexcept;
 
   const RobotModel& model_;
   std::vector<Signal> position_, velocity_, effort_;
   Signal roll_, pitch_, yaw_, x_, y_, height_, heading_;
   std::array<Signal, 3> rate_, acceleration_;
+
+  Place reckoned_;
+  std::optional<Odometry> odometry_;
 
   std::int64_t time_ns_ = 0;
   std::vector<std::string> joints_;
@@ -106,12 +120,13 @@ class Ros2Topics {
   using Stamp = builtin_interfaces_msg_dds__Time_;
   using Stamped = geometry_msgs_msg_dds__TransformStamped_;
   struct Writers {
-    dds_entity_t joint_states, tf, tf_static, description, imu, clock, active, command_result;
+    dds_entity_t joint_states, tf, tf_static, description, imu, clock, active, command_result, odometry;
   };
 
   void publish_joint_states(Stamp now) noexcept;
   void publish_frames(dds_entity_t writer, const std::vector<RobotReadings::Frame>& frames, Stamp now) noexcept;
   void publish_imu(Stamp now) noexcept;
+  void publish_odometry(Stamp now) noexcept;
   void publish_text(dds_entity_t writer, const std::string& text) noexcept;
 
   const RobotReadings& robot_;
@@ -134,8 +149,11 @@ RobotReadings::RobotReadings(const Catalog& catalog, const std::string& urdf) : 
   }
   for (std::vector<double>* values : {&position_rad_, &velocity_rad_s_, &effort_Nm_}) values->resize(joints_.size());
   roll_ = find("base.roll_rad"), pitch_ = find("base.pitch_rad"), yaw_ = find("base.yaw_rad");
-  heading_ = first("plant.base.yaw_rad", "base.yaw_rad");
-  x_ = find("plant.base.x_m"), y_ = find("plant.base.y_m"), height_ = first("plant.base.height_m", "base.height_m");
+  reckoned_ = {find("odometry.x_m"), find("odometry.y_m"), find("odometry.heading_rad"), find("odometry.valid"),
+               find("base.height_m")};
+  heading_ = first("plant.base.yaw_rad", reckoned_.x ? "odometry.heading_rad" : "base.yaw_rad");
+  x_ = first("plant.base.x_m", "odometry.x_m"), y_ = first("plant.base.y_m", "odometry.y_m");
+  height_ = first("plant.base.height_m", "base.height_m");
   rate_ = {find("base.rate_x_rad_s"), find("base.rate_y_rad_s"), find("base.rate_z_rad_s")};
   acceleration_ = {find("imu.acceleration_x_m_s2"), find("imu.acceleration_y_m_s2"), find("imu.acceleration_z_m_s2")};
   moving_.push_back({"world", model_.links.front().name, {}});
@@ -147,6 +165,7 @@ RobotReadings::RobotReadings(const Catalog& catalog, const std::string& urdf) : 
 
 void RobotReadings::take(const LatestRow::View& row) noexcept {
   const auto value = [&](const Signal& signal) { return signal ? row.values[*signal] : 0.0; };
+  take_odometry(row, 1e-9 * static_cast<double>(row.time_ns - time_ns_));
   time_ns_ = row.time_ns;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     position_rad_[i] = value(position_[i]);
@@ -163,8 +182,21 @@ void RobotReadings::take(const LatestRow::View& row) noexcept {
   for (std::size_t i = 0; i < driven_.size(); ++i) moving_[i + 1].pose = frame_pose(driven_[i], model_, position_rad_);
 }
 
+void RobotReadings::take_odometry(const LatestRow::View& row, double elapsed_s) noexcept {
+  const auto value = [&](const Signal& signal) { return signal ? row.values[*signal] : 0.0; };
+  if (value(reckoned_.valid) == 0) return odometry_.reset();
+  const double heading_rad = value(reckoned_.heading), c = std::cos(heading_rad), s = std::sin(heading_rad);
+  const Vec3 at_m{value(reckoned_.x), value(reckoned_.y), value(reckoned_.height)};
+  const Pose now{at_m, from_roll_pitch_yaw(value(roll_), value(pitch_), heading_rad)};
+  const bool goes_on = odometry_ && elapsed_s > 0 && !(at_m[0] == 0 && at_m[1] == 0);  // that is a reset
+  const Vec3 from_m = goes_on ? odometry_->pose.position_m : at_m;
+  const double per_s = goes_on ? 1 / elapsed_s : 0, x_m = at_m[0] - from_m[0], y_m = at_m[1] - from_m[1];
+  odometry_ = {now, {per_s * (c * x_m + s * y_m), per_s * (c * y_m - s * x_m), per_s * (at_m[2] - from_m[2])}};
+}
+
 namespace {
 
+const std::string odometry_frame = "odom";
 constexpr DdsQuality kept_for_all{.depth = 1, .for_late_readers = true};
 constexpr std::int32_t frames_depth = 100, commands_depth = 16, active_depth = 32;  // tf2's own; orders that may wait
 
@@ -196,7 +228,8 @@ Ros2Topics::Ros2Topics(std::uint32_t domain, const RobotReadings& robot, const s
           .active = domain_.writer(std_msgs_msg_dds__String__desc, "rt/kadans/active",
                                    {.depth = active_depth, .for_late_readers = true}),
           .command_result =
-              domain_.writer(std_msgs_msg_dds__String__desc, "rt/kadans/command_result", {.depth = commands_depth})},
+              domain_.writer(std_msgs_msg_dds__String__desc, "rt/kadans/command_result", {.depth = commands_depth}),
+          .odometry = domain_.writer(nav_msgs_msg_dds__Odometry__desc, "rt/odom")},
       commands_(domain_.reader(std_msgs_msg_dds__String__desc, "rt/kadans/command", {.depth = commands_depth})) {
   for (const std::string& name : robot_.joints()) names_.push_back(chars(name));
   stamped_.resize(std::max(robot_.moving().size(), robot_.fixed().size()));
@@ -212,6 +245,7 @@ void Ros2Topics::publish() noexcept {
   publish_frames(to_.tf, robot_.moving(), now);
   publish_joint_states(now);
   publish_imu(now);
+  publish_odometry(now);
 }
 
 void Ros2Topics::publish_joint_states(Stamp now) noexcept {
@@ -249,6 +283,17 @@ void Ros2Topics::publish_imu(Stamp now) noexcept {
   message.linear_acceleration = vector(robot_.acceleration_m_s2());
   if (!robot_.acceleration_known()) message.linear_acceleration_covariance[0] = -1;
   (void)domain_.write(to_.imu, &message);
+}
+
+void Ros2Topics::publish_odometry(Stamp now) noexcept {
+  if (!robot_.odometry()) return;
+  const auto& [pose, velocity_m_s] = *robot_.odometry();
+  nav_msgs_msg_dds__Odometry_ message{};
+  message.header = {.stamp = now, .frame_id = chars(odometry_frame)};
+  message.child_frame_id = chars(robot_.base());
+  message.pose.pose = {.position = vector(pose.position_m), .orientation = quaternion(pose.orientation)};
+  message.twist.twist = {.linear = vector(velocity_m_s), .angular = vector(robot_.angular_velocity_rad_s())};
+  (void)domain_.write(to_.odometry, &message);
 }
 
 void Ros2Topics::publish_text(dds_entity_t writer, const std::string& text) noexcept {

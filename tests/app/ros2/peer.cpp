@@ -1,7 +1,8 @@
 // Another program in a DDS domain: takes what a run publishes, sends it orders, floods it with rubbish. Told by its
 // arguments what to do, in their order:
 //
-//   ros2_peer DOMAIN (send JSON | event NAME[=VALUE] | until SECONDS | flood COUNT | datagrams COUNT)...
+//   ros2_peer DOMAIN (send JSON | event NAME[=VALUE] | twist X,Y,TURN | until SECONDS | flood COUNT | datagrams
+//   COUNT)...
 //
 // What it takes goes to stdout, a JSON object a line. Exit code 1 after a minute of waiting for something.
 #include <array>
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -83,6 +85,17 @@ Json json_of(const sensor_msgs_msg_dds__Imu_& m) {
 
 Json json_of(const rosgraph_msgs_msg_dds__Clock_& m) { return {{"topic", "clock"}, {"time_ns", ns_of(m.clock_time)}}; }
 
+Json json_of(const nav_msgs_msg_dds__Odometry_& m) {
+  const auto& [at, turned] = m.pose.pose;
+  return {{"topic", "odom"},
+          {"time_ns", ns_of(m.header.stamp)},
+          {"frame", m.header.frame_id},
+          {"child", m.child_frame_id},
+          {"position", {at.x, at.y, at.z}},
+          {"orientation", {turned.w, turned.x, turned.y, turned.z}},
+          {"velocity", {m.twist.twist.linear.x, m.twist.twist.linear.y, m.twist.twist.angular.z}}};
+}
+
 class Peer {
  public:
   explicit Peer(std::uint32_t domain) : number_(domain) {
@@ -95,6 +108,7 @@ class Peer {
     description_ = reader(std_msgs_msg_dds__String__desc, "rt/robot_description", true);
     active_ = reader(std_msgs_msg_dds__String__desc, "rt/kadans/active", true);
     tf_ = reader(tf2_msgs_msg_dds__TFMessage__desc, "rt/tf", false);
+    odom_ = reader(nav_msgs_msg_dds__Odometry__desc, "rt/odom", false);
     imu_ = reader(sensor_msgs_msg_dds__Imu__desc, "rt/imu", false);
     clock_ = reader(rosgraph_msgs_msg_dds__Clock__desc, "rt/clock", false);
     joint_states_ = reader(sensor_msgs_msg_dds__JointState__desc, "rt/joint_states", false);
@@ -131,13 +145,6 @@ class Peer {
                                          : number      ? std_msgs_msg_dds__Float64__desc
                                                        : std_msgs_msg_dds__String__desc;
     const dds_entity_t to = writer(("rt/kadans/event/" + name).c_str(), type);
-    checked(dds_set_status_mask(to, DDS_PUBLICATION_MATCHED_STATUS), "no status");
-    checked(dds_waitset_attach(waitset_, to, 0), "not attached");
-    wait_until([to] {
-      dds_publication_matched_status_t status{};
-      (void)dds_get_publication_matched_status(to, &status);
-      return status.current_count > 0;
-    });
     const std_msgs_msg_dds__Empty_ empty{};
     const std_msgs_msg_dds__Bool_ truth{value == "true"};
     const std_msgs_msg_dds__Float64_ real{number ? std::stod(value) : 0};
@@ -146,9 +153,17 @@ class Peer {
     if (value.empty()) sample = &empty;
     if (flag) sample = &truth;
     if (number) sample = &real;
-    const int before = emitted_;
-    (void)dds_write(to, sample);
-    wait_until([&] { return emitted_ > before; });
+    emit(to, sample);
+  }
+
+  // As a node of ROS 2 drives a robot; waits for the answer.
+  void twist(const std::string& what) {
+    geometry_msgs_msg_dds__Twist_ wanted{};
+    std::istringstream numbers(what);
+    std::string one;
+    for (double* number : {&wanted.linear.x, &wanted.linear.y, &wanted.angular.z})
+      if (std::getline(numbers, one, ',')) *number = std::stod(one);
+    emit(writer("rt/cmd_vel", geometry_msgs_msg_dds__Twist__desc), &wanted);
   }
 
   void until(double seconds) {
@@ -211,6 +226,20 @@ class Peer {
     return qos;
   }
 
+  // When somebody reads it; waits for the answer.
+  void emit(dds_entity_t to, const void* sample) {
+    checked(dds_set_status_mask(to, DDS_PUBLICATION_MATCHED_STATUS), "no status");
+    checked(dds_waitset_attach(waitset_, to, 0), "not attached");
+    wait_until([to] {
+      dds_publication_matched_status_t status{};
+      (void)dds_get_publication_matched_status(to, &status);
+      return status.current_count > 0;
+    });
+    const int before = emitted_;
+    (void)dds_write(to, sample);
+    wait_until([&] { return emitted_ > before; });
+  }
+
   void write(const std::string& text) {
     const std_msgs_msg_dds__String_ message{const_cast<char*>(text.c_str())};
     (void)dds_write(commands_, &message);
@@ -241,6 +270,7 @@ class Peer {
   void take_all() {
     const auto say = [](const Json& json) { std::printf("%s\n", json.dump().c_str()); };
     take<tf2_msgs_msg_dds__TFMessage_>(tf_, [&](const auto& m) { say(json_of(m)); });
+    take<nav_msgs_msg_dds__Odometry_>(odom_, [&](const auto& m) { say(json_of(m)); });
     take<sensor_msgs_msg_dds__Imu_>(imu_, [&](const auto& m) { say(json_of(m)); });
     take<rosgraph_msgs_msg_dds__Clock_>(clock_, [&](const auto& m) { say(json_of(m)); });
     take<sensor_msgs_msg_dds__JointState_>(joint_states_, [&](const auto& m) {
@@ -266,7 +296,7 @@ class Peer {
 
   std::uint32_t number_;
   dds_entity_t participant_ = 0, waitset_ = 0, results_ = 0, description_ = 0, active_ = 0, tf_ = 0, imu_ = 0,
-               clock_ = 0, joint_states_ = 0, commands_ = 0;
+               clock_ = 0, joint_states_ = 0, commands_ = 0, odom_ = 0;
   std::int64_t newest_ns_ = -1;
   bool described_ = false;
   int emitted_ = 0;
@@ -283,6 +313,7 @@ int main(int count, char** arguments) {
     const std::string what = arguments[i], with = arguments[i + 1];
     if (what == "send") peer.send(with);
     if (what == "event") peer.event(with);
+    if (what == "twist") peer.twist(with);
     if (what == "until") peer.until(std::stod(with));
     if (what == "flood") peer.flood(std::stoi(with));
     if (what == "datagrams") peer.datagrams(std::stoi(with));

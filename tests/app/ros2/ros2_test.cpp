@@ -119,7 +119,7 @@ TEST_CASE("another process of DDS sees a squatting TULip as its record and Bulle
   CHECK_MESSAGE(read(project / "code") == "130\n", read(project / "err"));
   auto topics = said_by_topic(project);
   std::set<std::int64_t> times;
-  for (const char* topic : {"joint_states", "tf", "imu"}) times.merge(times_of(topics[topic]));
+  for (const char* topic : {"joint_states", "tf", "imu", "odom"}) times.merge(times_of(topics[topic]));
   const Rows rows = rows_of(project / "seen.mcap", times);
   const RobotModel model = read_urdf((project / "models/tulip/tulip.urdf").string());
   CHECK(topics["joint_states"].size() > 50);
@@ -155,6 +155,17 @@ TEST_CASE("another process of DDS sees a squatting TULip as its record and Bulle
     // Bullet keeps the soles on the ground: 0.06 m below the ankles.
     for (const char* foot : {"l_ankle_roll_link", "r_ankle_roll_link"})
       REQUIRE(std::abs(poses.at(foot).position_m[2] - 0.06) < 0.005);
+  }
+
+  CHECK(topics["odom"].size() > 50);
+  for (const Json& message : topics["odom"]) {
+    const auto& row = rows.at(time_of(message));
+    REQUIRE(message["frame"] == "odom");
+    REQUIRE(message["child"] == "torso");
+    const auto at_m = message["position"].get<Vec3>();
+    REQUIRE(at_m == Vec3{row.at("odometry.x_m"), row.at("odometry.y_m"), row.at("base.height_m")});
+    REQUIRE(apart(at_m, {row.at("plant.base.x_m"), row.at("plant.base.y_m"), at_m[2]}) < 0.01);
+    REQUIRE(std::abs(message["velocity"][0].get<double>()) < 1);
   }
 
   double lifted = 0;
@@ -210,18 +221,25 @@ TEST_CASE("each event that a behavior declares has a topic of a type that fits i
   const auto project = project_copy("ros2_events");
   write(project / "behaviors/tulip/listen.lua", R"(local k = require "kadans"
 k.events { whistle = {}, ["ball.near"] = { distance_m = { "m", min = 0, max = 5 } }, waves = { left = k.flag },
-           word = { said = k.text }, seen = { x_m = "m", left = k.flag } }
+           word = { said = k.text }, seen = { x_m = "m", left = k.flag },
+           cmd_vel = { forward_m_s = "m/s", left_m_s = "m/s", turn_rad_s = "rad/s" } }
 local function tell(_, s)
   local d = s.event.data or {}
   print(string.format("%s: %s %s %s %s", s.event.name, tostring(d.distance_m), tostring(d.left), tostring(d.said),
     tostring(d.x_m)))
 end
+local function lead(_, s)
+  local d = s.event.data
+  print(string.format("goes %g %g %g", d.forward_m_s, d.left_m_s, d.turn_rad_s))
+end
 return k.behavior "listen" { k.state "wait" { endless = true,
-  { on = { "whistle", "ball.near", "waves", "word", "seen" }, action = tell } } })");
+  { on = { "whistle", "ball.near", "waves", "word", "seen" }, action = tell },
+  { on = "cmd_vel", action = lead } } })");
   REQUIRE(beside(project,
                  "run config/tulip/robot.json --plant ideal --play listen --threads-on-virtual-time --ros2-commands -v",
                  "peer event whistle event ball/near=1.25 event waves=true event 'word=hi \"you\"' "
-                 "event 'seen={\"x_m\": 2, \"left\": false}' event ball/near=7\n") == 0);
+                 "event 'seen={\"x_m\": 2, \"left\": false}' event ball/near=7 "
+                 "twist 0.25,-0.5,2 twist nan,0,0\n") == 0);
   const std::string err = read(project / "err");
   CHECK_MESSAGE(read(project / "code") == "0\n", err);
   CHECK(has(err, "whistle: nil nil nil nil"));
@@ -231,7 +249,11 @@ return k.behavior "listen" { k.state "wait" { endless = true,
   CHECK(has(err, "seen: nil false nil 2"));
   CHECK(has(err, "event whistle from ROS 2 to listen"));
   const auto results = said_by_topic(project)["command_result"];
-  REQUIRE(results.size() == 6);
+  REQUIRE(results.size() == 8);
+  CHECK(has(err, "goes 0.25 -0.5 2"));
+  CHECK(results[6]["answer"]["done"] == true);
+  CHECK(results[7]["answer"]["done"] == false);
+  CHECK(has(results[7]["answer"]["text"], "forward_m_s"));
   CHECK(results[0]["answer"]["done"] == true);
   CHECK(results[5]["answer"]["done"] == false);
   CHECK(has(results[5]["answer"]["text"], "field 'distance_m' = 7 is outside its range 0..5 m"));
