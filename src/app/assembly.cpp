@@ -207,11 +207,15 @@ void Assembly::complete() {
   if (outside_ != nullptr) outside_->attach(catalog, safe_posture_of(robot_.config.safe));
   if (host_) host_->declare_signals(catalog.signals);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
+  for (std::size_t i = 0; i < upkeep_count_; ++i) unhashed_.push_back(static_cast<SignalId>(upkeep_first_ + i));
   show_others();
   if (linked_ || elsewhere_) last_word_ = std::make_unique<LastWord>(plant());
   Plant& seen = last_word_ ? static_cast<Plant&>(*last_word_) : plant();
   control_ =
       std::make_unique<ControlEngine>(robot_.config.engine, seen, *estimator_, *safety_, *sets_, catalog, *exchange_);
+  for (SignalId id = 0; id < catalog.signals.size(); ++id) {
+    if (catalog.signals.info(id).name.starts_with("odometry.")) unhashed_.push_back(id);
+  }
   if (host_) faulty_host_ = make_faulty_host(scenario_, *host_);
   disturbances_ = std::make_unique<Disturbances>(scenario_, robot_.config.model);
   make_joystick_player();
@@ -224,6 +228,8 @@ void Assembly::show_others() {
     const SignalTable& theirs = other->catalog().signals;
     for (SignalId id = 0; id < theirs.size(); ++id) {
       if (id - other->upkeep_first_ < other->upkeep_count_) continue;
+      if (std::ranges::binary_search(other->unhashed_, id))
+        unhashed_.push_back(static_cast<SignalId>(control_system_->catalog.signals.size()));
       Signal signal = theirs.info(id);
       signal.name.insert(0, other->scenario_.name + ".");
       control_system_->catalog.signals.add(std::move(signal), &other->control_->row()[id]);
@@ -441,8 +447,7 @@ RunParts Assembly::parts_in(Lockstep& lockstep) {
                  .disturbances = disturbances_.get(),
                  .joystick = joystick_.get(),
                  .sight = sight_.get(),
-                 .upkeep_first = static_cast<SignalId>(upkeep_first_),
-                 .upkeep_count = upkeep_count_,
+                 .unhashed = unhashed_,
                  .name = number_ == 0 ? "" : scenario_.name,
                  .faulty = number_ == 0 ? nullptr : faulty_.get()};
   for (const auto& other : others_) parts.others.push_back(other->parts_in(lockstep));

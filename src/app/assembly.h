@@ -160,6 +160,7 @@ class Assembly {
   std::unique_ptr<TruthSignals> truth_;
   std::unique_ptr<ScriptHost> host_;
   std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the signals about the interpreter's own needs
+  std::vector<SignalId> unhashed_;
   std::unique_ptr<ControlEngine> control_;
   std::unique_ptr<FaultyHost> faulty_host_;
   std::unique_ptr<FilteredHost> filtered_;

@@ -76,6 +76,7 @@ std::string refusal_text(const Refusal& refusal, const Catalog& catalog) {
     case RefusalReason::malformed:
       return "a command of no known kind";
     case RefusalReason::unknown:
+      if (refusal.kind == CommandKind::reset_odometry) return "the robot has no feet, so it has no odometry";
       return "number " + std::to_string(refusal.index) + " is unknown";
     case RefusalReason::out_of_range:
       return out_of_range(refusal, catalog);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "signal/status_fields.h"
 
@@ -73,7 +74,7 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
   const Axes base = update_base(sensors.imu, sensors.time_ns, dt_s, status.base);
   status.foot_count = health_.foot_count;
   for (std::size_t i = 0; i < feet_.size(); ++i) update_foot(i, sensors.feet[i], status.feet[i]);
-  update_support(joints, base, status);
+  update_support(joints, base, dt_s, status);
   update_channels(sensors, status);
   started_ = true;
 }
@@ -162,7 +163,7 @@ void Estimator::update_channels(const SensorFrame& sensors, RobotStatus& status)
 }
 
 // The legs that bear: how high the base is, and where the ground bears the robot.
-void Estimator::update_support(const JointStates& joints, const Axes& base, RobotStatus& status) noexcept {
+void Estimator::update_support(const JointStates& joints, const Axes& base, double dt_s, RobotStatus& status) noexcept {
   const double level = std::sqrt(base.x[0] * base.x[0] + base.x[1] * base.x[1]);
   if (level > 0.1) {  // else the base's x points up or down and says little of a heading
     heading_x_ = base.x[0] / level;
@@ -170,14 +171,22 @@ void Estimator::update_support(const JointStates& joints, const Axes& base, Robo
   }
   double lowest_m = std::numeric_limits<double>::infinity();
   double moment_x_Nm = 0, moment_y_Nm = 0;
+  Odometry::Way way;
   support_.force_N = 0;
   for (FootTrack& foot : feet_) {
     const ContactDetector::State& contact = foot.detector.state();
+    const bool bore = std::exchange(foot.bore, contact.contact);
     if (!contact.contact) continue;
+    const Vec3 was_m = foot.leg.point(contact.cop_m), toes_were = foot.leg.axes().x;
     foot.leg.update(joints, base);
     for (const Vec3& corner_m : foot.detector.config().sensors_m)
       lowest_m = std::min(lowest_m, foot.leg.point(corner_m)[2]);
     const Vec3 cop_m = foot.leg.point(contact.cop_m);
+    if (bore) {
+      const Vec3& toes = foot.leg.axes().x;
+      way.add(contact.force_N, was_m[0] - cop_m[0], was_m[1] - cop_m[1],
+              toes_were[0] * toes[1] - toes_were[1] * toes[0]);
+    }
     moment_x_Nm += contact.force_N * cop_m[0];
     moment_y_Nm += contact.force_N * cop_m[1];
     support_.force_N += contact.force_N;
@@ -190,6 +199,7 @@ void Estimator::update_support(const JointStates& joints, const Axes& base, Robo
   }
   status.base.height_m = height_m_;
   status.support = support_;
+  odometry_.update(way, way.feet == feet_.size(), {heading_x_, heading_y_}, status.base, dt_s, status.odometry);
 }
 
 Estimator::Estimator(const RobotModel& model, const EstimateSettings& settings, double dt_s)
@@ -243,6 +253,7 @@ void Estimator::add_feet(const RobotModel& model, const EstimateSettings& settin
         .on_N = settings.contact_on_N, .off_N = settings.contact_off_N, .sensors_m = foot.sensors_m};
     feet_.push_back({.detector = make<ContactDetector>(contact, "foot '" + foot.link + "'"),
                      .leg = LegChain(model, *link),
+                     .bore = false,
                      .last_sequence = 0,
                      .force_N = {}});
   }

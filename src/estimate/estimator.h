@@ -3,8 +3,8 @@
 // Each joint's position is the encoder's. Its velocity is the filtered difference quotient (velocity_filter.h). Its
 // effort is the spring's deflection times its stiffness, or the motor's own effort where there is no spring. The base's
 // orientation comes from the IMU (orientation_filter.h). Contact and centre of pressure come from the soles
-// (contact_detector.h). The legs that bear give the base's height over the lowest sole and the centre of pressure of
-// the whole robot.
+// (contact_detector.h). The legs that bear give the base's height over the lowest sole, the centre of pressure of the
+// whole robot, and the way of the base over the ground (odometry.h).
 //
 // Sensors fail. A reading counts as new when its `sequence` changed (0: none yet). Without a new reading everything
 // that depends on it keeps its value, and the next reading is used with the time that truly passed. A value that is not
@@ -27,6 +27,7 @@
 #include "kadans/signal/signal.h"
 #include "kadans/signal/status.h"
 #include "leg_chain.h"
+#include "odometry.h"
 #include "orientation_filter.h"
 #include "sensor_health.h"
 #include "settings.h"
@@ -42,6 +43,9 @@ class Estimator {
   // dt_s: since the last update. Fills joints, and status except its safety part.
   void update(const SensorFrame& sensors, double dt_s, std::uint64_t tick, JointStates& joints,
               RobotStatus& status) noexcept;
+
+  // From the next update on.
+  void reset_odometry() noexcept { odometry_.reset(); }
 
   const SensorHealth& health() const noexcept { return health_; }  // as of the last update
   const EstimateSettings& settings() const noexcept { return settings_; }
@@ -59,6 +63,7 @@ class Estimator {
   struct FootTrack {
     ContactDetector detector;
     LegChain leg;
+    bool bore = false;  // in the last tick: `leg` is as of then
     std::uint32_t last_sequence = 0;
     std::array<double, sensors_per_foot> force_N{};  // the last finite ones
   };
@@ -70,7 +75,7 @@ class Estimator {
   Axes update_base(const ImuSample& sample, std::int64_t now_ns, double dt_s, BaseStatus& base) noexcept;
   void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
   void update_channels(const SensorFrame& sensors, RobotStatus& status) noexcept;
-  void update_support(const JointStates& joints, const Axes& base, RobotStatus& status) noexcept;
+  void update_support(const JointStates& joints, const Axes& base, double dt_s, RobotStatus& status) noexcept;
 
   EstimateSettings settings_;
   OrientationFilter orientation_;
@@ -87,6 +92,7 @@ class Estimator {
   double height_m_ = 0;
   double heading_x_ = 1, heading_y_ = 0;  // the base's x axis on the ground, a unit vector; holds while x is upright
   SupportStatus support_;
+  Odometry odometry_;
 };
 
 // The signals of joint states and robot status, under the names by which recorder, checks, viewers and scripts know

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <span>
 #include <utility>
 
 namespace kadans {
@@ -28,7 +29,14 @@ namespace {
 class Run {
  public:
   Run(const RunParts& parts, Checks& checks, const std::vector<RunObserver*>& observers)
-      : parts_(parts), checks_(checks), observers_(observers) {}
+      : parts_(parts), checks_(checks), observers_(observers) {
+    std::size_t from = 0;
+    for (const SignalId left_out : parts.unhashed) {
+      hashed_.emplace_back(from, left_out - from);
+      from = left_out + 1;
+    }
+    hashed_.emplace_back(from, std::dynamic_extent);
+  }
 
   void go(double duration_s) {
     const std::int64_t end_ns = std::llround(duration_s * 1e9);
@@ -70,8 +78,7 @@ class Run {
     parts_.lockstep.step();
     const double time_s = 1e-9 * static_cast<double>(parts_.control.state().time_ns);
     const std::span<const double> row = parts_.control.row();
-    hash_.add(row.first(parts_.upkeep_first));
-    hash_.add(row.subspan(parts_.upkeep_first + parts_.upkeep_count));
+    for (const auto& [first, count] : hashed_) hash_.add(row.subspan(first, count));
     parts_.world.hash(hash_);
     for (const RunParts& other : parts_.others) {
       if (other.faulty != nullptr) other.faulty->hash_held_back(hash_);
@@ -107,6 +114,7 @@ class Run {
   const RunParts& parts_;
   Checks& checks_;
   const std::vector<RunObserver*>& observers_;
+  std::vector<std::pair<std::size_t, std::size_t>> hashed_;  // stretches of a row: where, how many
   StateHash hash_;
   RunResult result_;
 };

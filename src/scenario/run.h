@@ -63,10 +63,9 @@ struct RunParts {
   Disturbances* disturbances = nullptr;
   JoystickSource* joystick = nullptr;
   SimulatedSight* sight = nullptr;
-  // Signals about the interpreter's own needs (memory, instructions, pauses). They are not part of the state hash,
-  // because memory depends on the machine.
-  SignalId upkeep_first = 0;
-  std::size_t upkeep_count = 0;
+  // Signals that are no part of the state hash, rising: the interpreter's own needs (memory, instructions, pauses),
+  // because memory depends on the machine; and odometry, which follows from what is in the hash.
+  std::vector<SignalId> unhashed{};
   std::string name{};                   // of a further robot
   const FaultyPlant* faulty = nullptr;  // of a further robot; nullptr: its plant has no faults
   std::vector<RunParts> others{};       // of the world's further robots; their signals are among the first robot's

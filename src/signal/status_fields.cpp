@@ -79,6 +79,15 @@ constexpr StatusField fields[] = {
      "Centre of pressure of all feet, left of the trunk; keeps its value without contact",
      [](Snapshot& s, std::size_t) -> Place { return s.status.support.cop_y_m; }},
 
+    {odometry, number, "x_m", "m", "Where the base is, forward of where it was at the last reset",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.odometry.x_m; }},
+    {odometry, number, "y_m", "m", "To the left of there",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.odometry.y_m; }},
+    {odometry, number, "heading_rad", "rad", "Where it points, from where it pointed then, -pi..pi",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.odometry.heading_rad; }},
+    {odometry, flag, "valid", "", "Whether the robot has stood on its feet since the last reset, and did not fall",
+     [](Snapshot& s, std::size_t) -> Place { return s.status.odometry.valid; }},
+
     {safety, choice, "level", "", "Rung of the degradation ladder",
      [](Snapshot& s, std::size_t) -> Place { return s.status.safety.level; }, nullptr, level_name, safety_levels},
     {safety, number, "faults", "", "Faults since the last clearing",

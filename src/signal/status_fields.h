@@ -42,7 +42,7 @@ class StatusReference {
 };
 
 struct StatusField {
-  enum class Part : std::uint8_t { root, joint, base, rate, foot, support, safety, joystick, ball, sensors };
+  enum class Part : std::uint8_t { root, joint, base, rate, foot, support, odometry, safety, joystick, ball, sensors };
   enum class Type : std::uint8_t { number, flag, choice };
 
   Part part;

@@ -107,6 +107,17 @@ TEST_CASE("A refusal names the parameter or set-point and its range") {
   CHECK(rig.refusal({rig.set("posture.hip.position_rad", 0.1)}) == "taken");
 }
 
+TEST_CASE("The odometry of a robot without feet cannot be reset, that of one with feet is, also while it is held") {
+  Rig rig;
+  const Command reset{.kind = CommandKind::reset_odometry};
+  CHECK(rig.refusal({reset}) == "the robot has no feet, so it has no odometry");
+  CHECK_FALSE(rig.inbox.odometry_resets());
+  rig.catalog.feet.push_back({.name = "left", .link = "left_foot"});
+  CHECK(rig.refusal({reset}) == "taken");
+  CHECK(rig.inbox.odometry_resets());
+  CHECK_FALSE(rig.inbox.odometry_resets());  // told once
+}
+
 TEST_CASE("Each refused transaction stands in the snapshot until eight more were") {
   Rig rig;
   const std::uint32_t first = rig.send({switch_to(9)});

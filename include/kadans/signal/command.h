@@ -26,7 +26,8 @@ enum class CommandKind : std::uint8_t {
   arm,        // the `count` commands behind it, of which the first `index` are conditions, wait in the control engine;
               // sequence = ArmOptions, duration_s = for how long they wait
   condition,  // of an arm: count = ConditionKind, time_ns = signal_key() or index = SetpointId, value
-  disarm,     // takes back: sequence = number of the transaction, index = which of its arms, from 0
+  reset_odometry,  // from the next tick on the base is at 0, with a heading of 0
+  disarm,          // takes back: sequence = number of the transaction, index = which of its arms, from 0
 };
 
 // When the commands behind an arm are carried out: in the tick in which its conditions become true.

@@ -48,6 +48,14 @@ struct alignas(8) SupportStatus {
   double cop_x_m = 0, cop_y_m = 0;  // centre of pressure; holds without contact
 };
 
+// Where the base is on the ground since the last reset, by the feet that stood and the gyro (estimate/odometry.h). x
+// points where the base pointed at the reset. Robots without feet have none: not valid.
+struct alignas(8) OdometryStatus {
+  double x_m = 0, y_m = 0, heading_rad = 0;
+  std::uint32_t resets = 0;  // since the start; wraps around
+  bool valid = false;        // no: it fell or was lifted since the reset
+};
+
 // A fault in brief, for those who look at all new ones.
 struct NewFault {
   FaultCode code = FaultCode::none;
@@ -75,6 +83,7 @@ struct alignas(8) RobotStatus {
   SupportStatus support;
   std::uint32_t channel_count = 0;
   std::array<double, max_channels> channels{};  // the last finite readings; NaN before the first
+  OdometryStatus odometry;
 };
 
 // What the drives and their supply report, as in the sensor frame.
@@ -150,6 +159,7 @@ inline void copy_used(const RobotStatus& from, RobotStatus& to) noexcept {
   to.support = from.support;
   to.channel_count = from.channel_count;
   copy_first(from.channels, from.channel_count, to.channels);
+  to.odometry = from.odometry;
 }
 
 inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
@@ -180,7 +190,8 @@ static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 &&
               alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 112 && offsetof(Snapshot, joints) == 32);
 static_assert(sizeof(DriveStatus) == 12 && sizeof(PowerStatus) == 16 + 12 * max_joints);
-static_assert(sizeof(Snapshot) == 5848 + 32 * max_feet + sizeof(SeenBall) +
+static_assert(sizeof(OdometryStatus) == 32 &&
+              sizeof(Snapshot) == 5880 + 32 * max_feet + sizeof(SeenBall) +
                                       24 * new_faults_shown);  // a new field also belongs in copy_used()
 
 }  // namespace kadans

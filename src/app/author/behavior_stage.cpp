@@ -83,6 +83,8 @@ class Sensors final : public SnapshotFilter {
         return only("base.angular_velocity_rad_s");
       case support:
         return only("support");
+      case odometry:
+        return only("odometry");
       case safety:
         return only("safety");
       case joystick:

@@ -223,31 +223,25 @@ void DcmWalk::follow(std::uint32_t channel, const SetpointState& state) noexcept
   if (channel == kick_y_channel) ball_.ball.y_m = state.value;
   if (channel == kick_rad_channel) ball_.rad = state.value;
   if (channel == kick_channel) ball_.m_s = state.value;
-  if (channel == x_channel) o.foot_x_m += state.value - o.x_m, o.x_m = state.value;
-  if (channel == y_channel) o.foot_y_m += state.value - o.y_m, o.y_m = state.value;
-  if (channel == heading_channel) {  // the base stays where it is, the foot goes round it
-    const double by_rad = state.value - o.heading_rad, x_m = o.foot_x_m - o.x_m, y_m = o.foot_y_m - o.y_m;
-    o.foot_x_m = o.x_m + std::cos(by_rad) * x_m - std::sin(by_rad) * y_m;
-    o.foot_y_m = o.y_m + std::sin(by_rad) * x_m + std::cos(by_rad) * y_m;
-    o.zero_rad -= by_rad;
-    o.heading_rad = state.value;
-  }
+  if (channel == x_channel) o.x_m = state.value;
+  if (channel == y_channel) o.y_m = state.value;
+  if (channel == heading_channel) o.heading_rad = state.value;
 }
 
-// The foot that stands stays where it is.
-void DcmWalk::reckon(const ControlInput& input, bool new_stance) noexcept {
+// Goes on by what the robot's odometry went on since the last tick, from the heading that it has here.
+void DcmWalk::reckon(const OdometryStatus& now) noexcept {
   Odometry& o = odometry_;
-  o.heading_rad = std::remainder(input.status.base.yaw_rad - o.zero_rad, 2 * std::numbers::pi);
-  const double frame_rad = o.heading_rad - over_feet_.yaw_rad();
-  const Vec3& foot_m = over_feet_.over(plan_.state().stance).foot_m;
-  const double x_m = std::cos(frame_rad) * foot_m[0] - std::sin(frame_rad) * foot_m[1];
-  const double y_m = std::sin(frame_rad) * foot_m[0] + std::cos(frame_rad) * foot_m[1];
-  if (new_stance) {
-    o.foot_x_m = o.x_m + x_m;
-    o.foot_y_m = o.y_m + y_m;
+  if (now.resets == o.seen_resets) {
+    const double apart_rad = o.heading_rad - o.seen_heading_rad, c = std::cos(apart_rad), n = std::sin(apart_rad);
+    const double x_m = now.x_m - o.seen_x_m, y_m = now.y_m - o.seen_y_m;
+    o.x_m += c * x_m - n * y_m;
+    o.y_m += n * x_m + c * y_m;
+    o.heading_rad = std::remainder(o.heading_rad + now.heading_rad - o.seen_heading_rad, 2 * std::numbers::pi);
   }
-  o.x_m = o.foot_x_m - x_m;
-  o.y_m = o.foot_y_m - y_m;
+  o.seen_x_m = now.x_m;
+  o.seen_y_m = now.y_m;
+  o.seen_heading_rad = now.heading_rad;
+  o.seen_resets = now.resets;
 }
 
 // The ball as the plan has it: from the foot that stands, in the heading frame.
@@ -257,9 +251,11 @@ void DcmWalk::see_ball() noexcept {
   const Odometry& o = odometry_;
   const double frame_rad = o.heading_rad - over_feet_.yaw_rad();
   const double c = std::cos(frame_rad), n = std::sin(frame_rad);
-  const double x_m = ball_.ball.x_m - o.foot_x_m, y_m = ball_.ball.y_m - o.foot_y_m;
-  wanted_.kick = {
-      {c * x_m + n * y_m, c * y_m - n * x_m}, std::remainder(ball_.rad - frame_rad, 2 * std::numbers::pi), ball_.m_s};
+  const double x_m = ball_.ball.x_m - o.x_m, y_m = ball_.ball.y_m - o.y_m;
+  const Vec3& foot_m = over_feet_.over(plan_.state().stance).foot_m;
+  wanted_.kick = {{c * x_m + n * y_m - foot_m[0], c * y_m - n * x_m - foot_m[1]},
+                  std::remainder(ball_.rad - frame_rad, 2 * std::numbers::pi),
+                  ball_.m_s};
 }
 
 void DcmWalk::let_go(ActuationFrame& actuation) noexcept {
@@ -280,6 +276,7 @@ WalkPlan::Sight DcmWalk::sight(const ControlInput& input) const noexcept {
 }
 
 void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
+  reckon(input.status.odometry);
   if (!wanted_.go) given_up_ = false;
   const bool idle = plan_.state().phase == WalkPlan::Phase::stands;
   phase_number_ = given_up_ ? -1 : static_cast<double>(plan_.state().phase);
@@ -294,7 +291,6 @@ void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcep
     landed(input);
   }
   feel_ground(input.dt_s);
-  reckon(input, false);
   see_ball();
   const std::uint32_t kicks = plan_.state().kicks;
   if (plan_.advance(plan_config_, wanted_, sight(input), input.dt_s)) landed(input);
@@ -338,7 +334,6 @@ void DcmWalk::landed(const ControlInput& input) noexcept {
     plan_.turned(turn_rad);
     (void)over_feet_.update(input);
   }
-  reckon(input, true);
   for (Leg& leg : legs_) {
     for (std::size_t i = 0; i < leg_joints; ++i) {
       const JointState& joint = input.joints.joints[leg.inverse.axis(i).joint];

@@ -85,7 +85,7 @@ class DcmWalk final : public ControlObject {
   void let_go(ActuationFrame& actuation) noexcept;
   WalkPlan::Sight sight(const ControlInput& input) const noexcept;
   void begin(const ControlInput& input) noexcept;
-  void reckon(const ControlInput& input, bool new_stance) noexcept;
+  void reckon(const OdometryStatus& now) noexcept;
   void see_ball() noexcept;
   bool stands() const noexcept;
   void feel_ground(double dt_s) noexcept;
@@ -105,9 +105,9 @@ class DcmWalk final : public ControlObject {
   WalkPlan plan_;
   WalkPlan::Wanted wanted_;
   struct Odometry {
-    double x_m = 0, y_m = 0, heading_rad = 0;  // of the base
-    double foot_x_m = 0, foot_y_m = 0;         // of the stance foot
-    double zero_rad = 0;                       // yaw of the base at a heading of 0
+    double x_m = 0, y_m = 0, heading_rad = 0;                 // of the base
+    double seen_x_m = 0, seen_y_m = 0, seen_heading_rad = 0;  // the robot's own, of the tick before
+    std::uint64_t seen_resets = 0;
   };
   Odometry odometry_;
   Kick ball_;          // to be kicked, in the frame of the odometry

@@ -41,6 +41,7 @@ bool ArmedTransactions::can_wait(CommandKind kind) noexcept {
     case CommandKind::transaction:
     case CommandKind::clear_faults:  // what ends a hold must be a decision of now
     case CommandKind::order_drive:
+    case CommandKind::reset_odometry:
     case CommandKind::arm:
     case CommandKind::condition:
     case CommandKind::disarm:

@@ -52,6 +52,8 @@ RefusalReason CommandInbox::judge(const Command& command) const noexcept {
       return malformed;
     case CommandKind::disarm:
       return none;
+    case CommandKind::reset_odometry:
+      return catalog_.feet.empty() ? unknown : none;
     case CommandKind::set_parameter:
       return known(catalog_.parameters.size(), catalog_.parameters.accepts(command.index, command.value));
     case CommandKind::set_point: {
@@ -78,7 +80,8 @@ RefusalReason CommandInbox::judge(const Command& command) const noexcept {
 
 RefusalReason CommandInbox::held(const Command& command, const Safety& safety, SetMask active,
                                  std::uint16_t& joint) const noexcept {
-  if (clears(command, safety) || command.kind == CommandKind::cancel_motion || command.kind == CommandKind::disarm)
+  if (clears(command, safety) || command.kind == CommandKind::cancel_motion || command.kind == CommandKind::disarm ||
+      command.kind == CommandKind::reset_odometry)
     return RefusalReason::none;
   if (command.kind == CommandKind::order_drive)
     return safety.stopped() && !keeps_still(command) ? RefusalReason::robot_held : RefusalReason::none;
@@ -196,6 +199,9 @@ void CommandInbox::execute(const Command& command, const ControlInput& input, Sa
       break;
     case CommandKind::disarm:
       armed_.disarm(command.sequence, command.index);
+      break;
+    case CommandKind::reset_odometry:
+      odometry_resets_ = true;
       break;
     case CommandKind::set_parameter:
       if (catalog_.parameters.set(command.index, command.value))

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
 #include "armed_transactions.h"
 #include "engine/motion/setpoint_motions.h"
@@ -51,6 +52,8 @@ class CommandInbox {
   void fill(Snapshot& snapshot) const noexcept;
   SetpointMotions& motions() noexcept { return motions_; }
   const DriveRequests& drive_requests() const noexcept { return drive_requests_; }
+  // Whether a command of this tick resets the odometry. Told once.
+  bool odometry_resets() noexcept { return std::exchange(odometry_resets_, false); }
   // Control thread, when the emergency stop comes: orders that let a joint move and are not carried out yet count no
   // more, nor do armed transactions.
   void revoke_orders(const SensorFrame& sensors) noexcept;
@@ -81,6 +84,7 @@ class CommandInbox {
   SetpointMotions motions_;
   ArmedTransactions armed_;
   DriveRequests drive_requests_{};
+  bool odometry_resets_ = false;
   JointMask ordered_ = 0;  // joints whose drives were ordered in this tick
   State state_;
   std::uint32_t transactions_refused_ = 0;

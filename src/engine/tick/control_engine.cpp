@@ -24,6 +24,7 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
   declare_signals(catalog);
   if (settings.joystick) declare_part(catalog.signals, StatusField::Part::joystick, "joystick", snapshot_);
   if (settings.sight) declare_part(catalog.signals, StatusField::Part::ball, "seen.ball", snapshot_);
+  if (!catalog.feet.empty()) declare_part(catalog.signals, StatusField::Part::odometry, "odometry", snapshot_);
   row_.resize(catalog.signals.size());
 }
 
@@ -48,6 +49,7 @@ void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed
   const ControlInput input{snapshot_.joints, snapshot_.status, written_, time_ns, dt_s};
   if (safety_.came_back()) sets_.restart(input);
   inbox_.apply(tick_, input, safety_);
+  if (inbox_.odometry_resets()) estimator_.reset_odometry();
   inbox_.carry_out_armed(tick_, input, safety_);
   copy_first(inbox_.drive_requests(), actuation_.joint_count, actuation_.drives);
   inbox_.motions().step(dt_s);

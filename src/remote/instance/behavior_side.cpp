@@ -165,6 +165,8 @@ bool BehaviorSide::begin(Pending& pending) {
     case Order::Kind::clear_faults:
       pending.lifts = lifts_;
       return p_.instance.clear_faults(), false;
+    case Order::Kind::reset_odometry:
+      return send(pending, std::array{Command{.kind = CommandKind::reset_odometry}}), false;
     case Order::Kind::enable_drives:
     case Order::Kind::disable_drives:
     case Order::Kind::reset_drives:
@@ -282,6 +284,8 @@ void BehaviorSide::finish(Pending& pending) {
       return say(time_ns_, order.who, "switched to control set " + order.text);
     case Order::Kind::clear_faults:
       return say(time_ns_, order.who, "cleared the faults");
+    case Order::Kind::reset_odometry:
+      return say(time_ns_, order.who, "reset the odometry");
     case Order::Kind::set_point:
       if (time_ns_ - std::exchange(led_ns_, time_ns_) < led_again_ns) return;
       return say(time_ns_, order.who, "set " + order.text);

@@ -42,6 +42,7 @@ struct Order {
     changes,        // Answer::changes = changes by set_parameter since the start or the last `saved`
     saved,          // `changes` have been written into the configuration
     clear_faults,
+    reset_odometry,
     // `text` = joints by a pattern, "" = all; as the orders to drives (frames.h).
     enable_drives,
     disable_drives,
@@ -254,6 +255,8 @@ inline constexpr OrderInfo orders[] = {
      "  kadans ctl fault list --json\n"},
     {"clear_faults", "fault clear", all, Role::operate, "Clear the faults of the safety layer, and the emergency stop",
      Is::clear_faults},
+    {"reset_odometry", "odometry reset", all, Role::operate, "Let the robot's odometry begin anew, where it is now",
+     Is::reset_odometry},
     {"estop", "estop", all, Role::operate, "Emergency stop: damp at once, then off, until faults are cleared", {}},
     {"play",
      "play",

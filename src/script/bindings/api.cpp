@@ -188,6 +188,10 @@ constexpr ApiEntry written[] = {
     {"m", "clear_faults()", "boolean?, string?",
      "Clears the faults of the safety layer, but no emergency stop; commands later in the same tick count already; "
      "nil, \"queue_full\""},
+    {"m", "reset_odometry()", "boolean?, string?",
+     "Lets s.odometry begin anew from where the robot is in the next tick; nil, \"queue_full\"; an error where the "
+     "robot "
+     "has no feet"},
 
     {"object", "move(pose, options)", "kadans.Motion?, string?, number?, string?",
      "Moves to a pose, by name or as joint = rad, or to tasks, in { time_s = }; nil, \"queue_full\", or nil, "
@@ -223,6 +227,7 @@ constexpr ApiEntry written[] = {
     {"s", "feet", "kadans.Feet",
      "By name, as the robot's configuration has them; two without names are left and right"},
     {"s", "support", "kadans.Support", "Where the ground supports the robot"},
+    {"s", "odometry", "kadans.Odometry", "Where the robot is by its feet and its gyro; never valid without feet"},
     {"s", "safety", "kadans.Safety", "State of the safety layer"},
     {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
     {"s", "seen", "kadans.Seen", "What perception saw last"},
@@ -253,6 +258,8 @@ const char* owner_of(StatusField::Part part) {
       return "foot";
     case support:
       return "support";
+    case odometry:
+      return "odometry";
     case safety:
       return "safety";
     case joystick:
@@ -307,6 +314,7 @@ constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require
                             {"rate", "kadans.Rate", "A rate of rotation: `s.base.angular_velocity_rad_s`"},
                             {"foot", "kadans.Foot", "A foot: `s.feet.left`"},
                             {"support", "kadans.Support", "The ground: `s.support`"},
+                            {"odometry", "kadans.Odometry", "Where it is by its feet: `s.odometry`"},
                             {"safety", "kadans.Safety", "The safety layer: `s.safety`"},
                             {"joystick", "kadans.Joystick", "A joystick: `s.joystick`"},
                             {"seen", "kadans.Seen", "What perception saw: `s.seen`"},
@@ -461,6 +469,7 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("rate", s["base"].fields["angular_velocity_rad_s"].names());
   add("foot", s["feet"].fields.begin()->second.names());
   add("support", s["support"].names());
+  add("odometry", s["odometry"].names());
   add("safety", s["safety"].names());
   add("joystick", s["joystick"].names());
   add("seen", s["seen"].names());

@@ -183,6 +183,15 @@ int clear_faults(lua_State* state) {
   return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
 }
 
+// m:reset_odometry() -> true | nil, "queue_full". Raises where the robot has no feet.
+int reset_odometry(lua_State* state) {
+  Bindings& bindings = bindings_of(state);
+  if (bindings.recording) return luaL_error(state, "what waits for a condition cannot reset the odometry");
+  if (bindings.catalog->feet.empty()) return luaL_error(state, "the robot has no feet, so it has no odometry");
+  if (bindings.send({.kind = CommandKind::reset_odometry})) return lua_pushboolean(state, 1), 1;
+  return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
+}
+
 // [-0 +1] A deep copy of the value at `index`: plain data only.
 void push_copy(lua_State* state, int index, int depth) {
   const int type = lua_type(state, index);
@@ -339,6 +348,8 @@ void push_machine_content(lua_State* state, const Chart& chart, const Bindings& 
   lua_setfield(state, -2, "wait");
   lua_pushcfunction(state, clear_faults);
   lua_setfield(state, -2, "clear_faults");
+  lua_pushcfunction(state, reset_odometry);
+  lua_setfield(state, -2, "reset_odometry");
   lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
   lua_pushcclosure(state, emit, 1);
   lua_setfield(state, -2, "emit");

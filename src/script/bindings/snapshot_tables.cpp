@@ -149,6 +149,8 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, bool on_deman
   lua_setfield(state, -2, "feet");
   push_whole_part(state, Kind::support, 0, "s.support");
   lua_setfield(state, -2, "support");
+  push_whole_part(state, Kind::odometry, 0, "s.odometry");
+  lua_setfield(state, -2, "odometry");
   push_whole_part(state, Kind::safety, 0, "s.safety");
   lua_setfield(state, -2, "safety");
   push_whole_part(state, Kind::joystick, 0, "s.joystick");

@@ -49,7 +49,10 @@ FlowCheck::Call FlowCheck::kind_of(const SourceUse& use, const Tokens& tokens) c
     default:
       return Call::unknown;
   }
-  if (path.empty()) return use.method == "emit" || use.method == "clear_faults" ? Call::harmless : Call::waits;
+  if (path.empty()) {
+    const bool asks = use.method == "emit" || use.method == "clear_faults" || use.method == "reset_odometry";
+    return asks ? Call::harmless : Call::waits;
+  }
   if (path.size() != 1 || use.method.empty()) return Call::unknown;
   const std::size_t after = end_of_call(tokens, use.arguments);
   return tokens[after].is(":") ? Call::waits : Call::harmless;  // move(...):wait()

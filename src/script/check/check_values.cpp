@@ -83,7 +83,7 @@ ValueCheck::Type ValueCheck::field_of(StatusField::Part part, const std::string&
     if (field.type == StatusField::Type::number) {
       using Part = StatusField::Part;
       const bool sensed = part == Part::joint || part == Part::base || part == Part::rate || part == Part::foot ||
-                          part == Part::support;
+                          part == Part::support || part == Part::odometry;
       return {Kind::number, {}, sensed};
     }
     if (field.type == StatusField::Type::flag) return {Kind::flag, {}};
@@ -109,11 +109,9 @@ ValueCheck::Type ValueCheck::type_of(const SourceMeaning& meaning) const {
   if (path.size() == 3 && path[0] == "feet") return field_of(Part::foot, path[2]);
   if (path.size() == 3 && path[0] == "base") return field_of(Part::rate, path[2]);
   if (path.size() == 3 && path[0] == "seen") return field_of(Part::ball, path[2]);
-  constexpr std::pair<const char*, Part> parts[] = {{"base", Part::base},
-                                                    {"support", Part::support},
-                                                    {"safety", Part::safety},
-                                                    {"joystick", Part::joystick},
-                                                    {"sensors", Part::sensors}};
+  constexpr std::pair<const char*, Part> parts[] = {{"base", Part::base},         {"support", Part::support},
+                                                    {"odometry", Part::odometry}, {"safety", Part::safety},
+                                                    {"joystick", Part::joystick}, {"sensors", Part::sensors}};
   for (const auto& [name, part] : parts) {
     if (path.size() == 2 && path[0] == name) return field_of(part, path[1]);
   }
@@ -239,7 +237,7 @@ std::string ValueCheck::machine_call(const SourceUse& use, const Tokens& tokens)
   if (use.arguments == 0) return "";
   const bool bracket = tokens[use.arguments - 1].is("(");
   if (path.size() == 1 && use.method.empty()) {
-    for (const char* method : {"wait", "emit", "on", "clear_faults", "use"}) {
+    for (const char* method : {"wait", "emit", "on", "clear_faults", "reset_odometry", "use"}) {
       if (path[0] == method && without_colon(use, tokens))
         return "call it with a colon: " + use.name + ":" + path[0] + "(...)";
     }
@@ -284,7 +282,7 @@ std::string ValueCheck::condition(const std::string& text) const {
   const SignalTable& signals = parts_.catalog.signals;
   const SignalName known = condition_signal(parts_.bindings, given);
   const std::string topic = given.substr(0, given.find('.') + 1);
-  constexpr std::string_view measured[] = {"joint.", "base.", "foot.", "support."};
+  constexpr std::string_view measured[] = {"joint.", "base.", "foot.", "support.", "odometry."};
   const bool named = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
   if (!named || signals.find_key(signal_key(known.data()))) return "";
   return std::string("m:on: unknown signal '") + known.data() + "'" +

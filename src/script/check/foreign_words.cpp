@@ -44,7 +44,7 @@ const ForeignName foreign_names[] = {
     {{"k", "kadans"}, ": write local k = require \"kadans\" at the top"},
     {{"P", "params"}, ": write local P = k.params { ... } at the top"},
     {{"state", "behavior", "final", "parallel", "region", "history", "call", "pose"}, ": write it with k., as k.state"},
-    {{"joints", "base", "feet", "safety", "joystick", "support", "seen"}, ": it is a field of s: s.base"},
+    {{"joints", "base", "feet", "safety", "joystick", "support", "odometry", "seen"}, ": it is a field of s: s.base"},
     {{"vars"}, ": it is a field of m: m.vars"},
     {{"args", "arg"}, ": the arguments are a field of m: m.args"},
     {{"time_s"}, ": it is a field of m: m.time_s"},
@@ -112,8 +112,8 @@ constexpr std::string_view list_keys[] = {"states", "transitions", "children", "
 
 constexpr std::string_view text_keys[] = {"to", "on", "initial", "outcome", "controls", "why"};  // values are texts
 
-constexpr std::string_view of_machine[] = {"vars", "args", "wait", "emit", "clear_faults"};
-constexpr std::string_view of_snapshot[] = {"base",   "joints",   "feet", "support",
+constexpr std::string_view of_machine[] = {"vars", "args", "wait", "emit", "clear_faults", "reset_odometry"};
+constexpr std::string_view of_snapshot[] = {"base",   "joints",   "feet", "support", "odometry",
                                             "safety", "joystick", "seen", "sensors"};
 
 template <typename Table>
