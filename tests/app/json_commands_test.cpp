@@ -81,6 +81,7 @@ const std::map<std::string, std::vector<std::string>> samples{
     {"ctl drive release", {"ctl drive release l_knee"}},
     {"ctl fault list", {"ctl fault list"}},
     {"ctl fault clear", {"ctl fault clear"}},
+    {"ctl odometry reset", {"ctl odometry reset"}},
     {"ctl record start", {"ctl record start seen.mcap"}},
     {"ctl record stop", {"ctl record stop"}},
     {"ctl record dump", {"ctl record dump"}},
@@ -222,13 +223,14 @@ TEST_CASE("what stdout does not take is told, and the exit code is not 0") {
 TEST_CASE("--json of every verb of ctl is one object a line, whether it is done or refused") {
   const auto folder = project("json_ctl");
   const std::string program = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
-  const std::vector<std::string> order{
-      "ctl status",       "ctl list",         "ctl get",         "ctl watch",         "ctl drives",
-      "ctl set",          "ctl save",         "ctl undo",        "ctl play",          "ctl pause",
-      "ctl resume",       "ctl switch",       "ctl lead",        "ctl why",           "ctl emit",
-      "ctl reload",       "ctl record start", "ctl record stop", "ctl record dump",   "ctl repl",
-      "ctl stop",         "ctl fault list",   "ctl estop",       "ctl fault clear",   "ctl drive disable",
-      "ctl drive enable", "ctl drive reset",  "ctl drive home",  "ctl drive release", "ctl drive brake"};
+  const std::vector<std::string> order{"ctl status",        "ctl list",         "ctl get",           "ctl watch",
+                                       "ctl drives",        "ctl set",          "ctl save",          "ctl undo",
+                                       "ctl play",          "ctl pause",        "ctl resume",        "ctl switch",
+                                       "ctl lead",          "ctl why",          "ctl emit",          "ctl reload",
+                                       "ctl record start",  "ctl record stop",  "ctl record dump",   "ctl repl",
+                                       "ctl stop",          "ctl fault list",   "ctl estop",         "ctl fault clear",
+                                       "ctl drive disable", "ctl drive enable", "ctl drive reset",   "ctl drive home",
+                                       "ctl drive release", "ctl drive brake",  "ctl odometry reset"};
   std::string script = "export XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/none\"\n'" + program +
                        "' run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time --ctl c "
                        ">out 2>err &\nrun=$!\nuntil '" +
