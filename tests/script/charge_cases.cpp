@@ -205,6 +205,7 @@ constexpr ChargeCase cases[] = {
     {"P.__index", "return pcall, function() return P[('x'):rep(200)] end"},
     {"P.__newindex", "return pcall, function() P.depth = 1 end"},
     {"m.__index.clear_faults", "return m.clear_faults, m"},
+    {"m.__index.reset_odometry", "return m.reset_odometry, m"},
     {"m.__index.emit", "return pcall, m.emit, m, ('x'):rep(60000)"},
     {"m.__index.on",
      "return pcall, m.on, m, { all = { { after_s = 1 }, { after_s = 1 }, { arrived = m.posture }, { arrived = "
