@@ -220,9 +220,15 @@ double SetpointMotions::remaining_s(std::uint32_t owner) const noexcept {
 void SetpointMotions::fill(Snapshot& snapshot) const noexcept {
   snapshot.setpoint_count = static_cast<std::uint32_t>(shown_.size());
   SetpointStatus* status = snapshot.setpoints.data();
+  const ControlObject* last = nullptr;
+  bool runs = false;
   for (const Shown& shown : shown_) {
     SetpointStatus& at = *status++;
-    if (shown.object == nullptr || !sets_.runs(shown.owner)) {
+    if (shown.object != last) {  // an object's set-points stand together
+      last = shown.object;
+      runs = last != nullptr && sets_.runs(shown.owner);
+    }
+    if (!runs) {
       at = {};
       continue;
     }
