@@ -124,6 +124,8 @@ using Is = Order::Kind;
 inline constexpr OrderArgument record_file{
     .name = "file", .kind = text, .shown = "FILE", .doc = "name of the file (default: from robot and time)"};
 
+inline constexpr OrderArgument some_text{.name = "text", .kind = text, .required = true};
+
 inline constexpr OrderArgument some_joints{.name = "joints",
                                            .kind = text,
                                            .shown = "JOINTS",
@@ -361,20 +363,8 @@ inline constexpr OrderInfo orders[] = {
      {{{.name = "name", .kind = text, .shown = "NAME", .lists = "behaviors"}}},
      "  kadans ctl reload\n"
      "  kadans ctl reload squat\n"},
-    {"line",
-     "",
-     sockets,
-     Role::develop,
-     "A line for the console of this client",
-     Is::line,
-     {{{.name = "text", .kind = text, .required = true}}}},
-    {"complete",
-     "",
-     sockets,
-     Role::develop,
-     "Completions of the line's beginning",
-     Is::complete,
-     {{{.name = "text", .kind = text, .required = true}}}},
+    {"line", "", sockets, Role::develop, "A line for the console of this client", Is::line, {{some_text}}},
+    {"complete", "", sockets, Role::develop, "Completions of the line's beginning", Is::complete, {{some_text}}},
     {"hold", "", paced, Role::operate, "Stop time", {}},
     {"go", "", paced, Role::operate, "Let time continue", {}},
     {"step", "", paced, Role::operate, "Let time continue for one tick", {}},
