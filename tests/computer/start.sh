@@ -44,9 +44,9 @@ say "the hooks were told: $(guest cat /data/told | tr '\n' ',')"
 
 guest sync
 machine_off
-# A mini PC may start by UEFI alone: so does the second power-on of amd64.
+# A mini PC may start by UEFI alone: so does the second power-on of amd64, with memory for such a firmware.
 firmware=()
-[ "$arch" != amd64 ] || firmware=(-bios "$uefi")
+[ "$arch" != amd64 ] || firmware=(-bios "$uefi" -m 1024)
 machine_start "${firmware[@]}"
 console_says "tulip is driven"
 all=$(since)
