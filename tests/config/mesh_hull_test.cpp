@@ -148,6 +148,16 @@ TEST_CASE("A mesh that is flat or a line has a hull, too") {
   CHECK(mesh_hull(meshes.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")).size() >= 2);
 }
 
+TEST_CASE("A mesh of more than a million triangles has a hull, although its triangles are too many to be read") {
+  const Meshes meshes;
+  std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 1'000'001; ++i) text += "f 1 2 3\n";
+  const std::string file = meshes.write("many.obj", text);
+  CHECK(mesh_hull(file).size() == 3);
+  CHECK_THROWS_WITH_AS((void)mesh_triangles(file), doctest::Contains("it has more than a million triangles"),
+                       InputError);
+}
+
 TEST_CASE("What is no mesh is refused with what its reader says") {
   const Meshes meshes;
   CHECK(refusal(meshes.write("text.stl", "a letter")).starts_with("cannot be read as a mesh: "));

@@ -35,10 +35,11 @@ void bound(__rlimit_resource what, rlim_t most) {
 
 using Corner = std::array<float, 3>;
 
-// What is drawn where a mesh stands in the scene.
+// What is drawn, where each mesh stands in the scene: its points, or the corners of its triangles, three each.
 struct Contents {
+  bool of_triangles = false;
   std::vector<btVector3> points;
-  std::vector<Corner> corners;  // three a triangle
+  std::vector<Corner> corners;
 };
 
 Corner corner(const aiVector3D& point) {
@@ -52,11 +53,11 @@ void add_node(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above
   const aiMatrix4x4 pose = above * node.mTransformation;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
-    for (unsigned k = 0; k < mesh.mNumVertices; ++k) {
+    for (unsigned k = 0; k < (to.of_triangles ? 0 : mesh.mNumVertices); ++k) {
       const auto [x, y, z] = corner(pose * mesh.mVertices[k]);
       to.points.emplace_back(static_cast<btScalar>(x), static_cast<btScalar>(y), static_cast<btScalar>(z));
     }
-    for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
+    for (unsigned k = 0; k < (to.of_triangles ? mesh.mNumFaces : 0); ++k) {
       const aiFace& face = mesh.mFaces[k];
       if (face.mNumIndices != 3) continue;  // a point or a line
       if (to.corners.size() >= 3 * triangles_most) throw std::runtime_error("it has more than a million triangles");
@@ -72,9 +73,10 @@ Contents read_mesh(const char* file, bool triangles) {
   const aiScene* const scene = importer.ReadFile(
       file, aiProcess_ValidateDataStructure | (triangles ? static_cast<unsigned>(aiProcess_Triangulate) : 0U));
   if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
-  Contents contents;
+  Contents contents{.of_triangles = triangles};
   if (scene->mRootNode != nullptr) add_node(*scene, *scene->mRootNode, aiMatrix4x4(), 0, contents);
-  if (contents.points.empty()) throw std::runtime_error("it has no points");
+  if (triangles && contents.corners.empty()) throw std::runtime_error("it has no triangles");
+  if (!triangles && contents.points.empty()) throw std::runtime_error("it has no points");
   return contents;
 }
 
@@ -93,7 +95,6 @@ int run(int argc, char** argv) {
   bound(RLIMIT_CORE, 0);
   const Contents contents = read_mesh(argv[1], triangles);
   if (triangles) {
-    if (contents.corners.empty()) throw std::runtime_error("it has no triangles");
     return std::fwrite(contents.corners.data(), sizeof(Corner), contents.corners.size(), stdout) ==
                    contents.corners.size()
                ? 0
