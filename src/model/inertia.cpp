@@ -55,6 +55,13 @@ Inertia moved(const Inertia& inertia, const Pose& pose) noexcept {
   return result;
 }
 
+Inertia scaled(const Inertia& inertia, double factor) noexcept {
+  Inertia result = inertia;
+  for (double* const part : {&result.mass_kg, &result.xx, &result.yy, &result.zz, &result.xy, &result.xz, &result.yz})
+    *part *= factor;
+  return result;
+}
+
 Inertia combined(const Inertia& a, const Inertia& b) noexcept {
   if (!(b.mass_kg > 0)) return a;
   if (!(a.mass_kg > 0)) return b;

@@ -24,6 +24,11 @@ std::string hex(char c) {
 
 }  // namespace
 
+std::string_view trimmed(std::string_view text) noexcept {
+  const std::size_t first = std::min(text.find_first_not_of(xml_blanks), text.size());
+  return text.substr(first, text.find_last_not_of(xml_blanks) + 1 - first);
+}
+
 SourceText::SourceText(std::string_view text) : text_(text), lines_{0} {
   for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1)) {
     lines_.push_back(at + 1);

@@ -31,6 +31,7 @@ class SourceText {
 };
 
 inline constexpr std::string_view xml_blanks = " \t\r\n";
+std::string_view trimmed(std::string_view text) noexcept;  // without blanks around it
 
 // The first byte that is not UTF-8, or a control character other than tab, line feed and carriage return.
 std::optional<TextProblem> find_non_text(std::string_view text);

@@ -433,10 +433,7 @@ class MjcfReader {
     double sum_kg = 0;
     for (const UrdfLink& link : robot_.links) sum_kg += link.inertia ? link.inertia->mass_kg : 0;
     for (UrdfLink& link : robot_.links) {
-      if (!link.inertia || !(sum_kg > 0)) continue;
-      Inertia& i = *link.inertia;
-      for (double* const part : {&i.mass_kg, &i.xx, &i.yy, &i.zz, &i.xy, &i.xz, &i.yz})
-        *part *= total_mass_kg_ / sum_kg;
+      if (link.inertia && sum_kg > 0) link.inertia = scaled(*link.inertia, total_mass_kg_ / sum_kg);
     }
   }
 
@@ -521,12 +518,8 @@ class MjcfReader {
   // `solid`: at a density of 1 kg/m3.
   void weigh_geom(const MjcfElement& e, const Frame& own, const Pose& in_link, const Inertia& solid) {
     if (!(solid.mass_kg > 0)) return;
-    Inertia body = solid;
     const double share = e.has("mass") ? e.number("mass", 0) / solid.mass_kg : e.number("density", density_kg_m3);
-    if (!(share > 0)) return;
-    for (double* const part : {&body.mass_kg, &body.xx, &body.yy, &body.zz, &body.xy, &body.xz, &body.yz})
-      *part *= share;
-    weld(own.link, moved(body, in_link));
+    if (share > 0) weld(own.link, moved(scaled(solid, share), in_link));
   }
 
   // What collides is drawn where its body has nothing else to be drawn.

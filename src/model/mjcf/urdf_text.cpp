@@ -4,35 +4,13 @@
 
 #include "kadans/model/kinematics.h"
 #include "signal/number_text.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 namespace {
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
 std::string attribute(const char* name, const std::string& value) {
-  return std::string(" ") + name + "=\"" + escaped(value) + "\"";
+  return std::string(" ") + name + "=\"" + html_text(value) + "\"";
 }
 std::string attribute(const char* name, double value) { return attribute(name, number_text(value)); }
 template <std::size_t n>

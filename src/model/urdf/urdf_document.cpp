@@ -21,11 +21,6 @@ constexpr double largest = 1e9;
 constexpr std::size_t longest_name = 128, longest_number = 64;
 using Defect = std::optional<std::string>;
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = std::min(text.find_first_not_of(xml_blanks), text.size());
-  return text.substr(first, text.find_last_not_of(xml_blanks) + 1 - first);
-}
-
 std::vector<std::string_view> pieces(std::string_view text) {
   constexpr std::size_t enough = 16;  // nothing in URDF has more than four
   std::vector<std::string_view> result;

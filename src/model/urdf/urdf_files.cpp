@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kadans/model/urdf.h"
+#include "model/xml_scan.h"
 
 namespace kadans {
 namespace {
@@ -29,10 +30,7 @@ std::string package_in(const fs::path& folder) {
   const std::string_view text(start.data(), static_cast<std::size_t>(in.gcount()));
   const std::size_t at = text.find("<name>");
   if (at == std::string_view::npos) return "";
-  std::string_view name = text.substr(at + 6, text.find('<', at + 1) - at - 6);
-  const std::size_t first = name.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return "";
-  return std::string(name.substr(first, name.find_last_not_of(" \t\r\n") + 1 - first));
+  return std::string(trimmed(text.substr(at + 6, text.find('<', at + 1) - at - 6)));
 }
 
 // A file of the package that this folder is, or that lies in it.

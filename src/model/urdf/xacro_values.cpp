@@ -16,17 +16,11 @@ struct Edit {  // of the text, in its order
   std::string by;
 };
 
-std::string_view trimmed_blanks(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(xml_blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(xml_blanks) + 1 - first);
-}
-
 std::string in_attribute(std::string_view value) {
   std::string text;
-  for (const char c : value) {
-    if (c == '&' || c == '<' || c == '"' || c == '\'')
-      text += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : "&apos;";
+  for (const char c : html_text(value)) {
+    if (c == '\'')
+      text += "&apos;";
     else
       text += c;
   }
@@ -112,7 +106,7 @@ class XacroReader {
       const std::size_t end = call ? given.find(')', i) : name ? given.find('}', i) : std::string_view::npos;
       const auto value = end == std::string_view::npos || (i > 0 && given[i - 1] == '$')
                              ? std::nullopt
-                             : value_of(trimmed_blanks(given.substr(i + 2, end - i - 2)), call);
+                             : value_of(trimmed(given.substr(i + 2, end - i - 2)), call);
       if (!value) {
         result += given[i++];
         continue;
@@ -129,7 +123,7 @@ class XacroReader {
   std::optional<std::string> value_of(std::string_view inside, bool call) {
     if (!call) return take(std::string(inside), properties_, std::string(inside), "its property");
     const std::size_t word = std::min(inside.find_first_of(xml_blanks), inside.size());
-    const std::string_view kind = inside.substr(0, word), rest = trimmed_blanks(inside.substr(word));
+    const std::string_view kind = inside.substr(0, word), rest = trimmed(inside.substr(word));
     const std::size_t blank = std::min(rest.find_first_of(xml_blanks), rest.size());
     const std::string name(rest.substr(0, blank));
     if (kind == "arg" && blank == rest.size()) return take(name, arguments_, name, "its default");
@@ -137,7 +131,7 @@ class XacroReader {
     if (const char* const set = std::getenv(name.c_str()); set != nullptr)
       return take(name, {{name, in_attribute(set)}}, name, "the environment");
     if (kind != "optenv") return std::nullopt;
-    return take(name, {{name, std::string(trimmed_blanks(rest.substr(blank)))}}, name, "its default");
+    return take(name, {{name, std::string(trimmed(rest.substr(blank)))}}, name, "its default");
   }
 
   std::optional<std::string> take(const std::string& name, const std::map<std::string, std::string>& from,

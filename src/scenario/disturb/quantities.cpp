@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "kadans/model/inertia.h"
 #include "kadans/signal/random.h"
 #include "signal/nearest_name.h"
 
@@ -143,13 +144,8 @@ void Quantities::add_joints(const RobotModel& model, PlantSettings& plant) {
 
 void Quantities::add_links(RobotModel& model, PlantSettings& plant) {
   for (Link& link : model.links) {
-    add("link." + link.name + ".mass_scale", {0.01, 100, ""}, 1, [&link, whole = link.inertia](double factor) {
-      Inertia& inertia = link.inertia;
-      inertia = whole;
-      for (double* part :
-           {&inertia.mass_kg, &inertia.xx, &inertia.yy, &inertia.zz, &inertia.xy, &inertia.xz, &inertia.yz})
-        *part *= factor;
-    });
+    add("link." + link.name + ".mass_scale", {0.01, 100, ""}, 1,
+        [&link, whole = link.inertia](double factor) { link.inertia = scaled(whole, factor); });
     const auto surface = std::ranges::find(plant.surfaces, link.name, &SurfaceSettings::link);
     const double friction = surface != plant.surfaces.end() ? surface->friction : SurfaceSettings{}.friction;
     add("link." + link.name + ".friction", {0, 10, ""}, friction,
