@@ -181,10 +181,7 @@ void GravityCompensation::step(const ControlInput& input, ActuationFrame& actuat
 }
 
 void GravityCompensation::pass_state(StateBytes& bytes) noexcept {
-  for (Part& part : parts_) {
-    bytes(part.state, part.takeover);
-    if (at_once_from_off_) bytes(part.at_once);
-  }
+  for (Part& part : parts_) bytes(part.state, part.takeover, part.at_once);
   bytes(gain_, started_ns_, model_age_s_);
   bytes.newest(data_);
 }

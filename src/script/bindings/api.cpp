@@ -190,8 +190,7 @@ constexpr ApiEntry written[] = {
      "nil, \"queue_full\""},
     {"m", "reset_odometry()", "boolean?, string?",
      "Lets s.odometry begin anew from where the robot is in the next tick; nil, \"queue_full\"; an error where the "
-     "robot "
-     "has no feet"},
+     "robot has no feet"},
 
     {"object", "move(pose, options)", "kadans.Motion?, string?, number?, string?",
      "Moves to a pose, by name or as joint = rad, or to tasks, in { time_s = }; nil, \"queue_full\", or nil, "
