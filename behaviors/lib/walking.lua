@@ -105,8 +105,8 @@ function walk.kicks(m) return m.walk:setpoint("kick_m_s") > 0 end
 function walk.keep(m) m.walk:set("kick_m_s", 0) end
 
 -- In each tick: a step of the way to { x_m =, y_m =, heading_rad = }; true when it is there. It turns toward a place that is far,
--- walks there, and turns as it shall stand.
-function walk.to(m, goal, near)
+-- walks there, at most at most_m_s (0.3), and turns as it shall stand.
+function walk.to(m, goal, near, most_m_s)
   near = near or { m = 0.05, rad = 0.1 }
   local at = walk.at(m)
   local x_m, y_m = goal.x_m - at.x_m, goal.y_m - at.y_m
@@ -117,8 +117,8 @@ function walk.to(m, goal, near)
   local ahead_m = math.cos(at.heading_rad) * x_m + math.sin(at.heading_rad) * y_m
   local left_m = math.cos(at.heading_rad) * y_m - math.sin(at.heading_rad) * x_m
   local facing = math.max(0, math.cos(turn_rad)) ^ 2
-  walk.go(m, {
-    forward_m_s = math.max(-0.1, within(0.8 * ahead_m, 0.3) * facing),
+  walk.go(m, walk.slowed {
+    forward_m_s = math.max(-0.1, within(0.8 * ahead_m, most_m_s or 0.3) * facing),
     left_m_s = within(0.6 * left_m, 0.06),
     turn_rad_s = within(1.2 * turn_rad, 0.4),
   })

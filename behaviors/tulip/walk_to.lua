@@ -7,6 +7,7 @@ local P = k.params {
   x_m         = { 1, min = -20, max = 20, unit = "m", doc = "the place, forward" },
   y_m         = { 0, min = -20, max = 20, unit = "m", doc = "to the left" },
   heading_rad = { 0, min = -3.14, max = 3.14, unit = "rad", doc = "the heading there" },
+  most_m_s    = { 0.3, min = 0.05, max = 0.6, unit = "m/s", doc = "how fast it walks" },
 }
 
 return k.behavior "walk_to" {
@@ -21,7 +22,9 @@ return k.behavior "walk_to" {
     { after = P.settle_s, to = "walk" },
   },
   k.state "walk" {
-    during = function(m) m.vars.there = walk.to(m, { x_m = P.x_m, y_m = P.y_m, heading_rad = P.heading_rad }) end,
+    during = function(m)
+      m.vars.there = walk.to(m, { x_m = P.x_m, y_m = P.y_m, heading_rad = P.heading_rad }, nil, P.most_m_s)
+    end,
     { when = function(_, m) return m.vars.there end, to = "stop" },
   },
   k.state "stop" {

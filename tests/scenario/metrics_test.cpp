@@ -65,3 +65,16 @@ TEST_CASE("A metric of an unknown signal is refused at its place") {
   CHECK_THROWS_WITH_AS(Metrics(table, {wrong}, "plan.json"),
                        "plan.json:3:4: unknown signal 'base.hight_m', did you mean 'base.height_m'?", InputError);
 }
+
+TEST_CASE("A metric of a number made of signals takes what its expression gives, and what is no number is no value") {
+  const auto number = [](MetricKind kind, const char* value) {
+    MetricConfig config = metric(kind, "");
+    config.value = value;
+    return value_of(config);
+  };
+  CHECK(number(MetricKind::max, "(x - 2)^2") == 4);
+  CHECK(number(MetricKind::end, "sqrt(x + 6) + last.x") == 7);
+  CHECK(number(MetricKind::mean, "2 * x") == doctest::Approx(13.0 / 3));
+  CHECK(std::isnan(number(MetricKind::max, "x > 1")));
+  CHECK(std::isnan(value_of(metric(MetricKind::end, "", "x + 1"))));
+}

@@ -67,12 +67,13 @@ inline bool judges_run_until(const ScenarioCheck& check, double duration_s) noex
 //   "up_s":         { "kind": "since", "that": "plant.base.height_m > 0.75" }
 //   "tries":        { "kind": "end", "signal": "behavior.get_up.tries" }
 //   "first_try":    { "kind": "end", "that": "behavior.get_up.tries == 1" }
+//   "far_m":        { "kind": "max", "value": "sqrt(plant.base.x_m^2 + plant.base.y_m^2)" }
 enum class MetricKind : std::uint8_t {
   max,
   min,
   mean,
   rms,
-  end,         // of a signal the last value; of a condition 1 when it holds at the end, else 0
+  end,         // of a signal or number the last value; of a condition 1 when it holds at the end, else 0
   share,       // of the time in which the condition holds
   first_time,  // time in seconds at which the condition first held; no value when it never did
   since,       // time in seconds from which the condition held until the end; no value when it does not hold at the end
@@ -82,8 +83,8 @@ struct MetricConfig {
   std::string name;
   TextPlace place;
   MetricKind kind = MetricKind::max;
-  std::string signal, that;  // exactly one of them is given
-  TextPlace signal_place, that_place;
+  std::string signal, value, that;  // exactly one of them is given: a name, a number in Lua, a condition in Lua
+  TextPlace signal_place, value_place, that_place;
   double from_s = 0;
   double until_s = std::numeric_limits<double>::infinity();
 };

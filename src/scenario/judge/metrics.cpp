@@ -17,11 +17,14 @@ Metrics::Metrics(const SignalTable& signals, const std::vector<MetricConfig>& me
   Problems problems(file);
   for (const MetricConfig& config : metrics) {
     Gathered metric{.config = config};
-    if (!config.that.empty()) {
+    if (config.signal.empty()) {
+      using Gives = SignalExpressions::Gives;
+      const bool number = !config.value.empty();
+      const std::string& text = number ? config.value : config.that;
+      const TextPlace start = number ? config.value_place : config.that_place;
       ExpressionError error;
-      if (!conditions_.add(config.that, metric.index, error)) {
-        const TextPlace start = config.that_place;
-        problems.add({start.line, start.column > 0 ? start.column + error.file_column(config.that) : 0}, error.message);
+      if (!conditions_.add(text, metric.index, error, number ? Gives::number : Gives::condition)) {
+        problems.add({start.line, start.column > 0 ? start.column + error.file_column(text) : 0}, error.message);
       }
     } else if (const auto signal = signals.find(config.signal)) {
       metric.index = *signal;
@@ -37,9 +40,9 @@ void Metrics::tick(double time_s, std::span<const double> row) {
   if (conditions_.size() > 0 && !broken_) broken_ = !conditions_.evaluate(time_s, row);
   for (Gathered& metric : metrics_) {
     if (!(time_s >= metric.config.from_s && time_s <= metric.config.until_s)) continue;
-    const bool condition = !metric.config.that.empty();
-    if (condition && broken_) continue;
-    add(metric, time_s, condition ? static_cast<double>(conditions_.holds(metric.index)) : row[metric.index]);
+    const bool computed = metric.config.signal.empty();
+    if (computed && broken_) continue;
+    add(metric, time_s, computed ? conditions_.value(metric.index) : row[metric.index]);
   }
 }
 
@@ -82,7 +85,7 @@ std::vector<MetricValue> Metrics::values() const {
     const auto ticks = static_cast<double>(metric.ticks);
     if (kind == MetricKind::mean || kind == MetricKind::share) value /= ticks;
     if (kind == MetricKind::rms) value = std::sqrt(value / ticks);
-    if (metric.ticks == 0 || (broken_ && !metric.config.that.empty())) value = nothing;
+    if (metric.ticks == 0 || (broken_ && metric.config.signal.empty())) value = nothing;
     values.push_back({metric.config.name, value});
   }
   return values;

@@ -19,7 +19,7 @@ struct MetricValue {
 
 class Metrics final : public RunObserver {
  public:
-  // Looks the signals up and compiles the conditions. Throws InputError with all mistakes; `file` is the file from
+  // Looks the signals up and compiles the expressions. Throws InputError with all mistakes; `file` is the file from
   // which the metrics were read. The table must outlive this object.
   Metrics(const SignalTable& signals, const std::vector<MetricConfig>& metrics, const std::string& file,
           std::span<const SignalState> states = {});
@@ -30,7 +30,7 @@ class Metrics final : public RunObserver {
  private:
   struct Gathered {
     MetricConfig config;
-    std::size_t index = 0;  // of the signal or of the condition
+    std::size_t index = 0;  // of the signal or of the expression
     std::uint64_t ticks = 0;
     double value = 0;  // by kind: greatest, least, sum, sum of squares, last value, or the time
   };
@@ -38,7 +38,7 @@ class Metrics final : public RunObserver {
 
   SignalExpressions conditions_;
   std::vector<Gathered> metrics_;
-  bool broken_ = false;  // a condition failed: then no metric with a condition has a value
+  bool broken_ = false;  // an expression failed: then no metric with one has a value
 };
 
 // Evidence of failed checks: it keeps the signals of all checks during a run, and gives those of a failed check around

@@ -105,10 +105,11 @@ int SignalExpressions::State::evaluate(lua_State* state) {
     lua_pushnumber(state, self.time_s);
     lua_pushvalue(state, last);
     lua_call(state, 3, 1);
-    if (!lua_isboolean(state, -1))
-      return luaL_error(state, "'%s' gives a %s, wanted true or false", condition.text.c_str(),
-                        luaL_typename(state, -1));
-    condition.holds = static_cast<char>(lua_toboolean(state, -1));
+    const bool number = condition.gives == Gives::number;
+    if (lua_type(state, -1) != (number ? LUA_TNUMBER : LUA_TBOOLEAN))
+      return luaL_error(state, "'%s' gives a %s, wanted %s", condition.text.c_str(), luaL_typename(state, -1),
+                        number ? "a number" : "true or false");
+    condition.value = number ? lua_tonumber(state, -1) : lua_toboolean(state, -1);
     lua_pop(state, 1);
   }
   return 0;
@@ -209,8 +210,8 @@ bool SignalExpressions::compile(const std::string& lua, Condition& condition, Ex
   return true;
 }
 
-bool SignalExpressions::add(std::string_view text, std::size_t& index, ExpressionError& error) {
-  Condition condition{.text = std::string(text), .signals = {}};
+bool SignalExpressions::add(std::string_view text, std::size_t& index, ExpressionError& error, Gives gives) {
+  Condition condition{.text = std::string(text), .signals = {}, .gives = gives};
   std::string lua = "local values, time_s, last = ...; return (";
   if (!translate(text, condition, lua, error) || !compile(lua + "\n)", condition, error)) return false;
   for (const SignalId signal : condition.signals) {

@@ -1,4 +1,5 @@
-// Conditions on signals, written in Lua: "plant.base.height_m > 0.6 and abs(base.pitch_rad) < 0.2".
+// Conditions on signals, written in Lua: "plant.base.height_m > 0.6 and abs(base.pitch_rad) < 0.2". And numbers made of
+// signals: "sqrt(base.x_m^2 + base.y_m^2)".
 //
 // A dotted name is a signal; "plant." may be left out when no other signal has the shorter name. With the prefix
 // "last." it is the signal's value one tick before (in the first tick the value of that tick). time_s is the time. The
@@ -46,24 +47,28 @@ class SignalExpressions {
   SignalExpressions(const SignalExpressions&) = delete;
   SignalExpressions& operator=(const SignalExpressions&) = delete;
 
-  // Before the run. Compiles a condition and gives its index. False: `error` says what is wrong.
-  [[nodiscard]] bool add(std::string_view text, std::size_t& index, ExpressionError& error);
+  enum class Gives : std::uint8_t { condition, number };
+  // Before the run. Compiles an expression and gives its index. False: `error` says what is wrong.
+  [[nodiscard]] bool add(std::string_view text, std::size_t& index, ExpressionError& error,
+                         Gives gives = Gives::condition);
   // The signals in the order of the text, each once.
   std::span<const SignalId> signals_of(std::size_t index) const { return conditions_.at(index).signals; }
   std::size_t size() const noexcept { return conditions_.size(); }
 
-  // Evaluates all conditions on a row of the table. False: one of them failed, see error().
+  // Evaluates all on a row of the table. False: one of them failed, see error().
   [[nodiscard]] bool evaluate(double time_s, std::span<const double> row) noexcept;
-  // The result of the last evaluation.
-  bool holds(std::size_t index) const { return conditions_.at(index).holds != 0; }
+  // The result of the last evaluation: the number, or 1 for a condition that holds.
+  double value(std::size_t index) const { return conditions_.at(index).value; }
+  bool holds(std::size_t index) const { return value(index) != 0; }
   const std::string& error() const noexcept { return error_; }
 
  private:
   struct Condition {
     std::string text;
     std::vector<SignalId> signals;
+    Gives gives = Gives::condition;
     int function = 0;  // registry reference
-    char holds = 0;
+    double value = 0;
   };
   struct State;
   bool translate(std::string_view text, Condition& condition, std::string& lua, ExpressionError& error) const;
