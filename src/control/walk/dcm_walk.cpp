@@ -108,6 +108,9 @@ void DcmWalk::declare_plan(Declaration& d) {
   d.parameter({"sway_s", "s", 0, 5, c.sway_s, "Longest time from standing to the first step."}, &c.sway_s);
   d.parameter({"speed_max_m_s2", "m/s2", 0.01, 10, c.speed_max_m_s2, "How fast the meant velocity changes."},
               &c.speed_max_m_s2);
+  d.parameter({"sunk_m", "m", 0.001, 1, c.sunk_m, "How far it may sink before it rests on both feet."}, &c.sunk_m);
+  d.parameter({"rest_m", "m", 0.001, 1, c.rest_m, "How far xi may be from what was meant, likewise."}, &c.rest_m);
+  d.parameter({"rest_s", "s", 0, 10, c.rest_s, "Longest rest."}, &c.rest_s);
   d.parameter({"heel_m", "m", 0.001, 0.5, c.sole.heel_m, "Of the sole that may bear, behind the foot's frame."},
               &c.sole.heel_m);
   d.parameter({"toe_m", "m", 0.001, 0.5, c.sole.toe_m, "Before it."}, &c.sole.toe_m);
@@ -158,7 +161,7 @@ void DcmWalk::declare_signals(Declaration& d) {
   setpoint("kick_rad", "rad", -std::numbers::pi, std::numbers::pi, "Where the ball shall go.", kick_rad_channel);
   setpoint("kick_m_s", "m/s", 0, 3, "Speed of the foot; 0: no kick. Reads 0 when the ball was kicked.", kick_channel);
   const WalkPlan::State& s = plan_.state();
-  d.signal({"phase", "", "0 stands, 1 sways, 2 steps, 3 bears; -1 has given up."}, &phase_number_);
+  d.signal({"phase", "", "0 stands, 1 sways, 2 steps, 3 bears, 4 rests; -1 has given up."}, &phase_number_);
   d.signal({"stance", "", "The foot that stands: 0 left, 1 right."}, &stance_number_);
   d.signal({"steps", "", "Steps since it began."}, &s.steps);
   d.signal({"time_s", "s", "In the step."}, &s.time_s);
@@ -272,7 +275,8 @@ WalkPlan::Sight DcmWalk::sight(const ControlInput& input) const noexcept {
           .cop_x_m = {feet[0].cop_x_m, feet[1].cop_x_m},
           .cop_y_m = {feet[0].cop_y_m, feet[1].cop_y_m},
           .rate_per_s = over_feet_.rate_per_s(),
-          .slope = slope_};
+          .slope = slope_,
+          .sunk_m = config_.height_m - over_feet_.over(plan_.state().stance).com_m[2]};
 }
 
 void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcept {

@@ -16,9 +16,15 @@ double toward(double from, double to, double most) noexcept { return from + std:
 }  // namespace
 
 void WalkPlan::begin(const Config& c, const Sight& sight) noexcept {
+  state_ = {};
+  sway(c, sight);
+}
+
+// The foot that bears less will swing.
+void WalkPlan::sway(const Config& c, const Sight& sight) noexcept {
   State& s = state_;
-  s = {};
   s.phase = Phase::sways;
+  s.time_s = 0;
   s.stance = sight.force_N[0] >= sight.force_N[1] ? 0 : 1;
   leave(sight);
   s.dcm = {sight.over[s.stance].dcm_x_m, sight.over[s.stance].dcm_y_m};
@@ -172,6 +178,29 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
       std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m)
     s.phase = Phase::bears;
+  const double off_m = std::abs(s.dcm.y_m - s.meant.offset.y_m);
+  if ((sight.sunk_m > c.sunk_m || off_m > c.rest_m) && between_feet(c, 0.5)) s.phase = Phase::rests;
+}
+
+// Whether xi is over the soles or between them.
+bool WalkPlan::between_feet(const Config& c, double share) const noexcept {
+  const State& s = state_;
+  const GroundPoint other{s.feet.from_m[0], s.feet.from_m[1]};
+  return s.dcm.x_m > std::min(other.x_m, 0.0) - share * c.sole.heel_m && s.dcm.x_m < std::max(other.x_m, 0.0) + share * c.sole.toe_m &&
+         s.dcm.y_m > std::min(other.y_m, 0.0) - c.sole.half_width_m &&
+         s.dcm.y_m < std::max(other.y_m, 0.0) + c.sole.half_width_m;
+}
+
+// Steps again when it is up and xi in the middle, or when xi leaves the feet.
+void WalkPlan::rest(const Config& c, const Wanted& wanted, const Sight& sight) noexcept {
+  State& s = state_;
+  const GroundPoint to = goal(c, sight);
+  const bool up = sight.sunk_m < 0.3 * c.sunk_m, still = std::hypot(s.dcm.x_m - to.x_m, s.dcm.y_m - to.y_m) < 0.03;
+  const bool holds = between_feet(c, 0.9);
+  if (holds && !(up && still) && s.time_s < c.rest_s) return;
+  s.phase = Phase::bears;
+  s.time_s = 0;
+  if (wanted.go || !holds) sway(c, sight);
 }
 
 bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight, double dt_s) noexcept {
@@ -180,7 +209,8 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
   s.time_s += dt_s;
   follow_wanted(c, wanted, dt_s);
   look(c, sight, dt_s);
-  if (s.phase == Phase::bears) return false;
+  if (s.phase == Phase::rests) rest(c, wanted, sight);
+  if (s.phase == Phase::bears || s.phase == Phase::rests) return false;
   if (s.phase == Phase::sways) {
     const double reached_m = c.width_m / (std::exp(c.side_rate_share * sight.rate_per_s * c.step_s) + 1);
     if (std::abs(s.dcm.y_m) > reached_m && s.time_s < c.sway_s) return false;

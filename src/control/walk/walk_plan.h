@@ -5,6 +5,8 @@
 //   sways   Before the first step the load goes to the foot that will swing, until xi is where a step begins.
 //   steps   One foot stands. The other one goes to its foothold, and stands from its landing on.
 //   bears   After the last step both feet stand side by side, and xi comes to rest between them.
+//   rests   Between two steps both feet bear, as xi is between them: a push is held by standing, or the robot has sunk,
+//           because a knee that bears alone has not torque enough, and both push it up.
 //
 // While one foot stands, xi runs away from the centre of pressure p: xi(t) = p + (xi - p) e^(w t). A walk that repeats
 // itself with the step (L, W) in the time T has at each landing the offset b between xi and the foot that landed:
@@ -30,7 +32,7 @@ namespace kadans {
 
 class WalkPlan {
  public:
-  enum class Phase : std::uint8_t { stands, sways, steps, bears };
+  enum class Phase : std::uint8_t { stands, sways, steps, bears, rests };
 
   struct Config {
     double step_s = 0.32, step_min_s = 0.24, step_max_s = 0.45;
@@ -52,6 +54,9 @@ class WalkPlan {
     double sway_gain = 1.0;       // shift of the load per error of xi, before the first step
     double sway_s = 0.4;          // longest such time
     double speed_max_m_s2 = 0.5;  // how fast the meant velocity changes
+    double sunk_m = 0.04;         // how far the centre of mass may sink before it rests on both feet
+    double rest_m = 1;            // how far xi may be from where it was meant at a landing, likewise
+    double rest_s = 0.5;          // longest rest
     Sole sole{.heel_m = 0.06, .toe_m = 0.10, .half_width_m = 0.03};
     KickSwing::Config kick;
   };
@@ -68,6 +73,7 @@ class WalkPlan {
     std::array<double, 2> force_N{}, cop_x_m{}, cop_y_m{};  // of each foot, in its frame
     double rate_per_s = 4;
     GroundPoint slope;  // of the ground, per metre
+    double sunk_m = 0;  // how far the centre of mass is below its height
   };
   struct Feet {
     Vec3 from_m{};  // where the other foot lifted off, or landed
@@ -120,6 +126,9 @@ class WalkPlan {
   void leave(const Sight& sight) noexcept;
   void land(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
   void trim(const Config& config, const Sight& sight) noexcept;
+  bool between_feet(const Config& config, double share) const noexcept;
+  void rest(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
+  void sway(const Config& config, const Sight& sight) noexcept;
 
   State state_;
   GroundPoint from_com_m_;  // the centre of mass over the stance foot at the last landing
