@@ -69,6 +69,8 @@ void DcmWalk::declare(Declaration& d) {
   d.parameter({"slope_max", "", 0, 1, c.slope_max, "The largest slope that it believes in."}, &c.slope_max);
   d.parameter({"shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load."}, &c.shift_s);
   d.parameter({"ankle_smooth_s", "s", 0, 0.1, c.ankle_smooth_s, "Low pass of the ankles' torques."}, &c.ankle_smooth_s);
+  d.parameter({"fade_s", "s", 0, 0.1, c.fade_s, "In which the torques of a leg's part pass into the next one's."},
+              &c.fade_s);
   d.parameter({"stand_s", "s", 0, 10, c.stand_s, "After the last step, before it counts as standing."}, &c.stand_s);
   config_.gains.declare(d);
   declare_plan(d);
@@ -325,8 +327,11 @@ void DcmWalk::begin(const ControlInput& input) noexcept {
   over_feet_.keep_heading(input);
   (void)over_feet_.update(input);
   plan_.begin(plan_config_, sight(input));
-  for (std::size_t i = 0; i < 2; ++i)
-    ankle_Nm_[i] = input.last.joints[legs_[i].inverse.axis(ankle_pitch).joint].effort_Nm;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t j = 0; j < leg_joints; ++j)
+      legs_[i].effort_Nm[j] = input.last.joints[legs_[i].inverse.axis(j).joint].effort_Nm;
+    ankle_Nm_[i] = legs_[i].effort_Nm[ankle_pitch];
+  }
   landed(input);
 }
 
@@ -338,7 +343,9 @@ void DcmWalk::landed(const ControlInput& input) noexcept {
     plan_.turned(turn_rad);
     (void)over_feet_.update(input);
   }
+  changes_ = true;
   for (Leg& leg : legs_) {
+    leg.jump_Nm = leg.effort_Nm;
     for (std::size_t i = 0; i < leg_joints; ++i) {
       const JointState& joint = input.joints.joints[leg.inverse.axis(i).joint];
       leg.target_rad[i] = joint.position_rad;
@@ -442,20 +449,24 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
 
 void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const double smooth = config_.ankle_smooth_s > input.dt_s ? input.dt_s / config_.ankle_smooth_s : 1;
+  const double left = std::max(1 - plan_.state().time_s / std::max(config_.fade_s, input.dt_s), 0.0);
   for (std::size_t i = 0; i < 2; ++i) {
-    Efforts& effort_Nm = legs_[i].effort_Nm;
+    Efforts &effort_Nm = legs_[i].effort_Nm, &jump_Nm = legs_[i].jump_Nm;
     ankle_Nm_[i] += smooth * (effort_Nm[ankle_pitch] - ankle_Nm_[i]);
     effort_Nm[ankle_pitch] = ankle_Nm_[i];
     for (std::size_t j = 0; j < leg_joints; ++j) {
       const JointAxis& axis = legs_[i].inverse.axis(j);
+      if (changes_) jump_Nm[j] -= effort_Nm[j];
+      effort_Nm[j] += left * jump_Nm[j];
       effort_Nm[j] = std::clamp(effort_Nm[j], -axis.effort_max_Nm, axis.effort_max_Nm);
       actuation.joints[axis.joint] = {.effort_Nm = effort_Nm[j], .mode = ActuationMode::effort};
     }
   }
+  changes_ = false;
 }
 
 void DcmWalk::pass_state(StateBytes& bytes) noexcept {
-  for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm);
+  for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm, leg.jump_Nm);
   bytes(over_feet_, plan_, wanted_, ball_, odometry_, slope_, given_up_, turn_Nm_, ankle_Nm_, phase_number_,
         stance_number_, com_height_m_);
 }

@@ -55,7 +55,8 @@ class DcmWalk final : public ControlObject {
     double slope_max = 0.12;
     double shift_s = 0.05;  // in which a leg that landed takes the load
     double ankle_smooth_s = 0.003;
-    double stand_s = 0.6;  // after the last step, before it lets go
+    double fade_s = 0.006;  // in which the torques of a leg's part pass into those of the next one
+    double stand_s = 0.6;   // after the last step, before it lets go
     LegGains gains{.kp_Nm_per_rad = {80, 250, 250, 250, 120}, .kd_Nms_per_rad = {4, 4, 4, 4, 2}};
   };
 
@@ -76,6 +77,7 @@ class DcmWalk final : public ControlObject {
   struct Leg : LedLeg {
     LegLoad load;
     std::array<std::size_t, leg_joints> bearing;  // the joint's place in load.bearings()
+    Efforts jump_Nm{};  // by which the torques would have jumped when the leg changed its part
   };
 
   Leg leg(const ObjectSetup& setup, std::size_t foot) const;
@@ -112,9 +114,9 @@ class DcmWalk final : public ControlObject {
   Odometry odometry_;
   Kick ball_;          // to be kicked, in the frame of the odometry
   GroundPoint slope_;  // of the ground in the heading frame, per metre, by the attitude of the foot that stands
-  bool given_up_ = false;
-  std::array<double, 2> turn_Nm_{};   // moment of the ground on the robot about its centre of mass: roll, pitch
-  std::array<double, 2> ankle_Nm_{};  // low-passed
+  bool given_up_ = false, changes_ = false;  // changes: the legs change their parts in this tick
+  std::array<double, 2> turn_Nm_{};          // moment of the ground on the robot about its centre of mass: roll, pitch
+  std::array<double, 2> ankle_Nm_{};         // low-passed
   double phase_number_ = 0, stance_number_ = 0, com_height_m_ = 0;
 };
 

@@ -186,7 +186,8 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
 bool WalkPlan::between_feet(const Config& c, double share) const noexcept {
   const State& s = state_;
   const GroundPoint other{s.feet.from_m[0], s.feet.from_m[1]};
-  return s.dcm.x_m > std::min(other.x_m, 0.0) - share * c.sole.heel_m && s.dcm.x_m < std::max(other.x_m, 0.0) + share * c.sole.toe_m &&
+  return s.dcm.x_m > std::min(other.x_m, 0.0) - share * c.sole.heel_m &&
+         s.dcm.x_m < std::max(other.x_m, 0.0) + share * c.sole.toe_m &&
          s.dcm.y_m > std::min(other.y_m, 0.0) - c.sole.half_width_m &&
          s.dcm.y_m < std::max(other.y_m, 0.0) + c.sole.half_width_m;
 }
