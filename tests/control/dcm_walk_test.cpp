@@ -94,6 +94,25 @@ TEST_CASE("DcmWalk lets the stance leg bear the robot, and lifts the other") {
   CHECK(std::abs(bench.computed.joints[a + hip_roll].effort_Nm) > 3);  // the weight beside the hip
 }
 
+TEST_CASE("DcmWalk lands without a step in torque") {
+  const auto most_at_a_landing = [](double fade_s) {
+    Bench bench;
+    bench.set("fade_s", fade_s);
+    bench.lead("go", 1);
+    double most_Nm = 0;
+    for (int tick = 0; tick < 3000; ++tick) {
+      const ActuationFrame before = bench.computed;
+      bench.ticks(1);
+      if (bench.walk.plan().state().steps == 0 || bench.walk.plan().state().time_s > 0.0015) continue;
+      for (const std::size_t joint : legs)
+        most_Nm = std::max(most_Nm, std::abs(bench.effort_Nm(joint) - before.joints[joint].effort_Nm));
+    }
+    CHECK(bench.walk.plan().state().steps > 5);
+    return most_Nm;
+  };
+  CHECK(most_at_a_landing(0.006) < 0.4 * most_at_a_landing(0));
+}
+
 TEST_CASE("DcmWalk comes to stand when it shall not go on, carries the robot there, and goes again") {
   Bench bench;
   bench.lead("go", 1);

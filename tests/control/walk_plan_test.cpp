@@ -22,6 +22,7 @@ struct Pendulum {
   std::array<GroundPoint, 2> foot{{{0, 0.09}, {0, -0.09}}};
   GroundPoint com, velocity_m_s;
   bool lands = false;  // the swing foot is on the ground in this tick
+  double sunk_m = 0;
 
   explicit Pendulum(double forward_m_s = 0, double left_m_s = 0) {
     wanted.velocity = {.forward_m_s = forward_m_s, .left_m_s = left_m_s};
@@ -29,7 +30,7 @@ struct Pendulum {
   }
   const WalkPlan::State& state() const { return plan.state(); }
   WalkPlan::Sight sight() const {
-    WalkPlan::Sight seen{.rate_per_s = rate_per_s};
+    WalkPlan::Sight seen{.rate_per_s = rate_per_s, .sunk_m = sunk_m};
     for (std::size_t i = 0; i < 2; ++i) {
       DcmMeasure::OverFoot& over = seen.over[i];
       over.foot_m = {foot[i].x_m - com.x_m, foot[i].y_m - com.y_m, -0.6};
@@ -139,6 +140,39 @@ TEST_CASE("WalkPlan stops beside its own foot, within a few steps, and xi comes 
   robot.run(1.2);
   CHECK(robot.state().phase == Phase::bears);
   CHECK(robot.state().steps - steps <= 3);
+}
+
+TEST_CASE("WalkPlan rests on both feet when the robot has sunk, and steps on when it is up") {
+  Pendulum robot;
+  robot.run(4);
+  robot.sunk_m = robot.config.sunk_m + 0.01;
+  robot.next_step();
+  CHECK(robot.state().phase == Phase::rests);
+  robot.run(0.3);
+  CHECK(robot.state().phase == Phase::rests);
+  const std::uint32_t steps = robot.state().steps;
+  robot.sunk_m = 0;
+  robot.run(2);
+  CHECK(robot.state().phase == Phase::steps);
+  CHECK(robot.state().steps > steps + 2);  // and counts on
+}
+
+TEST_CASE("WalkPlan does not rest longer than rest_s, nor when xi leaves the feet") {
+  Pendulum robot;
+  robot.run(4);
+  robot.sunk_m = 0.2;
+  robot.next_step();
+  REQUIRE(robot.state().phase == Phase::rests);
+  robot.run(robot.config.rest_s + robot.config.sway_s + 0.01);
+  CHECK(robot.state().phase == Phase::steps);
+  robot.next_step();
+  REQUIRE(robot.state().phase == Phase::rests);
+  robot.velocity_m_s.x_m -= 1;
+  robot.run(0.1);
+  CHECK(robot.state().phase != Phase::rests);
+  robot.velocity_m_s.x_m = -1;
+  robot.next_step();
+  CHECK(robot.state().phase == Phase::steps);  // it has sunk, but would fall over its heels
 }
 
 TEST_CASE("WalkPlan says by how much the heading turns at a landing") {

@@ -178,11 +178,10 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
       std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m)
     s.phase = Phase::bears;
-  const double off_m = std::abs(s.dcm.y_m - s.meant.offset.y_m);
-  if ((sight.sunk_m > c.sunk_m || off_m > c.rest_m) && between_feet(c, 0.5)) s.phase = Phase::rests;
+  if (sight.sunk_m > c.sunk_m && between_feet(c, 0.5)) s.phase = Phase::rests;
 }
 
-// Whether xi is over the soles or between them.
+// Whether xi is between the feet, or over this share of a sole before or behind them.
 bool WalkPlan::between_feet(const Config& c, double share) const noexcept {
   const State& s = state_;
   const GroundPoint other{s.feet.from_m[0], s.feet.from_m[1]};
@@ -192,7 +191,7 @@ bool WalkPlan::between_feet(const Config& c, double share) const noexcept {
          s.dcm.y_m < std::max(other.y_m, 0.0) + c.sole.half_width_m;
 }
 
-// Steps again when it is up and xi in the middle, or when xi leaves the feet.
+// It steps on when it is up and xi in the middle, when that takes too long, and when xi leaves the feet.
 void WalkPlan::rest(const Config& c, const Wanted& wanted, const Sight& sight) noexcept {
   State& s = state_;
   const GroundPoint to = goal(c, sight);

@@ -5,8 +5,8 @@
 //   sways   Before the first step the load goes to the foot that will swing, until xi is where a step begins.
 //   steps   One foot stands. The other one goes to its foothold, and stands from its landing on.
 //   bears   After the last step both feet stand side by side, and xi comes to rest between them.
-//   rests   Between two steps both feet bear, as xi is between them: a push is held by standing, or the robot has sunk,
-//           because a knee that bears alone has not torque enough, and both push it up.
+//   rests   It has sunk, because a knee that bears alone has not torque enough. As xi is between the feet, both bear
+//           until it is up again; then it steps on.
 //
 // While one foot stands, xi runs away from the centre of pressure p: xi(t) = p + (xi - p) e^(w t). A walk that repeats
 // itself with the step (L, W) in the time T has at each landing the offset b between xi and the foot that landed:
@@ -55,7 +55,6 @@ class WalkPlan {
     double sway_s = 0.4;          // longest such time
     double speed_max_m_s2 = 0.5;  // how fast the meant velocity changes
     double sunk_m = 0.04;         // how far the centre of mass may sink before it rests on both feet
-    double rest_m = 1;            // how far xi may be from where it was meant at a landing, likewise
     double rest_s = 0.5;          // longest rest
     Sole sole{.heel_m = 0.06, .toe_m = 0.10, .half_width_m = 0.03};
     KickSwing::Config kick;
