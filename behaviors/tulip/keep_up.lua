@@ -71,7 +71,7 @@ return k.behavior "keep_up" {
   k.state "go" {
     enter = function(m)
       step(m)
-      m.walk:set_gains(in_place() and "wide" or "usual")
+      m.walk:set_gains(in_place() and "in_place" or "usual")
       local way = { forward_m_s = P.forward_m_s, left_m_s = P.left_m_s, turn_rad_s = P.turn_rad_s }
       local gone, why = walk.go(m, way)
       if not gone then k.log.error("it stays: %s", why) end
