@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/run/fed_plant.h"
 #include "app/run/read_only_plant.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
@@ -192,6 +193,7 @@ void Assembly::complete() {
     throw InputError({.file = robot_.config.file, .message = error.what()});
   }
   exchange_ = std::make_unique<EngineExchange>();
+  foreign_first_ = catalog.signals.size();
   plant().declare_signals(catalog.signals);
   if (const TruthSource* source = truth_source()) {
     const bool several = shared_ != nullptr && shared_->robot_count() > 1;
@@ -207,6 +209,7 @@ void Assembly::complete() {
   if (outside_ != nullptr) outside_->attach(catalog, safe_posture_of(robot_.config.safe));
   if (host_) host_->declare_signals(catalog.signals);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
+  foreign_end_ = catalog.signals.size();
   for (std::size_t i = 0; i < upkeep_count_; ++i) unhashed_.push_back(static_cast<SignalId>(upkeep_first_ + i));
   show_others();
   if (linked_ || elsewhere_) last_word_ = std::make_unique<LastWord>(plant());
@@ -321,6 +324,7 @@ void Assembly::make_plant() {
   const PlantType& type = plant_type();
   if (!type.is_model()) {
     elsewhere_ = make_bus(robot_.config, type, scenario_.peer, scenario_.imu);
+    if (scenario_.repeats) elsewhere_ = std::make_unique<FedPlant>(std::move(elsewhere_), *link_);
     return;
   }
   if (number_ == 0) make_world(type);
@@ -433,6 +437,11 @@ void Assembly::make_behaviors() {
 void Assembly::filter(SnapshotFilter& filter) {
   filtered_ = std::make_unique<FilteredHost>(played(), filter);
   make_behaviors();
+}
+
+void Assembly::read_foreign_signals_from(std::span<const double> row) {
+  for (std::size_t id = foreign_first_; id < foreign_end_; ++id)
+    control_system_->catalog.signals.read_from(static_cast<SignalId>(id), &row[id]);
 }
 
 RunParts Assembly::parts_in(Lockstep& lockstep) {

@@ -94,6 +94,7 @@ class Assembly {
   const std::vector<std::unique_ptr<Assembly>>& others() const noexcept { return others_; }
   ControlEngine& control() noexcept { return *control_; }
   ControlSets& sets() noexcept { return *sets_; }
+  const ControlSets& sets() const noexcept { return *sets_; }
   BehaviorEngine& behaviors() noexcept { return *behaviors_; }
   Plant& plant() noexcept;  // not open yet
   // Through which the engine sees the plant when it has a thread of its own; else nullptr.
@@ -103,6 +104,12 @@ class Assembly {
   // The quantities that were set or drawn for this run; further robots' as NAME.<quantity>.
   const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
+
+  // For a run that repeats a record: the signals that no engine computes are read from this row, which must outlive the
+  // assembly. They are those of the plant, of a model's true state and of what plays.
+  void read_foreign_signals_from(std::span<const double> row);
+  std::size_t foreign_first() const noexcept { return foreign_first_; }
+  std::size_t foreign_end() const noexcept { return foreign_end_; }
 
   // Call before the first step: the behaviors then see the snapshot as the filter changes it. The filter must outlive
   // this object.
@@ -159,6 +166,7 @@ class Assembly {
   std::unique_ptr<EngineExchange> exchange_;
   std::unique_ptr<TruthSignals> truth_;
   std::unique_ptr<ScriptHost> host_;
+  std::size_t foreign_first_ = 0, foreign_end_ = 0;
   std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the signals about the interpreter's own needs
   std::vector<SignalId> unhashed_;
   std::unique_ptr<ControlEngine> control_;

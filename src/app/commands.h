@@ -186,6 +186,7 @@ struct ReplayOptions {
   bool from_record = false;  // use its files instead of those on the disk
   bool allow_plugins = false;
   bool json = false;
+  std::vector<std::string> with;  // files that take the place of the record's
 };
 
 void add_replay(CLI::App& app, ReplayOptions& options);

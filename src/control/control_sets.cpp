@@ -246,6 +246,12 @@ void ControlSets::fill(Snapshot& snapshot) const noexcept {
     snapshot.objects[i].dwell_s = static_cast<float>(dwell_.left_s(i));
 }
 
+HandOvers ControlSets::hand_overs() const noexcept {
+  HandOvers all;
+  for (const auto& object : objects_) object->hand_overs(all);
+  return all;
+}
+
 void ControlSets::update(std::uint64_t behavior_tick, const Snapshot& snapshot) {
   each_bit(snapshot.control_sets, [&](std::uint32_t set) {
     for (const Member& member : plans_.at(set)) {

@@ -29,6 +29,7 @@ std::uint32_t CommandSender::commit() noexcept {
                       .sequence = sequence_ + 1,
                       .time_ns = time_ns_};
   const bool sent = overflow_ == 0 && queue_.try_push(std::span<const Command>(batch_.data(), size_));
+  if (sent && told_ != nullptr) told_->sent({batch_.data(), size_}, in_tick_);
   const std::size_t commands = size_ - 1;
   const bool switches = switches_;
   discard();

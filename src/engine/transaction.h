@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "behavior_inputs.h"
 #include "kadans/signal/command.h"
 
 namespace kadans {
@@ -38,6 +39,9 @@ class CommandSender {
   // For a sender in another process, whose queue is emptied into the engine's queue. The next transaction gets the
   // number last_sequence + 1, and until the next call at most `room` commands are sent, headers included.
   void follow(std::uint32_t last_sequence, std::size_t room) noexcept;
+  // Whoever records what is sent; nullptr: nobody. in_tick: what is sent from now on comes from a behavior.
+  void tell(BehaviorInputs* inputs) noexcept { told_ = inputs; }
+  void in_tick(bool yes) noexcept { in_tick_ = yes; }
   std::size_t room() const noexcept { return std::min(room_, queue_.free()); }  // commands, headers included
   // What the last commit() sent; empty when it sent nothing. Valid until the next add().
   std::span<const Command> committed() const noexcept { return {batch_.data() + 1, committed_}; }
@@ -58,6 +62,8 @@ class CommandSender {
   std::size_t room_ = SIZE_MAX;
   std::uint64_t sent_ = 0, refused_ = 0;
   std::uint64_t overflow_ = 0;  // commands that did not fit
+  BehaviorInputs* told_ = nullptr;
+  bool in_tick_ = false;
 };
 
 }  // namespace kadans

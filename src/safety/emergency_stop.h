@@ -69,8 +69,12 @@ class BasicEmergencyStop {
   Words who_{};
 };
 
+// What a tick heard, bits of one number.
+enum StopHeard : std::uint32_t { heard_lift = 1, heard_stop = 2, heard_leave = 4 };
+
 class EmergencyStop : public BasicEmergencyStop<FaultWords> {
  public:
+  using BasicEmergencyStop::ask;
   void ask(std::string_view who) noexcept { BasicEmergencyStop::ask(fault_words(who)); }
 };
 

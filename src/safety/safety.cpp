@@ -180,7 +180,9 @@ void Safety::judge_robot(const SafetyInput& in, FaultMask body, FaultMask others
 
 FaultMask Safety::take_stop(bool& lift) noexcept {
   lift = stop_.take_lift();
+  heard_ = lift ? std::uint32_t{heard_lift} : 0;
   if (!stop_.take(stopped_by_)) return 0;
+  heard_ |= heard_stop;
   lift = false;
   stopped_ = true;
   return bit(FaultCode::emergency_stop);
@@ -189,7 +191,8 @@ FaultMask Safety::take_stop(bool& lift) noexcept {
 // From hold to damp after hold_s, from damp to off after damp_s: because a fault lasts, or somebody wants it. Who wants
 // it does not wait in hold.
 void Safety::go_down(FaultMask faults, double dt_s) noexcept {
-  const bool wanted = stopped_ || stop_.leaving();
+  const bool leaving = stop_.leaving(), wanted = stopped_ || leaving;
+  if (leaving) heard_ |= heard_leave;
   if (wanted) lasting_s_ = std::max(lasting_s_, settings_.hold_s);
   if (wanted) robot_.latch(SafetyLevel::damp);
   if (wanted || (faults & escalating_) != 0) {

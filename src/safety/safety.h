@@ -73,6 +73,9 @@ class Safety {
   // Lifts all latches: the next check judges anew. No effect while the emergency stop holds: that is lifted first.
   void clear() noexcept;
   bool stopped() const noexcept { return stopped_; }  // by the emergency stop, or its button
+  // What the last check heard from other threads (StopHeard), and the words of who asked last.
+  std::uint32_t heard() const noexcept { return heard_; }
+  const FaultWords& stopped_by() const noexcept { return stopped_by_; }
   // Whether, in the last check or by a clear() since, joints that damped or were off began to follow again what is
   // asked of them. What is computed for the next tick must then start from the measured state.
   bool came_back() const noexcept { return came_back_; }
@@ -171,6 +174,7 @@ class Safety {
   bool came_back_ = false;
   EmergencyStop stop_;
   FaultWords stopped_by_{};
+  std::uint32_t heard_ = 0;
   bool stopped_ = false;  // by the emergency stop, until it is lifted
   std::uint16_t lifts_ = 0;
   std::uint32_t fault_count_ = 0;

@@ -138,6 +138,25 @@ SignalId SignalTable::add(Signal signal, const std::atomic<std::uint32_t>* sourc
   return id;
 }
 
+void SignalTable::read_from(SignalId id, const double* source) {
+  const auto of_id = [id](const auto& one) { return one.id == id; };
+  std::erase_if(bools_, of_id);
+  std::erase_if(choices_, of_id);
+  std::erase_if(counts_, of_id);
+  std::erase_if(shared_, of_id);
+  for (std::size_t length = run_max; length > 1; --length) {  // a run falls apart
+    for (const Source<double>& run : runs_[length - 1]) {
+      if (id < run.id || id >= run.id + length) continue;
+      for (std::size_t i = 0; i < length; ++i) runs_[0].push_back({static_cast<SignalId>(run.id + i), run.value + i});
+    }
+    std::erase_if(runs_[length - 1], [&](const auto& run) { return id >= run.id && id < run.id + length; });
+  }
+  std::erase_if(runs_[0], of_id);
+  runs_[0].push_back({id, source});
+  last_run_ = 0;
+  sources_[id] = source;
+}
+
 void SignalTable::gather(std::span<double> row) const noexcept {
   assert(row.size() == infos_.size());
   [&]<std::size_t... less_1>(std::index_sequence<less_1...>) { (copy_runs<less_1 + 1>(runs_[less_1], row), ...); }

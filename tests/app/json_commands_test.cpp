@@ -82,6 +82,7 @@ const std::map<std::string, std::vector<std::string>> samples{
     {"ctl fault list", {"ctl fault list"}},
     {"ctl fault clear", {"ctl fault clear"}},
     {"ctl odometry reset", {"ctl odometry reset"}},
+    {"ctl mark", {"ctl mark 'here it stumbles'"}},
     {"ctl record start", {"ctl record start seen.mcap"}},
     {"ctl record stop", {"ctl record stop"}},
     {"ctl record dump", {"ctl record dump"}},

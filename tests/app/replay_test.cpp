@@ -135,7 +135,7 @@ TEST_CASE("What cannot be run again is refused with the reason, and what is miss
   REQUIRE(real.open((project / "real.mcap").string()));
   REQUIRE(kadans::write_inputs(real, {.run = {{"clock", "wall"}}}));
   REQUIRE(real.close());
-  CHECK(has(refused("real.mcap"), "in real time"));
+  CHECK(has(refused("real.mcap"), "its clock is 'wall'"));
   fs::remove(project / "behaviors/lib/legs.lua");
   const std::string missing = refused("run.mcap");
   CHECK(has(missing, "behaviors/lib/legs.lua is gone"));

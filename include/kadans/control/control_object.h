@@ -2,7 +2,7 @@
 //
 // The low level, step(), runs in the control thread each tick: bounded, no allocation, no lock, no exception. The high
 // level, update(), runs in the behavior thread and may be costly. What it computes reaches the low level through a
-// Latest<> that the object owns. Neither level reads a clock: dt comes in.
+// HandDown<> that the object owns (hand_over.h). Neither level reads a clock: dt comes in.
 //
 // An object declares its tunables, its recorded state and its set-points once, in declare(). Configuration, scripts,
 // recorder and viewers know it only through these tables.
@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "kadans/control/hand_over.h"
 #include "kadans/control/object_options.h"
 #include "kadans/control/state_bytes.h"
 #include "kadans/control/switchover.h"
@@ -149,6 +150,9 @@ class ControlObject {
   // Between ticks: saves or restores all that changes from tick to tick (state_bytes.h). An object without such state
   // leaves it out.
   virtual void pass_state(StateBytes& bytes) noexcept { (void)bytes; }
+
+  // Before the loop: adds the storages between its levels (hand_over.h), so that runs can be repeated.
+  virtual void hand_overs(HandOvers& all) noexcept { (void)all; }
 
   // Before the loop: nullptr for an object that cannot know. It lives as long as the object.
   virtual Foresight* foresight() noexcept { return nullptr; }

@@ -65,6 +65,8 @@ class ControlSets {
   // Control thread: whether the object started since the last step.
   bool fresh(std::uint32_t object) const noexcept { return (fresh_ >> object & 1U) != 0; }
   std::size_t size() const noexcept { return objects_.size(); }
+  // Before the loop: the storages between the levels of all objects.
+  HandOvers hand_overs() const noexcept;
 
  private:
   struct Member {

@@ -65,9 +65,9 @@ class StateBytes {
     if (levels_ == Levels::both) (pass(state), ...);
   }
   // What the low level finds in a storage of the object.
-  template <typename T, std::size_t readers>
-  void newest(Latest<T, readers>& latest) noexcept {
-    T value = latest.newest();
+  template <typename Storage>
+  void newest(Storage& latest) noexcept {
+    auto value = latest.newest();
     pass(value);
     if (restores() && ok()) latest.replace(value);
   }
@@ -82,6 +82,8 @@ class StateBytes {
   void pass(T& state) noexcept {
     if constexpr (requires { state.pass_state(*this); }) {
       state.pass_state(*this);
+    } else if constexpr (requires { typename T::Plain; }) {
+      pass(static_cast<typename T::Plain&>(state));  // without the number of hand_over.h
     } else {
       static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "state is copied, and by its value");
       if constexpr (std::is_arithmetic_v<T>) {

@@ -42,6 +42,19 @@ class Ring {
     Memory::at(head_).store(head + static_cast<std::uint32_t>(size), std::memory_order_release);
     return true;
   }
+  // Producer thread only. The same for a batch that lies in many places.
+  [[nodiscard]] bool try_push_all(std::span<const std::span<const T>> pieces) noexcept {
+    std::size_t size = 0;
+    for (const std::span<const T> piece : pieces) size += piece.size();
+    if (size > free()) return false;
+    std::uint32_t head = own(head_);
+    for (const std::span<const T> piece : pieces) {
+      copy_in(head, piece);
+      head += static_cast<std::uint32_t>(piece.size());
+    }
+    Memory::at(head_).store(head, std::memory_order_release);
+    return true;
+  }
   // Producer thread only.
   [[nodiscard]] bool try_push(const T& value) noexcept { return try_push(std::span<const T>(&value, 1)); }
 

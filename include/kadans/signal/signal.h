@@ -41,6 +41,8 @@ class SignalTable {
   SignalId add(Signal signal, const std::uint32_t* source);
   SignalId add(Signal signal, const std::atomic<std::uint32_t>* source);  // written by another thread
 
+  // Before the loop: from now on the signal is read there. For a repeated run, whose plant is a record.
+  void read_from(SignalId id, const double* source);
   // Control thread. row.size() == size(), asserted; booleans become 0 and 1. No allocation.
   void gather(std::span<double> row) const noexcept;
   // Control thread: one signal as it is now, which may be newer than the last row. id < size().

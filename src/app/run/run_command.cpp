@@ -19,6 +19,7 @@
 #include "app/assembly.h"
 #include "app/author/file_checks.h"
 #include "app/commands.h"
+#include "app/sim/input_files.h"
 #include "app/sim/played_behaviors.h"
 #include "app/terminal.h"
 #include "app/timing/run_report.h"
@@ -236,6 +237,7 @@ class WallClockRun {
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
     RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
+    if (!options_.record.empty() && assembly_.robot().record.inputs) record_inputs(plan);
     const bool flies = plan.flight.kept_s > 0;
     plan.timing = {{"Control tick: takes", &control_.tick_cost()}};
     plan.fault_state = &assembly_.control().fault_state();
@@ -285,6 +287,23 @@ class WallClockRun {
   }
 
  private:
+  // What a repetition of this run needs.
+  void record_inputs(RecordPlan& plan) {
+    RunInputs inputs = inputs_of(options_, scenario_, assembly_);
+    taken_.emplace(project_root(scenario_.file).string());
+    for (const InputFile& file : inputs.files) {
+      if (file.text) taken_->knows(file.path, *file.text);
+    }
+    const HandOvers hand_overs = assembly_.sets().hand_overs();
+    plan.behavior_inputs = &*taken_;
+    plan.inputs =
+        std::make_unique<InputPieces>(parts_.control, layout_of(assembly_),
+                                      std::vector<const DownStorage*>(hand_overs.down.begin(), hand_overs.down.end()));
+    parts_.behaviors.take_inputs_by(&*taken_, hand_overs.up);
+    if (process_ == nullptr) assembly_.host().take_inputs_by(&*taken_);
+    record_side_.describe_with(std::move(inputs));
+  }
+
   std::unique_ptr<JoystickTask> make_joystick() {
     const JoystickSettings& settings = assembly_.robot().joystick;
     if (options_.joystick.empty() && settings.device.empty()) return nullptr;
@@ -441,6 +460,7 @@ class WallClockRun {
     ControlEngine& control;
     BehaviorEngine& behaviors;
   } parts_;
+  std::optional<RecordedInputs> taken_;
   std::unique_ptr<TruthTask> truth_;  // of a model, or nullptr
   std::unique_ptr<PlantTask> plant_;  // of a model, or nullptr
   std::unique_ptr<JoystickTask> joystick_;

@@ -166,7 +166,9 @@ void add_robot(const Assembly& assembly, Gathering& files) {
   for (const fs::path& file : files_of(robot.file)) files.add(file);
   files.add(robot.model.file);
   for (const BehaviorValue& given : robot.behavior_values) files.add(project_root(robot.file) / given.chunk);
-  for (const fs::path& file : assembly.host().files()) files.add(file);
+  if (const ScriptHost* host = assembly.own_host()) {
+    for (const fs::path& file : host->files()) files.add(file);
+  }
   for (const auto& other : assembly.others()) add_robot(*other, files);
 }
 
@@ -189,6 +191,61 @@ RunInputs inputs_of(const RunChoices& choices, const ScenarioConfig& scenario, c
                    .files = input_files(scenario, assembly)};
   put_facts(choices, inputs.run);
   return inputs;
+}
+
+RunInputs inputs_of(const RunOptions& options, const ScenarioConfig& scenario, const Assembly& assembly) {
+  RunInputs inputs{.run = {{"robot", scenario.robot},
+                           {"scenario", scenario.file},
+                           {"scenario_input", Folders(scenario.file).name(scenario.file)},
+                           {"kadans", version},
+                           {"clock", clock_of_threads},
+                           {"seed", std::to_string(scenario.seed)},
+                           {"plant", options.plant},
+                           {"play", options.play},
+                           {"behaviors", options.behaviors}},
+                   .program = program_parts(),
+                   .files = {}};
+  inputs.run["root"] = project_root(scenario.file).string();
+  if (!options.peer.empty()) inputs.run["peer"] = options.peer;
+  if (!options.imu.empty()) inputs.run["imu"] = options.imu;
+  if (!options.joystick.empty()) inputs.run["joystick"] = options.joystick;
+  if (options.read_only) inputs.run["read_only"] = "yes";
+  if (options.virtual_time) inputs.run["virtual_time"] = "yes";
+  Gathering files(scenario.file);
+  add_robot(assembly, files);
+  if (assembly.own_host() == nullptr) {  // they play in another process, which has read them
+    BehaviorLog silence;
+    for (const fs::path& file :
+         make_script_host(scenario, assembly.robot(), assembly.catalog(), scenario.seed, silence)->files())
+      files.add(file);
+  }
+  inputs.files = files.take();
+  return inputs;
+}
+
+InputLayout layout_of(const Assembly& assembly) {
+  const RobotConfig& robot = assembly.robot();
+  return {.joints = static_cast<std::uint32_t>(robot.model.joints.size()),
+          .feet = static_cast<std::uint32_t>(robot.plant.feet.size()),
+          .channels = static_cast<std::uint32_t>(robot.plant.channels.size()),
+          .down = static_cast<std::uint32_t>(assembly.sets().hand_overs().down.size())};
+}
+
+RunOptions options_of(const RunInputs& inputs, const std::string& record) {
+  RunOptions options;
+  const auto seed = number_of<std::uint64_t>(inputs.fact("seed"));
+  if (!seed || inputs.fact("plant").empty())
+    throw InputError({.file = record, .message = "is damaged: it does not say how its run was begun"});
+  options.seed = *seed;
+  options.plant = inputs.fact("plant");
+  options.play = inputs.fact("play");
+  options.behaviors = inputs.fact("behaviors");
+  options.peer = inputs.fact("peer");
+  options.imu = inputs.fact("imu");
+  options.joystick = inputs.fact("joystick");
+  options.read_only = !inputs.fact("read_only").empty();
+  options.virtual_time = !inputs.fact("virtual_time").empty();
+  return options;
 }
 
 std::vector<InputChange> changed_files(const RunInputs& recorded, const fs::path& scenario,

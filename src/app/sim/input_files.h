@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/assembly.h"
+#include "app/commands.h"
 #include "app/run/run_choices.h"
 #include "telemetry/record/run_inputs.h"
 
@@ -17,6 +18,13 @@ std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembl
 
 // All inputs of the run that `choices` asks for, for its record.
 RunInputs inputs_of(const RunChoices& choices, const ScenarioConfig& scenario, const Assembly& assembly);
+
+// The same for a run on threads: `options` are what was asked for, `assembly` what was made of it.
+RunInputs inputs_of(const RunOptions& options, const ScenarioConfig& scenario, const Assembly& assembly);
+// And back: what was asked for, without its files. Throws InputError that names the record.
+RunOptions options_of(const RunInputs& inputs, const std::string& record);
+InputLayout layout_of(const Assembly& assembly);            // of the inputs of its ticks
+inline constexpr const char* clock_of_threads = "threads";  // as the fact "clock" of such a run
 
 // An input that is no longer the same.
 struct InputChange {
@@ -58,6 +66,7 @@ class UnpackedInputs {
   // They become inputs of the run.
   void add_behaviors(RunInputs& inputs) const;
 
+  const std::filesystem::path& root() const noexcept { return folder_; }
   const std::filesystem::path& scenario() const noexcept { return scenario_; }
   const PluginGate& plugins() const noexcept { return plugins_; }
 

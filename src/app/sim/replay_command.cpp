@@ -7,11 +7,14 @@
 
 #include "app/assembly.h"
 #include "app/commands.h"
+#include "app/run/behavior_process.h"
 #include "app/run/observers.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
+#include "config/robot/project_root.h"
 #include "input_files.h"
 #include "ordered_events.h"
+#include "repeated_run.h"
 #include "run_branches.h"
 #include "signal/number_text.h"
 #include "telemetry/reading/record_comparison.h"
@@ -40,11 +43,13 @@ RunInputs read_front(const std::string& record) {
                                                : "ends before it begins: " + reader.problem());
   }
   const std::string clock = inputs.fact("clock");
-  if (!clock.empty() && clock != "virtual") {
+  if (!clock.empty() && clock != "virtual" && clock != clock_of_threads)
+    refuse("was made by another version of kadans: it says that its clock is " + in_quotes(clock));
+  const bool of_robot = clock == clock_of_threads || (clock.empty() && inputs.run.contains("robot"));
+  if (of_robot && !reader.metadata().contains(inputs_metadata))
     refuse(
-        "was recorded in real time: what its robot sensed, and when, cannot be had again. Records of kadans sim run "
-        "again");
-  }
+        "holds no inputs of its ticks, so what went into the run cannot be had again: it is a flight record, was begun "
+        "while its run went on, or was made with record.inputs false or by an older kadans");
   if (inputs.empty())
     refuse("does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
            " or ends too early");
@@ -134,7 +139,9 @@ std::string plural(std::uint64_t count, const char* what) {
 // Everything that the report needs.
 struct Findings {
   const ReplayOptions& options;
-  const Replay& replay;
+  const RecordComparison& comparison;
+  std::uint64_t ticks;  // compared and equal
+  bool same;
   std::vector<InputChange> files, program;
   std::vector<std::string> notes;
 };
@@ -146,10 +153,10 @@ nlohmann::ordered_json change_json(const std::vector<InputChange>& changes) {
 }
 
 void print_json(const Findings& findings) {
-  const RecordComparison& comparison = findings.replay.comparison();
+  const RecordComparison& comparison = findings.comparison;
   nlohmann::ordered_json json{{"record", findings.options.record},
-                              {"same", findings.replay.same()},
-                              {"ticks", comparison.ticks()},
+                              {"same", findings.same},
+                              {"ticks", findings.ticks},
                               {"signals", comparison.signals()}};
   if (comparison.parted()) {
     auto list = nlohmann::ordered_json::array();
@@ -183,23 +190,22 @@ void print_differences(const RecordComparison& comparison) {
 }
 
 void print_comparison(const Findings& findings) {
-  const Replay& replay = findings.replay;
-  const RecordComparison& comparison = replay.comparison();
-  const std::string compared = plural(comparison.ticks(), "tick") + ", " + plural(comparison.signals(), "signal");
+  const RecordComparison& comparison = findings.comparison;
+  const std::string compared = plural(findings.ticks, "tick") + ", " + plural(comparison.signals(), "signal");
   const char* const record = findings.options.record.c_str();
   if (comparison.parted()) {
     std::printf("%s: parts in tick %llu, at %.3f s, after %s the same\n", record,
                 static_cast<unsigned long long>(comparison.tick()), 1e-9 * static_cast<double>(comparison.time_ns()),
-                plural(comparison.ticks(), "tick").c_str());
+                plural(findings.ticks, "tick").c_str());
     print_differences(comparison);
   } else {
-    std::printf("%s: %s, %s\n", record, replay.same() ? "the same" : "not all the same", compared.c_str());
+    std::printf("%s: %s, %s\n", record, findings.same ? "the same" : "not all the same", compared.c_str());
   }
   for (const std::string& note : findings.notes) std::printf("%s\n", note.c_str());
   const std::string files = change_text(findings.files), program = change_text(findings.program);
   if (!files.empty()) std::printf("since it was recorded: %s\n", files.c_str());
   if (!program.empty()) std::printf("since it was recorded: %s\n", program.c_str());
-  if (!replay.same() && files.empty() && program.empty())
+  if (!findings.same && files.empty() && program.empty() && findings.options.with.empty())
     std::puts("since it was recorded: nothing changed; this run does not repeat");
 }
 
@@ -226,15 +232,90 @@ std::vector<std::string> notes_of(const Replay& replay, const RunInputs& inputs)
 
 void add_replay(CLI::App& app, ReplayOptions& options) {
   CLI::App* replay = app.add_subcommand("replay", "Run a record again, and report where and why it differs");
-  replay->add_option("record", options.record, "Record of kadans sim (MCAP)")->required()->type_name("FILE");
+  replay->add_option("record", options.record, "Record of kadans sim or kadans run (MCAP)")
+      ->required()
+      ->type_name("FILE");
   replay->add_flag("--from-record", options.from_record, "Use the files inside the record, not those on the disk");
   replay->add_flag("--allow-plugins", options.allow_plugins,
                    "Load the project's plug-ins, even if they differ from the record's");
+  replay
+      ->add_option("--with", options.with,
+                   "Of a run on threads: files of this project that take the place of the record's")
+      ->type_name("FILE");
   replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
+namespace {
+
+std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& inputs, bool with) {
+  std::vector<std::string> notes;
+  if (!run.parting().empty()) notes.push_back(run.parting());
+  if (!run.comparison().gone().empty())
+    notes.push_back(plural(run.comparison().gone().size(), "signal") + " of the record are no more, the first is " +
+                    run.comparison().gone().front());
+  if (!run.shortened().empty()) notes.push_back("the record is not whole: " + run.shortened());
+  if (run.ticks() == 0) notes.emplace_back("it holds no tick to compare");
+  notes.push_back("repeated from its inputs: " + plural(run.behavior_ticks(), "tick") + " of the behaviors, " +
+                  plural(run.commands(), "command") + ", " + plural(run.events(), "event"));
+  if (with)
+    notes.emplace_back(
+        "with other files: what they command counts, the sensors are those of the record, so the robot does not "
+        "answer");
+  else if (inputs.fact("behaviors") == "process")
+    notes.emplace_back("its behaviors played in a process of their own: their commands are taken from the record");
+  return notes;
+}
+
+// A file of this project takes the place of the one that the record has.
+void put_in_place(const std::string& file, const fs::path& root) {
+  const fs::path whole = fs::absolute(file).lexically_normal(), here = project_root(whole);
+  const fs::path name = whole.lexically_relative(here);
+  std::error_code error;
+  if (!fs::is_regular_file(whole, error)) throw InputError({.file = file, .message = "there is no such file"});
+  if (name.empty() || *name.begin() == "..")
+    throw InputError({.file = file, .message = "lies in no project, so it has no place in the record"});
+  fs::create_directories((root / name).parent_path(), error);
+  fs::remove(root / name, error);
+  if (!fs::copy_file(whole, root / name, error))
+    throw InputError({.file = file, .message = "cannot be copied: " + error.message()});
+}
+
+// A run on threads: its files come out of the record.
+int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
+  const UnpackedInputs unpacked(inputs, options.record, options.allow_plugins);
+  for (const std::string& file : options.with) put_in_place(file, unpacked.root());
+  RunOptions run = options_of(inputs, options.record);
+  run.robot = unpacked.scenario().string();
+  ScenarioConfig scenario = live_scenario(run);
+  scenario.plugins = unpacked.plugins();
+  scenario.repeats = true;
+  RepeatedRun repeated(options.record, scenario, {unpacked.root().string(), inputs.fact("root")},
+                       !options.with.empty()        ? RepeatedRun::Behaviors::leading
+                       : run.behaviors == "process" ? RepeatedRun::Behaviors::none
+                                                    : RepeatedRun::Behaviors::compared);
+  catch_interrupts();
+  repeated.go(interrupted);
+  if (interrupted()) return exit_interrupted;
+  const Findings findings{options,
+                          repeated.comparison(),
+                          repeated.compared_ticks(),
+                          repeated.same(),
+                          {},
+                          changed_program(inputs),
+                          notes_of(repeated, inputs, !options.with.empty())};
+  options.json ? print_json(findings) : print_comparison(findings);
+  return findings.same ? exit_passed : exit_failed;
+}
+
+}  // namespace
+
 int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
+  if (inputs.fact("clock") == clock_of_threads) return repeat_run(options, inputs);
+  if (!options.with.empty())
+    throw InputError(
+        {.file = "--with",
+         .message = "is for records of kadans run; " + options.record + " was simulated: change its files"});
   std::unique_ptr<UnpackedInputs> unpacked;
   if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record, options.allow_plugins);
   RunChoices choices = choices_of(inputs.run, options.record);
@@ -246,7 +327,12 @@ int run_replay(const ReplayOptions& options) {
     catch_interrupts();
     replay.go(stderr_is_terminal() && !options.json);
     if (interrupted()) return exit_interrupted;
-    const Findings findings{options, replay, changed_files(inputs, choices.scenario, replay.files()), program,
+    const Findings findings{options,
+                            replay.comparison(),
+                            replay.comparison().ticks(),
+                            replay.same(),
+                            changed_files(inputs, choices.scenario, replay.files()),
+                            program,
                             notes_of(replay, inputs)};
     options.json ? print_json(findings) : print_comparison(findings);
     return replay.same() ? exit_passed : exit_failed;

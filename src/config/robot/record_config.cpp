@@ -62,6 +62,8 @@ void record_fields(Fields& f, RecordConfig& record) {
                                     "the control rate divided by a whole number");
            });
   f.boolean("single_precision", record.single_precision, "records hold 32-bit numbers: half the size, 7 digits");
+  f.boolean("inputs", record.inputs,
+            "records of `kadans run` hold all that went into the run, so that `kadans replay` repeats it");
   f.number("flight_s", record.flight_s, {0, 600, "s"},
            "time that `kadans run` keeps in memory and writes when a fault latches; 0: none");
   f.number("flight_MB", record.flight_MB, {1, 1000, "MB"},

@@ -177,6 +177,7 @@ struct ScenarioConfig {
   ScenarioJoystick joystick;
   ScenarioSight sight;
   std::string joystick_device;  // not in the file: device of a run on the wall clock
+  bool repeats = false;         // a record stands for the plant, which is not driven
   bool on_wall_clock = false;   // not in the file: time goes on while a behavior is slow
   std::vector<ScenarioCheck> checks;
   // Further robots in the same world and time. Of each only name, robot, quantities, behaviors, events, pushes and

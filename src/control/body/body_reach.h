@@ -15,7 +15,7 @@
 #include "body_clash.h"
 #include "body_geometry.h"
 #include "body_way.h"
-#include "kadans/exchange/latest.h"
+#include "kadans/control/hand_over.h"
 #include "quadratic_program.h"
 
 namespace kadans {
@@ -24,7 +24,11 @@ class BodyReach final : public Foresight {
  public:
   explicit BodyReach(const BodyLayout& layout);
 
-  void know(const BodySettings& settings) noexcept { known_.publish(settings); }
+  void know(const BodySettings& settings) noexcept {
+    static_cast<BodySettings&>(told_) = settings;
+    known_.publish(told_, decltype(known_)::out_of_tick);
+  }
+  UpStorage& known() noexcept { return known_; }
   void set_first(SetpointId first) noexcept { first_ = first; }
   Miss miss(const Asked& asked, const Snapshot& snapshot) noexcept override;
 
@@ -49,7 +53,8 @@ class BodyReach final : public Foresight {
   const BodyLayout* layout_;
   BodySettings settings_;
   SetpointId first_ = 0;
-  Latest<BodySettings> known_;
+  HandUp<BodySettings> known_;
+  Handed<BodySettings> told_;  // control thread
   BodyGeometry model_;
   Kinematics kinematics_;
   QuadraticProgram program_;

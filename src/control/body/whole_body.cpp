@@ -38,7 +38,6 @@
 #include "body_reach.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/effort_takeover.h"
-#include "kadans/exchange/latest.h"
 
 namespace kadans {
 
@@ -66,6 +65,10 @@ class WholeBody final : public ControlObject {
   void parameters_changed() noexcept override;
   Foresight* foresight() noexcept override { return &reach_; }
   void pass_state(StateBytes& bytes) noexcept override;
+  void hand_overs(HandOvers& all) noexcept override {
+    all.down.push_back(&lead_);
+    all.up.insert(all.up.end(), {&aim_, &reach_.known()});
+  }
   void update(const Snapshot& snapshot) override;
 
  private:
@@ -87,14 +90,14 @@ class WholeBody final : public ControlObject {
   BodyLayout layout_;
   BodyLeader leader_;                // behavior thread
   BodyReach reach_;                  // behavior thread
-  BodyLead draft_;                   // behavior thread
+  Handed<BodyLead> draft_;           // behavior thread
   std::int64_t last_update_ns_ = 0;  // behavior thread
-  Latest<BodyLead> lead_;
-  Latest<BodyAim> aim_;
+  HandDown<BodyLead> lead_;
+  HandUp<BodyAim> aim_;
   Kinematics start_;  // control thread, as all below
   std::vector<Part> parts_;
   BodySettings settings_;
-  BodyAim aimed_;
+  Handed<BodyAim> aimed_;
   bool located_ = false;
   struct Shown {
     Vec3 com_m{};
@@ -317,7 +320,7 @@ void WholeBody::step(const ControlInput& input, ActuationFrame& actuation) noexc
   const BodyLead& lead = *newest;
   const bool known = located_ && lead.activation == aimed_.activation;
   if (known) show(lead);
-  if (located_) aim_.publish(aimed_);
+  if (located_) aim_.publish(aimed_, input.time_ns);
   const double since_s = std::max(0.0, seconds_between(lead.time_ns, input.time_ns));
   const double age_s = std::min(since_s, extrapolate_s), share = std::min(1.0, since_s / lead.period_s);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -383,7 +386,7 @@ void WholeBody::pass_state(StateBytes& bytes) noexcept {
   bytes.newest(lead_);
   leader_.pass_state(bytes);
   bytes.high_level(draft_, last_update_ns_);
-  if (bytes.restores() && located_) aim_.publish(aimed_);
+  if (bytes.restores() && located_) aim_.publish(aimed_, decltype(aim_)::out_of_tick);
 }
 
 std::unique_ptr<ControlObject> make_whole_body(const ObjectSetup& setup) { return std::make_unique<WholeBody>(setup); }

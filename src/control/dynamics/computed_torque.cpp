@@ -36,7 +36,6 @@
 #include "kadans/control/joint_matrix.h"
 #include "kadans/control/minimum_jerk.h"
 #include "kadans/control/model_state.h"
-#include "kadans/exchange/latest.h"
 
 namespace kadans {
 
@@ -73,6 +72,7 @@ class ComputedTorque final : public ControlObject {
   void follow(std::uint32_t channel, const SetpointState& state) noexcept override;
   double motion_remaining_s() const noexcept override;
   void pass_state(StateBytes& bytes) noexcept override;
+  void hand_overs(HandOvers& all) noexcept override { all.down.push_back(&data_); }
   void update(const Snapshot& snapshot) override;
 
  private:
@@ -101,8 +101,8 @@ class ComputedTorque final : public ControlObject {
   double model_age_s_ = 0;             // control thread
   std::unique_ptr<ModelState> model_;  // behavior thread
   std::int64_t last_update_ns_ = 0;    // behavior thread
-  ModelData draft_;                    // behavior thread
-  Latest<ModelData> data_;
+  Handed<ModelData> draft_;            // behavior thread
+  HandDown<ModelData> data_;
 };
 
 namespace {

@@ -33,7 +33,6 @@
 #include "kadans/control/joint_axis.h"
 #include "kadans/control/joint_matrix.h"
 #include "kadans/control/model_state.h"
-#include "kadans/exchange/latest.h"
 
 namespace kadans {
 
@@ -57,6 +56,7 @@ class GravityCompensation final : public ControlObject {
   void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
   void pass_state(StateBytes& bytes) noexcept override;
+  void hand_overs(HandOvers& all) noexcept override { all.down.push_back(&data_); }
   void update(const Snapshot& snapshot) override;
 
  private:
@@ -83,8 +83,8 @@ class GravityCompensation final : public ControlObject {
   double model_age_s_ = 0;             // control thread
   std::unique_ptr<ModelState> model_;  // behavior thread
   Eigen::MatrixXd slope_;              // behavior thread: of all joints
-  GravityData draft_;                  // behavior thread
-  Latest<GravityData> data_;
+  Handed<GravityData> draft_;          // behavior thread
+  HandDown<GravityData> data_;
 };
 
 namespace {

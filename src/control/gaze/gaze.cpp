@@ -49,7 +49,6 @@
 #include "kadans/control/handover.h"
 #include "kadans/control/joint_axis.h"
 #include "kadans/control/minimum_jerk.h"
-#include "kadans/exchange/latest.h"
 
 namespace kadans {
 
@@ -76,6 +75,10 @@ class Gaze final : public ControlObject {
   double motion_remaining_s() const noexcept override;
   void parameters_changed() noexcept override;
   void pass_state(StateBytes& bytes) noexcept override;
+  void hand_overs(HandOvers& all) noexcept override {
+    all.down.push_back(&rates_);
+    all.up.push_back(&aim_);
+  }
   void update(const Snapshot& snapshot) override;
 
  private:
@@ -120,22 +123,22 @@ class Gaze final : public ControlObject {
 
   GazeSolver solver_;             // behavior thread
   std::vector<double> seen_rad_;  // behavior thread
-  Rates draft_;                   // behavior thread
+  Handed<Rates> draft_;           // behavior thread
   struct Retry {
     std::int64_t moved_ns = 0;  // when the eyes last came nearer, or were on the target
     bool tried = false, going_back = false;
     Vec3 target_m{};  // the target for which it was tried
   };
   Retry retry_;  // behavior thread
-  Latest<Rates> rates_;
-  Latest<Aim> aim_;
+  HandDown<Rates> rates_;
+  HandUp<Aim> aim_;
   GazeSolver start_solver_;  // control thread, as all below
   std::vector<double> start_rad_;
   std::vector<Part> parts_;
   std::array<Direction, 3> directions_;
   GazeSolver::Settings settings_;
   double vor_gain_ = 1;
-  Aim aimed_;
+  Handed<Aim> aimed_;
   double left_rad_ = 0, right_rad_ = 0;
   bool unreachable_ = false, scaled_ = false, at_limit_ = false;
   bool located_ = false;  // the target is set
@@ -309,7 +312,7 @@ void Gaze::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   fresh_ = false;
   if (!located_) look_ahead(input.joints);
   move_target(dt_s);
-  if (located_) aim_.publish(aimed_);
+  if (located_) aim_.publish(aimed_, input.time_ns);
   const auto newest = rates_.read();
   const Rates& rates = *newest;
   const double age_s = 1e-9 * static_cast<double>(input.time_ns - rates.time_ns);
@@ -452,7 +455,7 @@ void Gaze::pass_state(StateBytes& bytes) noexcept {
   bytes(directions_, aimed_, left_rad_, right_rad_, unreachable_, scaled_, at_limit_, located_, fresh_);
   bytes.newest(rates_);
   bytes.high_level(retry_);
-  if (bytes.restores() && located_) aim_.publish(aimed_);
+  if (bytes.restores() && located_) aim_.publish(aimed_, decltype(aim_)::out_of_tick);
 }
 
 std::unique_ptr<ControlObject> make_gaze(const ObjectSetup& setup) { return std::make_unique<Gaze>(setup); }

@@ -298,6 +298,7 @@ void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& 
   std::uint32_t share = commands_per_tick_max_;
   ordered_ = 0;
   std::size_t waiting = queue_.size();
+  arrived_ = static_cast<std::uint32_t>(waiting);
   while (waiting > 0) {
     const Command header = queue_.peek();
     const bool whole =

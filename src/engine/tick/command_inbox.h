@@ -48,6 +48,7 @@ class CommandInbox {
     std::uint32_t refused = 0;           // commands of refused transactions
   };
   const State& state() const noexcept { return state_; }
+  std::uint32_t arrived() const noexcept { return arrived_; }  // that waited at the last apply(), headers included
   // Writes into the snapshot which transactions were applied and which refused.
   void fill(Snapshot& snapshot) const noexcept;
   SetpointMotions& motions() noexcept { return motions_; }
@@ -87,6 +88,7 @@ class CommandInbox {
   bool odometry_resets_ = false;
   JointMask ordered_ = 0;  // joints whose drives were ordered in this tick
   State state_;
+  std::uint32_t arrived_ = 0;
   std::uint32_t transactions_refused_ = 0;
   std::array<Refusal, refusals_shown> refusals_{};
   std::array<bool, max_objects + 1> retuned_{};  // by owner; the last one: parameters of control sets

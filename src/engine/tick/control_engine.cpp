@@ -30,11 +30,14 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
 
 void ControlEngine::tick(std::int64_t time_ns, double dt_s, std::uint32_t missed) noexcept {
   plant_.read(sensors_);
+  inputs_.dt_s = dt_s;
+  inputs_.missed = missed;
+  inputs_.heartbeat_ns = exchange_.heartbeat.newest();
   estimator_.update(sensors_, dt_s, tick_, snapshot_.joints, snapshot_.status);
   safety_.check({.tick = tick_,
                  .dt_s = dt_s,
                  .missed_ticks = missed,
-                 .heartbeat_age_s = 1e-9 * static_cast<double>(time_ns - exchange_.heartbeat.newest()),
+                 .heartbeat_age_s = 1e-9 * static_cast<double>(time_ns - inputs_.heartbeat_ns),
                  .sensors = sensors_,
                  .joints = snapshot_.joints,
                  .base = snapshot_.status.base,
@@ -129,6 +132,8 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   tell_drives();
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);
+  inputs_.commands = inbox_.arrived();
+  inputs_.stop = safety_.heard();
   if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);
 }
 

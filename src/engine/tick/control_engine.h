@@ -20,6 +20,7 @@
 #include "kadans/signal/status.h"
 #include "record_sink.h"
 #include "safety/safety.h"
+#include "tick_inputs.h"
 
 namespace kadans {
 
@@ -87,7 +88,11 @@ class ControlEngine {
   const ActuationFrame& actuation() const noexcept { return actuation_; }
   const CommandInbox& inbox() const noexcept { return inbox_; }
   const FaultState& fault_state() const noexcept { return fault_state_; }
+  // Of the last tick; valid until the next one.
+  const TickInputs& inputs() const noexcept { return inputs_; }
+  const SensorFrame& sensors() const noexcept { return sensors_; }
   Safety& safety() noexcept { return safety_; }
+  const Safety& safety() const noexcept { return safety_; }
   EngineExchange& exchange() noexcept { return exchange_; }
 
  private:
@@ -109,6 +114,7 @@ class ControlEngine {
 
   std::uint64_t tick_ = 0;
   bool stopped_ = false;  // by the emergency stop, in the last tick
+  TickInputs inputs_;
   SensorFrame sensors_;
   Snapshot snapshot_;         // joints and status are estimated in place
   ActuationFrame actuation_;  // computed in the last tick, written in this one

@@ -21,6 +21,7 @@
 namespace kadans {
 namespace {
 
+constexpr std::size_t mark_bytes_max = 200;
 constexpr std::size_t orders_in_tick = 64;  // of one kind of client
 
 constexpr std::int64_t control_answers_in_ns = 1'000'000'000, drives_answer_in_ns = 5'000'000'000;
@@ -167,6 +168,10 @@ bool BehaviorSide::begin(Pending& pending) {
       return p_.instance.clear_faults(), false;
     case Order::Kind::reset_odometry:
       return send(pending, std::array{Command{.kind = CommandKind::reset_odometry}}), false;
+    case Order::Kind::mark:
+      if (order.text.size() > mark_bytes_max)
+        throw InputError({.message = "a mark has at most " + std::to_string(mark_bytes_max) + " bytes"});
+      return say(time_ns_, order.who, "marks: " + order.text), true;
     case Order::Kind::enable_drives:
     case Order::Kind::disable_drives:
     case Order::Kind::reset_drives:

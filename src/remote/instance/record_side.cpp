@@ -26,6 +26,7 @@ void RecordSide::record_as(RecordPlan plan) {
 void RecordSide::make_recorder() {
   if (recorder_) return;
   recorder_ = std::make_unique<Recorder>(instance_.catalog().signals, plan_.settings, plan_.flight);
+  if (plan_.inputs) recorder_->record_inputs(std::move(plan_.inputs), *plan_.behavior_inputs);
   told_.store(recorder_.get(), std::memory_order_release);
 }
 
@@ -38,7 +39,11 @@ void RecordSide::begin() {
 
 // A record, or what the flight recorder writes.
 void RecordSide::describe(RecordWriter& record, std::int64_t time_ns) const {
-  (void)record.describe("run", facts_);
+  const bool repeats = !inputs_.empty() && &record == &recorder_->file();  // the other holds no inputs of ticks
+  if (!repeats)
+    (void)record.describe("run", inputs_.run);
+  else
+    (void)record.describe_run(inputs_);
   describe_robots(record, texts_, time_ns);
 }
 
@@ -110,6 +115,7 @@ void RecordSide::go_on_in_next() {
   (void)folder_.make_room(plan_.file_bytes, {fs::path(file_)});
   if (lost_.empty()) lost_ = recorder_->error();
   const std::string next = folder_.next("").string();
+  (void)recorder_->file().describe("goes_on", {{"file", fs::path(next).filename().string()}});
   if (!recorder_->go_on_in(next)) return;  // told at the end, and tried again
   describe(recorder_->file(), time_ns_);
   file_ = next;

@@ -28,10 +28,12 @@ namespace kadans {
 struct RecordPlan {
   RecorderSettings settings = {};
   FlightSettings flight = {};
-  std::vector<TimingSource> timing = {};    // must outlive the record
-  const FaultState* fault_state = nullptr;  // for the dumps of the flight recorder; must outlive them
-  std::uint64_t file_bytes = 0;             // at which a record that nobody named goes on in a new file; 0: never
-  std::uint64_t folder_bytes = 0;           // of all records of this robot that nobody named; 0: no bound
+  std::vector<TimingSource> timing = {};      // must outlive the record
+  const FaultState* fault_state = nullptr;    // for the dumps of the flight recorder; must outlive them
+  std::uint64_t file_bytes = 0;               // at which a record that nobody named goes on in a new file; 0: never
+  std::uint64_t folder_bytes = 0;             // of all records of this robot that nobody named; 0: no bound
+  std::unique_ptr<InputPieces> inputs = {};   // with which the run can be repeated; nullptr: they are not recorded
+  RecordedInputs* behavior_inputs = nullptr;  // the same of the behavior thread; must outlive the record
 };
 
 class RecordSide final : public Task, public LineSink {
@@ -40,11 +42,12 @@ class RecordSide final : public Task, public LineSink {
   RecordSide(Instance& instance, ControlSide& control, TextMap facts)
       : instance_(instance),
         control_(control),
-        facts_(std::move(facts)),
+        inputs_{.run = std::move(facts), .program = {}, .files = {}},
         folder_(instance.facts().records, instance.facts().name) {}
 
   // Before the loop.
   void describe_with(RobotTexts texts) { texts_ = std::move(texts); }
+  void describe_with(RunInputs inputs) { inputs_ = std::move(inputs); }
   void record_as(RecordPlan plan);
   // The last step before the loop: starts the flight recorder.
   void begin();
@@ -100,7 +103,7 @@ class RecordSide final : public Task, public LineSink {
 
   Instance& instance_;
   ControlSide& control_;
-  TextMap facts_;
+  RunInputs inputs_;
   RecordFolder folder_;
   RobotTexts texts_;
   RecordPlan plan_;

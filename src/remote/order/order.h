@@ -43,6 +43,7 @@ struct Order {
     saved,          // `changes` have been written into the configuration
     clear_faults,
     reset_odometry,
+    mark,  // `text` for the record
     // `text` = joints by a pattern, "" = all; as the orders to drives (frames.h).
     enable_drives,
     disable_drives,
@@ -257,6 +258,14 @@ inline constexpr OrderInfo orders[] = {
      "  kadans ctl fault list --json\n"},
     {"clear_faults", "fault clear", all, Role::operate, "Clear the faults of the safety layer, and the emergency stop",
      Is::clear_faults},
+    {"mark",
+     "mark",
+     ctl,
+     Role::operate,
+     "Put a line into the record's log, so that this moment is found again",
+     Is::mark,
+     {OrderArgument{.name = "text", .kind = text, .shown = "TEXT", .required = true}},
+     "  kadans ctl mark 'here it stumbles'\n"},
     {"reset_odometry", "odometry reset", all, Role::operate, "Let the robot's odometry begin anew, where it is now",
      Is::reset_odometry},
     {"estop", "estop", all, Role::operate, "Emergency stop: damp at once, then off, until faults are cleared", {}},

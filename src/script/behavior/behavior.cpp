@@ -607,6 +607,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
                                                             .limits = settings.limits,
                                                             .voice = &parts});
   parts.bindings.catalog = &parts.catalog;
+  parts.bindings.inputs = settings.limits.inputs;
   parts.lua->core().bindings = &parts.bindings;
   if (!parts.lua->call(read_file, &parts, instructions, settings.limits.load_wall_ns)) {
     throw InputError(problem_of(parts.lua->error()));

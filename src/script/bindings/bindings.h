@@ -42,6 +42,7 @@ bool is_truth_of_simulation(std::string_view signal) noexcept;
 
 struct Bindings {
   const Catalog* catalog = nullptr;
+  BehaviorInputs* const* inputs = nullptr;  // of a run that is recorded or repeated
   std::optional<SetPartition> partition;
   SetMask all_sets = 0;                          // those that any state may run on
   std::vector<SetMask> machine_sets;             // those that the states of each machine run on

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "bindings.h"
+#include "engine/behavior_inputs.h"
 #include "machine_sets.h"
 #include "script/chart/chart_reports.h"
 #include "script/check/hint.h"
@@ -43,7 +44,10 @@ int parameter(lua_State* state) {
   std::uint32_t number = 0;
   const ObjectInfo& object = check_object(state, number);
   const ParameterId id = read_parameter(state, 2, object);
-  return lua_pushnumber(state, bindings_of(state).catalog->parameters.newest(id)), 1;
+  const Bindings& bindings = bindings_of(state);
+  const double newest = bindings.catalog->parameters.newest(id);
+  BehaviorInputs* const inputs = bindings.inputs == nullptr ? nullptr : *bindings.inputs;
+  return lua_pushnumber(state, inputs == nullptr ? newest : inputs->parameter(newest)), 1;
 }
 
 // object:set_parameter(name, value) -> true | nil, "queue_full".

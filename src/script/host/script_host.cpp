@@ -50,6 +50,7 @@ ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, Behavio
       pause_(catalog),
       safe_(settings.safe, catalog),
       delivery_(log, settings.inputs) {
+  settings_.limits.inputs = &inputs_;
   std::vector<InputProblem> problems;
   std::vector<PlayList::Entry> first =
       settings.kept.empty() ? load(settings.play, true, problems) : load_kept(problems);
@@ -205,7 +206,23 @@ std::vector<std::filesystem::path> ScriptHost::files() const {
   return all;
 }
 
+bool ScriptHost::repeat_question(std::span<const std::byte> bytes, const Snapshot& snapshot) {
+  ByteReader reader(bytes);
+  BehaviorQuestion question;
+  if (!take_question(reader, question)) return false;
+  try {
+    (void)reply(question, snapshot, [](const ScriptHost*) { return std::string(); });
+  } catch (const InputError&) {  // refused, as it was then
+  }
+  return true;
+}
+
 void ScriptHost::order(const PlayOrder& order) {
+  if (inputs_ != nullptr) {
+    ByteWriter bytes;
+    put_order(order, bytes);
+    inputs_->asked(BehaviorInputs::Asked::order, bytes.bytes());
+  }
   std::vector<InputProblem> problems;
   Due due{0, order, load(order.list, false, problems)};
   if (!problems.empty()) throw InputError(problems);
@@ -314,6 +331,13 @@ void ScriptHost::watch_folders() {
 }
 
 BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot, Describe describe) {
+  const bool tells =
+      question.kind == BehaviorQuestion::Kind::report || question.kind == BehaviorQuestion::Kind::describe;
+  if (inputs_ != nullptr && !tells) {
+    ByteWriter bytes;
+    put_question(question, bytes);
+    inputs_->asked(BehaviorInputs::Asked::question, bytes.bytes());
+  }
   switch (question.kind) {
     case BehaviorQuestion::Kind::report:
       return {.paused = paused(), .behaviors = reports()};

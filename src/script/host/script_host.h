@@ -17,6 +17,7 @@
 #include "behavior_tables.h"
 #include "config/scenario/play_item.h"
 #include "engine/behavior_host.h"
+#include "engine/behavior_inputs.h"
 #include "engine/behavior_log.h"
 #include "event_delivery.h"
 #include "file_watch.h"
@@ -57,7 +58,15 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   void order(const PlayOrder& order) override;
   // Behavior thread, between ticks: notes commands that another sender has just committed, so that a pause halts their
   // motions, too.
-  void note(const Snapshot& snapshot, const CommandSender& commands) noexcept { pause_.note(snapshot, commands); }
+  void note(const Snapshot& snapshot, const CommandSender& commands) noexcept {
+    if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::note, {});
+    pause_.note(snapshot, commands);
+  }
+
+  // Before the loop: what people ask, and what scripts take from outside of their tick, goes by these.
+  void take_inputs_by(BehaviorInputs* inputs) noexcept { inputs_ = inputs; }
+  // In a run that repeats a record: the question that was asked there. False: the bytes are damaged.
+  [[nodiscard]] bool repeat_question(std::span<const std::byte> bytes, const Snapshot& snapshot);
 
   using Describe = std::string (*)(const ScriptHost*);  // the charts for viewers
   // Behavior thread, between ticks: reports, reasons, charts as `describe` tells them, and changes of parameters.
@@ -141,6 +150,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   EventDelivery delivery_;
   std::vector<SignalState> signal_states_;
   std::string lost_;
+  BehaviorInputs* inputs_ = nullptr;
 };
 
 }  // namespace kadans

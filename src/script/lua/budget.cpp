@@ -7,6 +7,7 @@
 #include <cstring>
 #include <ctime>
 
+#include "engine/behavior_inputs.h"
 #include "lua_core.h"
 #include "lua_state.h"
 
@@ -92,7 +93,7 @@ void Budget::look(lua_State* state) {
       breach(state, ScriptBreach::memory);
     } else if (spent_ >= limit_) {
       breach(state, ScriptBreach::instructions);
-    } else if (wall_ns_ > 0 && out_of_time()) {
+    } else if (wall_ns_ > 0 && time_is_over()) {
       breach(state, ScriptBreach::wall_time);
     } else if (interruption.load(std::memory_order_relaxed) && interrupted()) {
       breach(state, ScriptBreach::interrupted);
@@ -112,6 +113,12 @@ bool Budget::out_of_time() noexcept {
   if (thread_end_ns_ == 0) thread_end_ns_ = thread_ns + wall_ns_ - wall_ns_ / 4;
   look_ns_ = now_ns + (thread_end_ns_ - thread_ns);
   return thread_ns >= thread_end_ns_;
+}
+
+bool Budget::time_is_over() noexcept {
+  if (inputs_ == nullptr || *inputs_ == nullptr) return out_of_time();
+  const auto over = [](void* self) noexcept { return static_cast<Budget*>(self)->out_of_time(); };
+  return (*inputs_)->time_is_over(over, this);
 }
 
 bool Budget::interrupted() noexcept {

@@ -22,6 +22,8 @@ struct lua_Debug;
 
 namespace kadans {
 
+class BehaviorInputs;
+
 // To be called when the program shall end; any thread, also a signal handler. A running script is stopped after 0.2 s,
 // in which most scripts end by themselves. Scripts that are called later are stopped as well, until
 // interrupt_scripts(false).
@@ -30,6 +32,8 @@ void interrupt_scripts(bool yes = true) noexcept;
 class Budget {
  public:
   Budget(LuaHeap& heap, ScriptError& error) noexcept : heap_(heap), error_(error) {}
+  // Whether time is over is then said by whoever records or repeats the run, while there is one.
+  void ask(BehaviorInputs* const* inputs) noexcept { inputs_ = inputs; }
 
   // Begins a new count. wall_ns 0: no limit of time.
   void begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept;
@@ -56,12 +60,14 @@ class Budget {
   static void hook(lua_State* state, lua_Debug* activation);
   void look(lua_State* state);
   bool out_of_time() noexcept;
+  bool time_is_over() noexcept;
   bool interrupted() noexcept;
   void breach(lua_State* state, ScriptBreach what) noexcept;
   void describe(ScriptBreach what) noexcept;
 
   LuaHeap& heap_;
   ScriptError& error_;
+  BehaviorInputs* const* inputs_ = nullptr;
   std::uint64_t limit_ = 0, spent_ = 0;
   std::uint64_t charged_ = 0;  // since the last look at the clock
   int interval_ = 1;           // instructions from hook to hook
@@ -82,6 +88,7 @@ struct ScriptLimits {
   std::int64_t load_wall_ns = 0;                  // the same for loading or reloading a file
   std::size_t memory_bytes = std::size_t{4} << 20;
   std::size_t block_bytes = std::size_t{576} << 10;  // of one string or one table's array; the deepest stack fits
+  BehaviorInputs* const* inputs = nullptr;           // of a run that is recorded or repeated: see Budget::ask
 };
 
 }  // namespace kadans

@@ -5,6 +5,7 @@
 #include <climits>
 #include <new>
 
+#include "engine/behavior_inputs.h"
 #include "kadans/signal/input_error.h"
 #include "lua_core.h"
 #include "script/check/source_lexer.h"
@@ -93,6 +94,7 @@ LuaState::LuaState(Settings settings)
   lua_ = lua_newstate(allocate, core_.get());
   if (lua_ == nullptr) throw std::bad_alloc();
   core_->main = lua_;
+  core_->budget.ask(settings_.limits.inputs);
   core_->heap.for_ticks(false);
   luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   lua_gc(lua_, LUA_GCSTOP, 0);
@@ -140,6 +142,8 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   const std::string chunk = "@" + source.chunk;
   try {
     source.text = read_input_file(path, source_bytes_max);
+    if (BehaviorInputs* const* inputs = settings_.limits.inputs; inputs != nullptr && *inputs != nullptr)
+      (*inputs)->file_read(path.string(), source.text);
   } catch (const InputError& error) {
     lua_pushfstring(state, "%s:1: %s", source.chunk.c_str(), error.problems().front().message.c_str());
     return false;

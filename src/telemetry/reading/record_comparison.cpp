@@ -319,7 +319,8 @@ std::vector<std::string> without(const std::vector<std::string>& lines, const st
 // From signals that are compared themselves, or from the machine.
 bool is_derived(const std::string& schema) {
   return schema.starts_with("sensor_msgs/") || schema.starts_with("geometry_msgs/") ||
-         schema.starts_with("tf2_msgs/") || schema == "foxglove.FrameTransforms" || schema == "kadans.Timing";
+         schema.starts_with("tf2_msgs/") || schema == "foxglove.FrameTransforms" || schema == "kadans.Timing" ||
+         schema == "kadans.Inputs";
 }
 
 std::vector<std::string> differing_topics(const RecordOutline& a, const RecordOutline& b) {

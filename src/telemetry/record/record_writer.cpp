@@ -44,7 +44,7 @@ const char* const description_schema = R"({
 })";
 
 RecordWriter::RecordWriter(const SignalTable& signals, const RecorderSettings& settings)
-    : settings_(settings), viewers_(signals, settings.subjects), file_(settings.file) {
+    : signals_(signals), settings_(settings), viewers_(signals, settings.subjects), file_(settings.file) {
   for (SignalTopic& topic : signal_topics(signals, settings_.precision, settings_.every_ticks)) {
     stride_ = std::gcd(stride_, std::uint64_t{topic.every_ticks});
     topics_.push_back({.signals = std::move(topic)});
@@ -169,6 +169,23 @@ bool RecordWriter::event(const Event& event) {
 bool RecordWriter::fault(const Fault& fault, std::int64_t time_ns) {
   return file_.write(faults_, static_cast<std::uint32_t>(fault.tick), time_ns,
                      bytes_of(json_of(told(fault, settings_.subjects, time_ns))));
+}
+
+void RecordWriter::add_inputs(const InputLayout& layout) {
+  const std::uint16_t schema = file_.add_schema("kadans.Inputs", "", "");
+  TextMap facts = layout.facts();
+  for (const std::string& name : signals_.names()) facts["names"] += name + '\n';
+  (void)file_.add_metadata(inputs_metadata, facts);
+  inputs_ = file_.add_channel(inputs_topic, "", schema);
+  behavior_inputs_ = file_.add_channel(behavior_inputs_topic, "", schema);
+}
+
+bool RecordWriter::inputs(std::span<const std::byte> message, std::int64_t time_ns) {
+  return file_.write(inputs_, 0, time_ns, message);
+}
+
+bool RecordWriter::behavior_inputs(std::span<const std::byte> message, std::int64_t time_ns) {
+  return file_.write(behavior_inputs_, 0, time_ns, message);
 }
 
 bool RecordWriter::timing(const std::string& json, std::int64_t time_ns) {

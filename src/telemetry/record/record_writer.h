@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "event_log.h"
+#include "input_stream.h"
 #include "kadans/signal/parameter.h"
 #include "run_inputs.h"
 #include "signal_topics.h"
@@ -58,6 +59,10 @@ class RecordWriter {
   [[nodiscard]] bool row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   [[nodiscard]] bool event(const Event& event);
   [[nodiscard]] bool fault(const Fault& fault, std::int64_t time_ns);
+  // After open(), once, when the file holds inputs; then what input_stream.h makes of them.
+  void add_inputs(const InputLayout& layout);
+  [[nodiscard]] bool inputs(std::span<const std::byte> message, std::int64_t time_ns);
+  [[nodiscard]] bool behavior_inputs(std::span<const std::byte> message, std::int64_t time_ns);
   [[nodiscard]] bool timing(const std::string& json, std::int64_t time_ns);
   [[nodiscard]] bool close();
 
@@ -84,6 +89,7 @@ class RecordWriter {
   bool put_parameters(std::int64_t time_ns);
   std::uint16_t add_json(const char* topic, const char* schema, const char* text);
 
+  const SignalTable& signals_;
   RecorderSettings settings_;
   std::vector<Topic> topics_;
   ViewerMessages viewers_;
@@ -91,7 +97,7 @@ class RecordWriter {
   std::uint64_t stride_ = 0;
   McapWriter file_;
   std::uint16_t log_ = 0, transitions_ = 0, active_ = 0, emitted_ = 0, faults_ = 0, timing_ = 0,
-                parameters_channel_ = 0;
+                parameters_channel_ = 0, inputs_ = 0, behavior_inputs_ = 0;
   std::vector<double> parameters_;  // the values that were last written
   std::vector<double> values_;      // of one message
   std::vector<std::byte> payload_;  // the encoded `values_`

@@ -27,7 +27,26 @@ bool Recorder::open(const std::string& path) {
     return open_new(path);
   }
   opened_ = true;
-  return file_->open(path);
+  return begin_file(path);
+}
+
+void Recorder::record_inputs(std::unique_ptr<InputPieces> pieces, RecordedInputs& behaviors) {
+  pieces_ = std::move(pieces);
+  behavior_inputs_ = &behaviors;
+  word_count_ = pieces_->layout().words();
+  words_.resize(word_count_);
+  stride_ = 1;
+  inputs_ring_ = std::make_unique<Rows>();
+}
+
+bool Recorder::begin_file(const std::string& path) {
+  if (!file_->open(path)) return false;
+  if (!pieces_) return true;
+  file_->add_inputs(pieces_->layout());
+  std::vector<bool> exact(signal_count_, settings_.precision == Precision::full);
+  for (std::size_t i = 0; i < settings_.every_ticks.size(); ++i) exact[i] = exact[i] && settings_.every_ticks[i] == 1;
+  encoder_ = std::make_unique<InputEncoder>(pieces_->layout(), std::move(exact));
+  return true;
 }
 
 bool Recorder::open_new(const std::string& path) {
@@ -35,7 +54,7 @@ bool Recorder::open_new(const std::string& path) {
   rows_ = lost_ = 0;
   dropped_.store(0, std::memory_order_relaxed);
   reported_drops_ = dropped_events();
-  return file_->open(path);
+  return begin_file(path);
 }
 
 void Recorder::record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept {
@@ -43,7 +62,9 @@ void Recorder::record(std::uint64_t tick, std::int64_t time_ns, std::span<const 
   std::array<double, head_size> head{};
   std::memcpy(&head[0], &tick, sizeof tick);
   std::memcpy(&head[1], &time_ns, sizeof time_ns);
-  if (row.size() != signal_count_ || !ring_->try_push(head, row)) dropped_.fetch_add(1, std::memory_order_relaxed);
+  const bool fits = row.size() == signal_count_ && head_size + signal_count_ <= ring_->free() &&
+                    (pieces_ == nullptr || inputs_ring_->try_push_all(pieces_->gather()));
+  if (!fits || !ring_->try_push(head, row)) dropped_.fetch_add(1, std::memory_order_relaxed);
 }
 
 bool Recorder::drain() {
@@ -51,7 +72,9 @@ bool Recorder::drain() {
   for (std::size_t waiting = ring_->size() / row_size; waiting > 0; --waiting) {
     take_row();
     ring_->drop(row_size);
+    if (pieces_) inputs_ring_->drop(word_count_);
   }
+  if (behavior_inputs_ != nullptr) take_behavior_inputs();
   take_events(end_of_time_ns);
   take_faults();
   report_drops();
@@ -73,6 +96,30 @@ void Recorder::take_row() {
   if (!opened_ || (!is_open() && error().empty())) return;  // closed, or not yet
   ++rows_;
   if (!file_->row(tick, time_ns, row_)) ++lost_;
+  if (pieces_) take_inputs(tick, time_ns);
+}
+
+void Recorder::take_inputs(std::uint64_t tick, std::int64_t time_ns) {
+  for (std::size_t i = 0; i < word_count_; ++i) std::memcpy(&words_[i], &inputs_ring_->peek(i), sizeof words_[i]);
+  if (!encoder_->add(tick, time_ns, words_, row_)) {
+    put_inputs();
+    (void)encoder_->add(tick, time_ns, words_, row_);
+  }
+  if (encoder_->full()) put_inputs();
+}
+
+// A failing file is told by error().
+void Recorder::put_inputs() {
+  if (!encoder_ || encoder_->ticks() == 0) return;
+  message_.clear();
+  encoder_->encode(message_);
+  if (is_open()) (void)file_->inputs(message_.bytes(), encoder_->time_ns());
+}
+
+void Recorder::take_behavior_inputs() {
+  message_.clear();
+  behavior_inputs_->take(message_);
+  if (message_.size() > 0 && is_open()) (void)file_->behavior_inputs(message_.bytes(), last_time_ns_);
 }
 
 void Recorder::take_events(std::int64_t until_ns) {
@@ -114,6 +161,7 @@ void Recorder::report_drops() {
 // With what the recorder knows of the file.
 void Recorder::complete() {
   (void)drain();
+  put_inputs();
   if (!is_open() || !error().empty()) return;
   (void)file_->describe("recorder", {{"rows", std::to_string(rows_)},
                                      {"dropped_rows", std::to_string(dropped())},

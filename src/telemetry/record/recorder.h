@@ -22,6 +22,7 @@
 #include "engine/tick/record_sink.h"
 #include "event_log.h"
 #include "flight_recorder.h"
+#include "input_stream.h"
 #include "kadans/exchange/ring.h"
 #include "record_writer.h"
 
@@ -33,6 +34,9 @@ class Recorder final : public RecordSink {
   explicit Recorder(const SignalTable& signals, const RecorderSettings& settings = {},
                     const FlightSettings& flight = {});
   explicit Recorder(SignalTable&&, const RecorderSettings& = {}, const FlightSettings& = {}) = delete;
+
+  // Before the first row: files hold the inputs of the run, too. `behaviors` must outlive the recorder.
+  void record_inputs(std::unique_ptr<InputPieces> pieces, RecordedInputs& behaviors);
 
   // Replaces an existing file. False: error() says why. After close() another file may be opened.
   [[nodiscard]] bool open(const std::string& path);
@@ -65,14 +69,18 @@ class Recorder final : public RecordSink {
   std::uint32_t dropped_events() const noexcept { return events_.dropped(); }
 
  private:
-  // 2 MB: one second of 260 signals at 1 kHz.
+  // 2 MB each: one second of 260 signals at 1 kHz, and what their ticks took from outside.
   using Rows = Ring<double, std::size_t{1} << 18U>;
   static constexpr std::size_t head_size = 2;  // tick and time, bit for bit
   static constexpr std::int64_t end_of_time_ns = std::numeric_limits<std::int64_t>::max();
 
   void complete();
   bool open_new(const std::string& path);
+  bool begin_file(const std::string& path);
   void take_row();
+  void take_inputs(std::uint64_t tick, std::int64_t time_ns);
+  void put_inputs();
+  void take_behavior_inputs();
   void take_events(std::int64_t until_ns);
   void take_faults();
   void write_event(const Event& event);
@@ -83,8 +91,14 @@ class Recorder final : public RecordSink {
   RecorderSettings settings_;
   std::unique_ptr<RecordWriter> file_;
   std::unique_ptr<FlightRecorder> flight_;
-  std::uint64_t stride_ = 0;  // ticks between two rows that are needed; 0: none
-  std::unique_ptr<Rows> ring_;
+  std::uint64_t stride_ = 0;             // ticks between two rows that are needed; 0: none
+  std::unique_ptr<InputPieces> pieces_;  // nullptr: inputs are not recorded
+  RecordedInputs* behavior_inputs_ = nullptr;
+  std::unique_ptr<InputEncoder> encoder_;  // of the open file
+  std::size_t word_count_ = 0;
+  std::vector<std::uint64_t> words_;
+  ByteWriter message_;
+  std::unique_ptr<Rows> ring_, inputs_ring_;  // the second: while inputs are recorded
   std::atomic<std::uint32_t> dropped_{0};
   EventLog events_;
   Ring<Fault, 256> faults_;

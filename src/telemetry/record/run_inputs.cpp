@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view prefix = "inputs/", suffix = ".zst";
 constexpr std::size_t texts_max_bytes = std::size_t{64} << 20U;  // of all together, unpacked
 constexpr std::size_t inputs_max = 10'000;
-constexpr int text_compression_level = 19;  // small texts, once a run
+constexpr int text_compression_level = 6;  // also while a robot runs, when its record goes on in a new file
 
 [[noreturn]] void refuse(const std::string& record, const std::string& why) {
   throw InputError({.file = record, .message = why});

@@ -1,0 +1,510 @@
+#include "repeated_run.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "kadans/signal/input_error.h"
+#include "script/host/play_list.h"
+#include "signal/number_text.h"
+
+namespace kadans {
+namespace {
+
+constexpr std::size_t rows_max = 20'000;  // that wait for the inputs of their ticks
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::string> names_in(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line.substr(0, line.find('\t')));
+  return lines;
+}
+
+bool same_command(const Command& a, const Command& b) noexcept {
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  return a.kind == b.kind && a.index == b.index && a.count == b.count && a.sequence == b.sequence &&
+         a.time_ns == b.time_ns && bits(a.value) == bits(b.value) && bits(a.duration_s) == bits(b.duration_s) &&
+         bits(a.velocity) == bits(b.velocity) && bits(a.acceleration) == bits(b.acceleration);
+}
+
+std::string command_text(const Command& command, const Catalog& catalog) {
+  const auto value = [&] { return " = " + number_text(command.value); };
+  switch (command.kind) {
+    case CommandKind::set_parameter:
+      return command.index < catalog.parameters.size() ? catalog.parameters.info(command.index).name + value() : "?";
+    case CommandKind::set_point:
+    case CommandKind::trapezoid:
+    case CommandKind::via_point:
+    case CommandKind::cancel_motion:
+      return command.index < catalog.setpoints.size() ? catalog.setpoints[command.index].name + value() : "?";
+    case CommandKind::switch_set:
+      return command.index < catalog.sets.size() ? "control set " + catalog.sets[command.index].name : "?";
+    default:
+      return "command " + std::to_string(static_cast<int>(command.kind)) + value();
+  }
+}
+
+}  // namespace
+
+RecordFiles::RecordFiles(const std::string& record) : file_(record), reader_(std::make_unique<McapReader>(record)) {}
+
+bool RecordFiles::go_on() {
+  namespace fs = std::filesystem;
+  const auto facts = reader_->metadata().find("goes_on");
+  if (!reader_->complete() || facts == reader_->metadata().end() || !facts->second.contains("file")) return false;
+  const fs::path name = facts->second.at("file"), next = fs::path(file_).parent_path() / name;
+  std::error_code none;
+  if (name.empty() || name != name.filename() || !fs::is_regular_file(next, none)) return false;
+  if (!read_.insert(fs::path(file_).filename().string()).second || read_.contains(name.string())) return false;
+  try {
+    reader_ = std::make_unique<McapReader>(next.string());
+  } catch (const InputError&) {  // no record
+    return false;
+  }
+  file_ = next.string();
+  return true;
+}
+
+TopicReader::TopicReader(const std::string& record, std::vector<std::string> topics)
+    : files_(record), topics_(std::move(topics)) {}
+
+bool TopicReader::next(McapMessage& message) {
+  do {
+    while (files_.reader().next(message)) {
+      const std::string& topic = files_.reader().channels().at(message.channel).topic;
+      if (std::ranges::find(topics_, topic) != topics_.end()) return true;
+    }
+  } while (files_.go_on());
+  return false;
+}
+
+TickReader::TickReader(const std::string& record) : files_(record) {}
+
+bool TickReader::stop(const std::string& why) {
+  if (problem_.empty()) problem_ = why.starts_with(files_.file()) ? why : files_.file() + ": " + why;
+  return false;
+}
+
+bool TickReader::next(TickTaken& taken) {
+  while (ticks_.empty()) {
+    if (!problem_.empty() || !read()) return false;
+  }
+  taken = std::move(ticks_.front());
+  ticks_.pop_front();
+  if (next_tick_ && taken.tick != *next_tick_)
+    return stop("the inputs of " + std::to_string(taken.tick - *next_tick_) + " ticks are missing from tick " +
+                std::to_string(*next_tick_) + " on");
+  next_tick_ = taken.tick + 1;
+  row_ = rows_[taken.tick - first_];
+  for (; first_ < taken.tick; ++first_) rows_.pop_front();
+  return true;
+}
+
+double TickReader::signal(std::uint32_t number) const { return row_[number]; }
+
+bool TickReader::read() {
+  McapMessage message;
+  if (!files_.reader().next(message)) {
+    if (!files_.reader().complete()) return stop(files_.reader().problem());
+    layout_.reset();
+    topics_.clear();
+    return files_.go_on();
+  }
+  if (!layout_ && !learn()) return false;
+  if (files_.reader().channels().at(message.channel).topic == inputs_topic) return take_inputs(message);
+  take_row(message);
+  if (rows_.size() > rows_max) return stop("it has rows without the inputs of their ticks");
+  return true;
+}
+
+bool TickReader::learn() {
+  const TextMap* const found =
+      files_.reader().metadata().contains(inputs_metadata) ? &files_.reader().metadata().at(inputs_metadata) : nullptr;
+  if (found == nullptr) return stop("it holds no inputs of its ticks");
+  const std::vector<std::string> before = std::move(names_);
+  names_.clear();
+  layout_ = InputLayout::of(*found);
+  const auto names = found->find("names");
+  if (names != found->end()) names_ = names_in(names->second);
+  for (std::uint32_t i = 0; i < names_.size(); ++i) numbers_[names_[i]] = i;
+  if (!before.empty() && before != names_) return stop("it is no part of the same run");
+  if (!layout_) return stop("its inputs are of another version of kadans");
+  decoder_ = std::make_unique<InputDecoder>(*layout_);
+  return true;
+}
+
+void TickReader::take_row(const McapMessage& message) {
+  const auto [known, added] = topics_.try_emplace(message.channel);
+  std::vector<std::uint32_t>& numbers = known->second;
+  if (added) {
+    const TextMap& facts = files_.reader().channels().at(message.channel).metadata;
+    const auto description = facts.find("signals");
+    if (description == facts.end()) return;
+    for (const std::string& name : names_in(description->second)) {
+      const auto number = numbers_.find(name);
+      numbers.push_back(number == numbers_.end() ? std::numeric_limits<std::uint32_t>::max() : number->second);
+    }
+  }
+  if (numbers.empty()) return;
+  values_.resize(numbers.size());
+  if (!read_cdr(message.payload, values_, Precision::full) && !read_cdr(message.payload, values_, Precision::single))
+    return;
+  if (!reach(message.sequence)) return;
+  for (std::size_t row = message.sequence - first_; row < rows_.size(); ++row) {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (numbers[i] < names_.size()) rows_[row][numbers[i]] = values_[i];
+    }
+  }
+}
+
+// There are rows up to this tick: one without messages is as the one before it.
+bool TickReader::reach(std::uint64_t tick) {
+  if (rows_.empty()) {
+    first_ = tick;
+    rows_.emplace_back(names_.size(), not_known);
+  }
+  if (tick < first_ || tick - first_ > rows_max) return false;
+  while (first_ + rows_.size() <= tick) rows_.push_back(rows_.back());
+  return true;
+}
+
+bool TickReader::take_inputs(const McapMessage& message) {
+  ByteReader head(message.payload);
+  const auto first = head.take<std::uint64_t>();
+  const auto count = head.take<std::uint32_t>();
+  const bool reached =
+      head.ok() && count > 0 && count <= InputEncoder::ticks_max && reach(first + count - 1) && first >= first_;
+  if (reached && decoder_->decode(message.payload, *this, ticks_)) return true;
+  ticks_.clear();
+  return stop(printed("its inputs are damaged from %.3f s on", 1e-9 * static_cast<double>(message.time_ns)));
+}
+
+std::optional<std::uint64_t> TickReader::bits(std::uint64_t tick, std::uint32_t signal) const {
+  if (tick < first_ || tick - first_ >= rows_.size() || signal >= names_.size()) return std::nullopt;
+  return std::bit_cast<std::uint64_t>(rows_[tick - first_][signal]);
+}
+
+bool BehaviorInputReader::next(BehaviorInput& input) {
+  while (at_ == message_.size()) {
+    McapMessage message;
+    if (damaged_ || !reader_.next(message)) return false;
+    message_.assign(message.payload.begin(), message.payload.end());
+    at_ = 0;
+  }
+  const std::span<const std::byte> all = message_;
+  ByteReader bytes(all.subspan(at_));
+  damaged_ = !take_behavior_input(bytes, expected_, input);
+  at_ = damaged_ ? message_.size() : message_.size() - bytes.left();
+  return !damaged_;
+}
+
+RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const Roots& roots,
+                         Behaviors behaviors)
+    : root_(roots.root),
+      recorded_root_(roots.recorded_root),
+      behaviors_(behaviors),
+      assembly_(scenario, scenario.seed, log_, &link_),
+      engine_(assembly_.sets(), assembly_.control().exchange(),
+              behaviors == Behaviors::none ? nullptr : &assembly_.host()),
+      hand_overs_(assembly_.sets().hand_overs()),
+      foreign_(assembly_.catalog().signals.size(), not_known),
+      ticks_read_(record),
+      compared_(record),
+      commands_read_(record),
+      behaviors_read_(record),
+      events_read_(record, {"/transitions", "/active", "/events"}) {
+  assembly_.read_foreign_signals_from(foreign_);
+  comparison_ = std::make_unique<RecordComparison>(compared_.reader(), assembly_.catalog().signals);
+  for (DownStorage* storage : hand_overs_.down) storage->hold();
+  engine_.take_inputs_by(this, hand_overs_.up);
+  assembly_.host().take_inputs_by(this);
+}
+
+void RepeatedRun::go(const std::function<bool()>& stop) {
+  while (!stop() && ticks_read_.next(taken_)) {
+    if (ticks_ == 0 && taken_.tick != 0)
+      throw InputError({.file = compared_.file(),
+                        .message = "begins in tick " + std::to_string(taken_.tick) +
+                                   " of its run: only a record from the first tick on can be repeated"});
+    repeat_behaviors(taken_.tick);
+    if (!repeat_tick(taken_) || comparison_->parted()) return;
+  }
+}
+
+bool RepeatedRun::repeat_tick(const TickTaken& taken) {
+  if (foreign_signals_.empty()) {
+    std::map<std::string, std::uint32_t> numbers;
+    const std::vector<std::string>& names = ticks_read_.signals();
+    for (std::uint32_t i = 0; i < names.size(); ++i) numbers[names[i]] = i;
+    for (std::size_t id = assembly_.foreign_first(); id < assembly_.foreign_end(); ++id) {
+      const auto number = numbers.find(assembly_.catalog().signals.info(static_cast<SignalId>(id)).name);
+      if (number != numbers.end()) foreign_signals_.emplace_back(static_cast<SignalId>(id), number->second);
+    }
+  }
+  for (const auto& [id, number] : foreign_signals_) foreign_[id] = ticks_read_.signal(number);
+  feed(taken);
+  if (!feed_commands(taken.inputs.commands)) return false;
+  ControlEngine& control = assembly_.control();
+  control.tick(taken.time_ns, taken.inputs.dt_s, taken.inputs.missed);
+  ++ticks_;
+  compare(taken);
+  for (std::size_t i = 0; i < hand_overs_.down.size() && i < taken.down.size(); ++i) {
+    if (hand_overs_.down[i]->taken() != taken.down[i])
+      part("a control object found value " + std::to_string(hand_overs_.down[i]->taken()) + " of its high level, not " +
+           std::to_string(taken.down[i]));
+  }
+  for (Fault fault; control.safety().log().try_pop(fault);) {
+  }
+  return true;
+}
+
+// With the file in which the tick lies.
+void RepeatedRun::compare(const TickTaken& taken) {
+  if (comparison_->ended() && !comparison_->parted() && compared_.go_on()) {
+    compared_before_ += comparison_->ticks();
+    comparison_ = std::make_unique<RecordComparison>(compared_.reader(), assembly_.catalog().signals);
+  }
+  comparison_->compare(taken.tick, taken.time_ns, assembly_.control().row());
+}
+
+void RepeatedRun::feed(const TickTaken& taken) {
+  ControlEngine& control = assembly_.control();
+  EngineExchange& exchange = control.exchange();
+  link_.sensors.publish(taken.sensors);
+  exchange.heartbeat.publish(taken.inputs.heartbeat_ns);
+  if (std::memcmp(&joystick_, &taken.joystick, sizeof joystick_) != 0) exchange.joystick.publish(taken.joystick);
+  joystick_ = taken.joystick;
+  if (taken.ball.confidence > 0) exchange.ball.publish(taken.ball);
+  EmergencyStop& stop = control.safety().emergency_stop();
+  if ((taken.inputs.stop & heard_lift) != 0) stop.lift();
+  if ((taken.inputs.stop & heard_stop) != 0) stop.ask(taken.stopped_by);
+  if ((taken.inputs.stop & heard_leave) != 0) stop.leave();
+  for (std::size_t i = 0; i < hand_overs_.down.size() && i < taken.down.size(); ++i)
+    hand_overs_.down[i]->let_through(taken.down[i]);
+}
+
+bool RepeatedRun::feed_commands(std::uint32_t waiting) {
+  if (behaviors_ == Behaviors::leading) return true;
+  CommandQueue& queue = assembly_.control().exchange().commands;
+  while (queue.size() < waiting) {
+    BehaviorInput input;
+    if (!commands_read_.next(input)) {
+      out_of_commands_ = true;
+      return false;
+    }
+    if (input.kind != BehaviorInput::Kind::sent) continue;
+    if (!queue.try_push(input.commands)) return out_of_commands_ = true, false;
+    commands_ += input.commands.size() - 1;
+  }
+  return true;
+}
+
+// All that began before this control tick.
+void RepeatedRun::repeat_behaviors(std::uint64_t until_tick) {
+  while (parting_.empty() || behaviors_ == Behaviors::leading) {
+    if (!next_behaviors_ && (behaviors_end_ || !read_behavior_tick())) return;
+    if (next_behaviors_->snapshot > until_tick) return;
+    repeat_behavior_tick();
+    next_behaviors_.reset();
+  }
+}
+
+bool RepeatedRun::read_behavior_tick() {
+  next_behaviors_.emplace();
+  bool begun = false;
+  for (BehaviorInput input; behaviors_read_.next(input);) {
+    if (input.kind == BehaviorInput::Kind::tick_begins) {
+      next_behaviors_->snapshot = input.snapshot;
+      begun = true;
+    }
+    next_behaviors_->inputs.push_back(std::move(input));
+    if (next_behaviors_->inputs.back().kind == BehaviorInput::Kind::tick_ends) return true;
+  }
+  behaviors_end_ = true;
+  if (!begun) next_behaviors_.reset();
+  return begun;
+}
+
+void RepeatedRun::repeat_behavior_tick() {
+  write_files();
+  CommandQueue& queue = assembly_.control().exchange().commands;
+  std::vector<Command> waiting;
+  const auto take_all = [&queue] {
+    std::vector<Command> all;
+    for (Command command; queue.try_pop(command);) all.push_back(command);
+    return all;
+  };
+  waiting = take_all();
+  moment_ = sent_ = 0;
+  looks_ = 0;
+  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
+  for (const BehaviorInput& input : inputs) {
+    if (input.kind == BehaviorInput::Kind::newer && input.number < hand_overs_.up.size() &&
+        !hand_overs_.up[input.number]->feed(input.bytes))
+      part("a value of a control object has another size");
+  }
+  for (const BehaviorInput& input : inputs) {
+    if (input.kind == BehaviorInput::Kind::asked && behaviors_ != Behaviors::none) ask_again(input);
+    if (input.kind == BehaviorInput::Kind::sent && !input.in_tick && behaviors_ != Behaviors::none) send_again(input);
+    if (input.kind == BehaviorInput::Kind::tick_begins) engine_.tick(input.time_ns);
+  }
+  ++behavior_ticks_;
+  const auto more = std::find_if(inputs.begin() + static_cast<std::ptrdiff_t>(sent_), inputs.end(),
+                                 [](const auto& input) { return input.kind == BehaviorInput::Kind::sent; });
+  if (more != inputs.end() && !behaviors_end_ && behaviors_ != Behaviors::none)
+    part("the behaviors do not send " + command_text(more->commands.back(), assembly_.catalog()));
+  if (behaviors_ == Behaviors::leading) {
+    const std::vector<Command> led = take_all();
+    (void)queue.try_push(waiting);
+    (void)queue.try_push(led);
+    commands_ +=
+        led.size() - static_cast<std::size_t>(std::ranges::count(led, CommandKind::transaction, &Command::kind));
+  } else {
+    (void)take_all();
+    (void)queue.try_push(waiting);
+  }
+  if (behaviors_ != Behaviors::none) compare_events();
+}
+
+void RepeatedRun::write_files() {
+  namespace fs = std::filesystem;
+  for (const BehaviorInput& input : next_behaviors_->inputs) {
+    if (input.kind != BehaviorInput::Kind::file) continue;
+    const fs::path path = fs::path(input.path).lexically_normal();
+    if (path.empty() || path.is_absolute() || *path.begin() == "..") continue;
+    std::error_code ignored;
+    fs::create_directories((fs::path(root_) / path).parent_path(), ignored);
+    fs::remove(fs::path(root_) / path, ignored);
+    std::ofstream(fs::path(root_) / path, std::ios::binary) << input.text;
+  }
+}
+
+void RepeatedRun::ask_again(const BehaviorInput& input) {
+  const auto snapshot = assembly_.control().exchange().snapshot.read(0);
+  ScriptHost& host = assembly_.host();
+  if (input.how == Asked::note) return host.note(*snapshot, engine_.commands());
+  if (input.how == Asked::question) {
+    if (!host.repeat_question(input.bytes, *snapshot)) part("a question to the behaviors is damaged");
+    return;
+  }
+  ByteReader bytes(input.bytes);
+  PlayOrder order = take_order(bytes);
+  if (!bytes.ok()) return part("an order to the behaviors is damaged");
+  for (PlayItem& item : order.list) item.file = moved(item.file);
+  order.file = order.file.empty() ? order.file : moved(order.file);
+  try {
+    host.order(order);
+  } catch (const InputError&) {  // refused, as it was then
+  }
+}
+
+// A file of the run, among those of the record.
+std::filesystem::path RepeatedRun::moved(const std::filesystem::path& file) const {
+  if (file.is_relative()) return std::filesystem::path(root_) / file;
+  const std::filesystem::path below = file.lexically_relative(recorded_root_);
+  return below.empty() || *below.begin() == ".." ? file : std::filesystem::path(root_) / below;
+}
+
+void RepeatedRun::send_again(const BehaviorInput& input) {
+  CommandSender& sender = engine_.sender();
+  sender.begin(input.commands.front().time_ns);
+  for (std::size_t i = 1; i < input.commands.size(); ++i) (void)sender.add(input.commands[i]);
+  (void)sender.commit();
+}
+
+// The next one of this kind that the tick has not used up.
+const BehaviorInput* RepeatedRun::next_moment(BehaviorInput::Kind kind) {
+  if (!next_behaviors_) return nullptr;
+  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
+  for (std::size_t i = moment_; i < inputs.size(); ++i) {
+    if (inputs[i].kind != kind) continue;
+    moment_ = i;
+    return &inputs[i];
+  }
+  return nullptr;
+}
+
+std::string RepeatedRun::place() const {
+  return "in tick " + std::to_string(taken_.tick) + printed(", at %.3f s", 1e-9 * static_cast<double>(taken_.time_ns));
+}
+
+void RepeatedRun::part(const std::string& what) {
+  if (parting_.empty()) parting_ = place() + ": " + what;
+}
+
+// The charts' events, in their order.
+void RepeatedRun::compare_events() {
+  for (Event event; said_.pop(std::numeric_limits<std::int64_t>::max(), event);) {
+    if (event.kind == Event::Kind::message) continue;
+    McapMessage message;
+    if (!events_read_.next(message)) return;  // the record ends, or lost them
+    const std::string now = json_of(event);
+    const std::string then(reinterpret_cast<const char*>(message.payload.data()), message.payload.size());
+    if (now != then) return part("the behaviors tell " + now + ", recorded was " + then);
+    ++events_;
+  }
+}
+
+bool RepeatedRun::same() const {
+  return ticks_ > 0 && !comparison_->parted() && comparison_->gone().empty() && parting_.empty();
+}
+
+std::string RepeatedRun::shortened() const {
+  if (!ticks_read_.problem().empty()) return ticks_read_.problem();
+  if (commands_read_.damaged() || behaviors_read_.damaged())
+    return "what its behaviors took is damaged or not complete";
+  if (out_of_commands_) return "its last commands are missing";
+  return "";
+}
+
+void RepeatedRun::tick_begins(const Snapshot&, std::int64_t) { looks_ = 0; }
+void RepeatedRun::tick_ends() { looks_ = 0; }
+void RepeatedRun::found_newer(std::uint32_t, std::span<const std::byte>) {}
+void RepeatedRun::file_read(const std::string&, std::string_view) {}
+void RepeatedRun::asked(Asked, std::span<const std::byte>) { looks_ = 0; }
+
+void RepeatedRun::sent(std::span<const Command> batch, bool) noexcept {
+  if (!next_behaviors_ || behaviors_ == Behaviors::none) return;
+  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
+  while (sent_ < inputs.size() && inputs[sent_].kind != BehaviorInput::Kind::sent) ++sent_;
+  if (sent_ == inputs.size()) {
+    if (!behaviors_end_) part("the behaviors also send " + command_text(batch.back(), assembly_.catalog()));
+    return;
+  }
+  const std::vector<Command>& recorded = inputs[sent_++].commands;
+  for (std::size_t i = 0; i < std::min(batch.size(), recorded.size()); ++i) {
+    if (!same_command(batch[i], recorded[i]))
+      return part("the behaviors send " + command_text(batch[i], assembly_.catalog()) + ", recorded was " +
+                  command_text(recorded[i], assembly_.catalog()));
+  }
+  if (batch.size() != recorded.size())
+    part("the behaviors send " + std::to_string(batch.size() - 1) + " commands, recorded were " +
+         std::to_string(recorded.size() - 1));
+}
+
+double RepeatedRun::parameter(double newest) noexcept {
+  const BehaviorInput* const input = next_moment(BehaviorInput::Kind::parameter);
+  if (input == nullptr) return newest;
+  ++moment_;
+  return input->value;
+}
+
+bool RepeatedRun::time_is_over(bool (*)(void*) noexcept, void*) noexcept {
+  ++looks_;
+  if (!next_behaviors_) return false;
+  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
+  for (std::size_t i = moment_; i < inputs.size() && inputs[i].kind != BehaviorInput::Kind::parameter; ++i) {
+    if (inputs[i].kind != BehaviorInput::Kind::time_over || inputs[i].number != looks_) continue;
+    moment_ = i + 1;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace kadans

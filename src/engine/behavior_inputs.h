@@ -1,0 +1,48 @@
+// What the behavior thread takes from outside of its own state, in the order in which it takes it. One implementation
+// writes it into the record of a run (telemetry), the other gives it to a run that repeats the record (app). Without
+// either, nothing is asked.
+//
+// A behavior tick sees the snapshot of one control tick, so the number of that tick says all of it. What people ask
+// comes between two ticks. Four things come in the middle of a tick, by the moment: values that low levels of control
+// objects have just given (hand_over.h), the newest value of a parameter, a limit of time, and the text of a file.
+//
+// Behavior thread.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "kadans/signal/command.h"
+#include "kadans/signal/status.h"
+
+namespace kadans {
+
+class BehaviorInputs {
+ public:
+  // Kinds of what people ask of the host, which knows how to read the bytes.
+  enum class Asked : std::uint8_t { order, question, note };
+
+  virtual ~BehaviorInputs() = default;
+  BehaviorInputs() = default;
+  BehaviorInputs(const BehaviorInputs&) = delete;
+  BehaviorInputs& operator=(const BehaviorInputs&) = delete;
+
+  virtual void tick_begins(const Snapshot& snapshot, std::int64_t time_ns) = 0;
+  virtual void tick_ends() = 0;
+  // A transaction went into the queue: `batch` begins with its header. `in_tick`: a behavior sent it.
+  virtual void sent(std::span<const Command> batch, bool in_tick) noexcept = 0;
+  // The high level of a control object finds a value that is newer than its snapshot.
+  virtual void found_newer(std::uint32_t storage, std::span<const std::byte> value) = 0;
+  // A script reads a parameter, whose newest value is this; returns the value that counts.
+  virtual double parameter(double newest) noexcept = 0;
+  // A script's budget is looked at. `over` says whether its time is over; returns what counts.
+  virtual bool time_is_over(bool (*over)(void*) noexcept, void* budget) noexcept = 0;
+  // A script's file was read.
+  virtual void file_read(const std::string& path, std::string_view text) = 0;
+  virtual void asked(Asked kind, std::span<const std::byte> bytes) = 0;
+};
+
+}  // namespace kadans

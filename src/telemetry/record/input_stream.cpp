@@ -1,0 +1,488 @@
+#include "input_stream.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+
+#include "signal/number_text.h"
+
+namespace kadans {
+namespace {
+
+template <typename T>
+constexpr std::size_t words_of = sizeof(T) / sizeof(std::uint64_t);
+static_assert(sizeof(TickInputs) % 8 == 0 && sizeof(FaultWords) % 8 == 0 && sizeof(JoystickState) % 8 == 0 &&
+              sizeof(SeenBall) % 8 == 0 && sizeof(JointSample) % 8 == 0 && sizeof(ImuSample) % 8 == 0 &&
+              sizeof(FootSample) % 8 == 0 && sizeof(ChannelSample) % 8 == 0);
+
+// A frame lies in three pieces: head and joints; IMU and feet; supply, button and channels.
+constexpr std::size_t frame_head = offsetof(SensorFrame, joints) / 8, frame_imu = offsetof(SensorFrame, imu) / 8,
+                      frame_supply = offsetof(SensorFrame, supply_V) / 8;
+constexpr std::size_t supply_words = offsetof(SensorFrame, channels) / 8 - frame_supply;
+static_assert(offsetof(SensorFrame, feet) == offsetof(SensorFrame, imu) + sizeof(ImuSample));
+
+std::size_t body_words(const InputLayout& layout) noexcept {
+  return words_of<ImuSample> + layout.feet * words_of<FootSample>;
+}
+std::size_t rest_words(const InputLayout& layout) noexcept {
+  return supply_words + layout.channels * words_of<ChannelSample>;
+}
+
+enum class Mode : std::uint8_t { steady, signal, xored, change, counts };
+
+std::uint64_t next_of(std::uint64_t before, std::uint64_t last) noexcept { return last + (last - before); }
+
+std::size_t bytes_in(std::uint64_t value) noexcept { return (static_cast<std::size_t>(std::bit_width(value)) + 7) / 8; }
+
+// So that small numbers of both signs have few bytes.
+std::uint64_t zigzag(std::uint64_t difference) noexcept { return (difference << 1U) ^ (0 - (difference >> 63U)); }
+std::uint64_t unzigzag(std::uint64_t value) noexcept { return (value >> 1U) ^ (0 - (value & 1U)); }
+
+std::optional<std::uint32_t> count_in(const TextMap& facts, const char* name, std::uint32_t max) {
+  const auto found = facts.find(name);
+  const auto number = found == facts.end() ? std::nullopt : number_of<std::uint32_t>(found->second);
+  return number && *number <= max ? number : std::nullopt;
+}
+
+constexpr std::uint32_t down_max = 1024;
+
+// Bytes from outside become values that these types have.
+void make_sound(TickTaken& taken) noexcept {
+  const auto sound = [](auto& value, std::uint8_t last) {
+    std::uint8_t byte = 0;
+    std::memcpy(&byte, &value, 1);
+    byte = std::min(byte, last);
+    std::memcpy(&value, &byte, 1);
+  };
+  for (JointSample& joint : taken.sensors.joints) {
+    sound(joint.drive, static_cast<std::uint8_t>(DriveState::fault));
+    sound(joint.homed, 1);
+    sound(joint.braked, 1);
+  }
+  sound(taken.sensors.emergency, 1);
+  for (bool& button : taken.joystick.buttons) sound(button, 1);
+  sound(taken.joystick.connected, 1);
+}
+
+// Whether all values are whole multiples of one step, bit for bit, and counts_ which.
+bool counted(std::span<const std::uint64_t> values, double step, std::vector<std::int64_t>& counts) {
+  counts.clear();
+  for (const std::uint64_t bits : values) {
+    const double value = std::bit_cast<double>(bits), count = std::round(value / step);
+    if (!(std::abs(count) < 1e9) || std::bit_cast<std::uint64_t>(count * step) != bits) return false;
+    counts.push_back(static_cast<std::int64_t>(count));
+  }
+  return true;
+}
+
+template <typename T>
+std::span<const double> as_words(const T* first, std::size_t words) noexcept {
+  return {reinterpret_cast<const double*>(first), words};
+}
+
+}  // namespace
+
+std::size_t InputLayout::words() const noexcept {
+  return words_of<TickInputs> + words_of<FaultWords> + words_of<JoystickState> + words_of<SeenBall> + down +
+         frame_head + joints * words_of<JointSample> + body_words(*this) + rest_words(*this);
+}
+
+TextMap InputLayout::facts() const {
+  return {{"format", inputs_format},
+          {"joints", std::to_string(joints)},
+          {"feet", std::to_string(feet)},
+          {"channels", std::to_string(channels)},
+          {"down", std::to_string(down)}};
+}
+
+std::optional<InputLayout> InputLayout::of(const TextMap& facts) {
+  const auto format = facts.find("format");
+  const auto joints = count_in(facts, "joints", max_joints), feet = count_in(facts, "feet", max_feet),
+             channels = count_in(facts, "channels", max_channels), down = count_in(facts, "down", down_max);
+  if (format == facts.end() || format->second != inputs_format || !joints || !feet || !channels || !down)
+    return std::nullopt;
+  return InputLayout{*joints, *feet, *channels, *down};
+}
+
+void unpack(std::span<const std::uint64_t> words, const InputLayout& layout, TickTaken& taken) {
+  const std::uint64_t* from = words.data();
+  const auto take = [&](void* to, std::size_t count) {
+    std::memcpy(to, from, count * sizeof(std::uint64_t));
+    from += count;
+  };
+  take(&taken.inputs, words_of<TickInputs>);
+  take(taken.stopped_by.data(), words_of<FaultWords>);
+  take(&taken.joystick, words_of<JoystickState>);
+  take(&taken.ball, words_of<SeenBall>);
+  taken.down.resize(layout.down);
+  take(taken.down.data(), layout.down);
+  auto* const frame = reinterpret_cast<std::byte*>(&taken.sensors);
+  take(frame, frame_head);
+  take(taken.sensors.joints.data(), layout.joints * words_of<JointSample>);
+  take(frame + 8 * frame_imu, body_words(layout));
+  take(frame + 8 * frame_supply, rest_words(layout));
+  make_sound(taken);
+  taken.sensors.joint_count = std::min(taken.sensors.joint_count, layout.joints);
+  taken.sensors.foot_count = std::min(taken.sensors.foot_count, layout.feet);
+  taken.sensors.channel_count = std::min(taken.sensors.channel_count, layout.channels);
+}
+
+InputPieces::InputPieces(const ControlEngine& engine, const InputLayout& layout, std::vector<const DownStorage*> down)
+    : layout_(layout), down_(std::move(down)), numbers_(down_.size()) {
+  const SensorFrame& frame = engine.sensors();
+  const Snapshot& state = engine.state();
+  pieces_.push_back(as_words(&engine.inputs(), words_of<TickInputs>));
+  pieces_.push_back(as_words(engine.safety().stopped_by().data(), words_of<FaultWords>));
+  pieces_.push_back(as_words(&state.joystick, words_of<JoystickState>));
+  pieces_.push_back(as_words(&state.ball, words_of<SeenBall>));
+  pieces_.push_back(as_words(numbers_.data(), numbers_.size()));
+  pieces_.push_back(as_words(&frame, frame_head + layout.joints * words_of<JointSample>));
+  pieces_.push_back(as_words(&frame.imu, body_words(layout)));
+  pieces_.push_back(as_words(&frame.supply_V, rest_words(layout)));
+}
+
+std::span<const std::span<const double>> InputPieces::gather() noexcept {
+  for (std::size_t i = 0; i < down_.size(); ++i) numbers_[i] = down_[i]->taken();
+  return pieces_;
+}
+
+InputEncoder::InputEncoder(const InputLayout& layout, std::vector<bool> exact)
+    : exact_(std::move(exact)), columns_(1 + layout.words()) {
+  values_.reserve(ticks_max * columns_.size());
+  rows_.reserve(ticks_max * exact_.size());
+}
+
+bool InputEncoder::add(std::uint64_t tick, std::int64_t time_ns, std::span<const std::uint64_t> words,
+                       std::span<const double> row) {
+  if (full() || (ticks_ > 0 && tick != first_tick_ + ticks_)) return false;
+  if (ticks_++ == 0) first_tick_ = tick;
+  last_time_ns_ = time_ns;
+  values_.push_back(static_cast<std::uint64_t>(time_ns));
+  values_.insert(values_.end(), words.begin(), words.end());
+  rows_.insert(rows_.end(), row.begin(), row.end());
+  return true;
+}
+
+void InputEncoder::encode(ByteWriter& message) {
+  message.put(first_tick_);
+  message.put(static_cast<std::uint32_t>(ticks_));
+  column_.resize(ticks_);
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    for (std::size_t t = 0; t < ticks_; ++t) column_[t] = values_[t * columns_.size() + c];
+    encode(columns_[c], column_, message);
+  }
+  ticks_ = 0;
+  values_.clear();
+  rows_.clear();
+}
+
+bool InputEncoder::steady(const Column& column, std::span<const std::uint64_t> values) const noexcept {
+  std::uint64_t before = column.before, last = column.last;
+  for (const std::uint64_t value : values) {
+    if (value != next_of(before, last)) return false;
+    before = last;
+    last = value;
+  }
+  return true;
+}
+
+bool InputEncoder::as_signal(std::uint32_t signal, std::span<const std::uint64_t> values) const noexcept {
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    if (std::bit_cast<std::uint64_t>(rows_[t * exact_.size() + signal]) != values[t]) return false;
+  }
+  return true;
+}
+
+std::uint32_t InputEncoder::find_signal(std::span<const std::uint64_t> values) const noexcept {
+  for (std::uint32_t signal = 0; signal < exact_.size(); ++signal) {
+    if (exact_[signal] && as_signal(signal, values)) return signal;
+  }
+  return none;
+}
+
+// The step is at most the smallest difference of two values. Its last bits follow from the largest value.
+bool InputEncoder::find_counts(Column& column, std::span<const std::uint64_t> values) {
+  if (column.step > 0 && counted(values, column.step, counts_)) return true;
+  column.step = 0;
+  sorted_.clear();
+  for (const std::uint64_t bits : values) sorted_.push_back(std::bit_cast<double>(bits));
+  if (!std::ranges::all_of(sorted_, [](double value) { return std::abs(value) < 1e9; })) return false;
+  std::ranges::sort(sorted_);
+  const double largest = std::max(std::abs(sorted_.front()), std::abs(sorted_.back()));
+  double least = largest;
+  for (std::size_t i = 1; i < sorted_.size(); ++i) {
+    const double apart = sorted_[i] - sorted_[i - 1];
+    if (apart > 1e-12 * largest) least = std::min(least, apart);
+  }
+  for (int parts = 1; parts <= 4 && least > 0; ++parts) {
+    const double count = std::round(largest / (least / parts));
+    if (!(count < 1e9)) return false;
+    double step = largest / count;
+    for (int i = 0; i < 2; ++i) step = std::nextafter(step, 0.0);
+    for (int i = 0; i < 5; ++i, step = std::nextafter(step, largest)) {
+      if (!counted(values, step, counts_)) continue;
+      column.step = step;
+      return true;
+    }
+  }
+  return false;
+}
+
+void InputEncoder::put_counts(const Column& column, ByteWriter& message) {
+  message.put(static_cast<std::uint8_t>(Mode::counts));
+  message.put(column.step);
+  message.put(counts_.front());
+  std::size_t planes = 0;
+  const auto change = [this](std::size_t t) {
+    return zigzag(static_cast<std::uint64_t>(counts_[t]) - static_cast<std::uint64_t>(counts_[t - 1]));
+  };
+  for (std::size_t t = 1; t < counts_.size(); ++t) planes = std::max(planes, bytes_in(change(t)));
+  message.put(static_cast<std::uint8_t>(planes));
+  for (std::size_t p = 0; p < planes; ++p) {
+    for (std::size_t t = 1; t < counts_.size(); ++t) message.put(static_cast<std::uint8_t>(change(t) >> (8 * p)));
+  }
+}
+
+void InputEncoder::encode(Column& column, std::span<const std::uint64_t> values, ByteWriter& message) {
+  Mode mode = Mode::steady;
+  if (!steady(column, values)) {
+    if (column.signal == none || !as_signal(column.signal, values)) column.signal = find_signal(values);
+    mode = column.signal == none ? Mode::xored : Mode::signal;
+  }
+  std::size_t xored = 0, change = 0;
+  std::uint64_t before = column.before, last = column.last;
+  for (const std::uint64_t value : values) {
+    xored = std::max(xored, bytes_in(value ^ last));
+    change = std::max(change, bytes_in(zigzag(value - next_of(before, last))));
+    before = last;
+    last = value;
+  }
+  if (mode == Mode::xored && change < xored) mode = Mode::change;
+  if (mode == Mode::xored && xored > 3 && values.size() > 8 && find_counts(column, values)) {
+    put_counts(column, message);
+    column.before = before;
+    column.last = last;
+    return;
+  }
+  message.put(static_cast<std::uint8_t>(mode));
+  if (mode == Mode::signal) message.put(column.signal);
+  if (mode == Mode::xored || mode == Mode::change) {
+    const std::size_t planes = mode == Mode::xored ? xored : change;
+    message.put(static_cast<std::uint8_t>(planes));
+    const std::span<std::byte> bytes = message.grow(planes * values.size());
+    before = column.before;
+    last = column.last;
+    for (std::size_t t = 0; t < values.size(); ++t) {
+      const std::uint64_t rest = mode == Mode::xored ? values[t] ^ last : zigzag(values[t] - next_of(before, last));
+      for (std::size_t p = 0; p < planes; ++p) bytes[p * values.size() + t] = static_cast<std::byte>(rest >> (8 * p));
+      before = last;
+      last = values[t];
+    }
+  }
+  column.before = before;
+  column.last = last;
+}
+
+bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& signals, std::deque<TickTaken>& ticks) {
+  ByteReader reader(message);
+  const auto first_tick = reader.take<std::uint64_t>();
+  const auto count = reader.take<std::uint32_t>();
+  if (!reader.ok() || count == 0 || count > InputEncoder::ticks_max) return false;
+  std::vector<std::uint64_t> values(count * columns_.size());
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    Column& column = columns_[c];
+    const auto mode = reader.take<std::uint8_t>();
+    if (!reader.ok() || mode > static_cast<std::uint8_t>(Mode::counts)) return false;
+    const bool packed = mode >= static_cast<std::uint8_t>(Mode::xored);
+    const bool counts = mode == static_cast<std::uint8_t>(Mode::counts);
+    const double step = counts ? reader.take<double>() : 0;
+    std::uint64_t number = counts ? static_cast<std::uint64_t>(reader.take<std::int64_t>()) : 0;
+    const std::uint32_t signal = mode == static_cast<std::uint8_t>(Mode::signal) ? reader.take<std::uint32_t>() : 0;
+    const std::size_t planes = packed ? reader.take<std::uint8_t>() : 0;
+    if (planes > 8) return false;
+    const std::size_t stored = counts ? count - 1 : count;  // the first count stands before the others
+    const std::span<const std::byte> bytes = reader.take_bytes(planes * stored);
+    if (!reader.ok()) return false;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      std::uint64_t rest = 0;
+      const std::size_t at = counts ? std::max(t, 1U) - 1 : t;
+      for (std::size_t p = 0; p < planes && stored > 0; ++p)
+        rest |= std::to_integer<std::uint64_t>(bytes[p * stored + at]) << (8 * p);
+      std::uint64_t value = next_of(column.before, column.last);
+      if (mode == static_cast<std::uint8_t>(Mode::signal)) {
+        const std::optional<std::uint64_t> bits = signals.bits(first_tick + t, signal);
+        if (!bits) return false;
+        value = *bits;
+      } else if (mode == static_cast<std::uint8_t>(Mode::xored)) {
+        value = column.last ^ rest;
+      } else if (mode == static_cast<std::uint8_t>(Mode::change)) {
+        value += unzigzag(rest);
+      } else if (counts) {
+        if (t > 0) number += unzigzag(rest);
+        value = std::bit_cast<std::uint64_t>(static_cast<double>(static_cast<std::int64_t>(number)) * step);
+      }
+      column.before = column.last;
+      column.last = values[t * columns_.size() + c] = value;
+    }
+  }
+  if (reader.left() > 0) return false;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    TickTaken& taken = ticks.emplace_back();
+    taken.tick = first_tick + t;
+    taken.time_ns = static_cast<std::int64_t>(values[t * columns_.size()]);
+    unpack(std::span(values).subspan(t * columns_.size() + 1, layout_.words()), layout_, taken);
+  }
+  return true;
+}
+
+namespace {
+
+constexpr std::size_t event_head = 2 * sizeof(std::uint32_t);  // bytes behind the head, number
+
+}  // namespace
+
+RecordedInputs::RecordedInputs(std::string root) : root_(std::move(root)), ring_(std::make_unique<Bytes>()) {
+  event_.reserve(std::size_t{64} << 10U);
+}
+
+void RecordedInputs::begin(BehaviorInput::Kind kind) {
+  event_.clear();
+  event_.put(std::uint32_t{0});
+  event_.put(number_++);
+  event_.put(static_cast<std::uint8_t>(kind));
+}
+
+void RecordedInputs::push() noexcept {
+  event_.set(0, static_cast<std::uint32_t>(event_.size() - event_head));
+  if (!ring_->try_push(event_.bytes())) dropped_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void RecordedInputs::tick_begins(const Snapshot& snapshot, std::int64_t time_ns) {
+  looks_ = 0;
+  begin(BehaviorInput::Kind::tick_begins);
+  event_.put(snapshot.time_ns == 0 ? std::uint64_t{0} : snapshot.tick + 1);
+  event_.put(time_ns);
+  push();
+}
+
+void RecordedInputs::tick_ends() {
+  looks_ = 0;
+  begin(BehaviorInput::Kind::tick_ends);
+  push();
+}
+
+void RecordedInputs::sent(std::span<const Command> batch, bool in_tick) noexcept {
+  begin(BehaviorInput::Kind::sent);
+  event_.put(static_cast<std::uint8_t>(in_tick));
+  event_.put(std::as_bytes(batch));
+  push();
+}
+
+void RecordedInputs::found_newer(std::uint32_t storage, std::span<const std::byte> value) {
+  begin(BehaviorInput::Kind::newer);
+  event_.put(storage);
+  event_.put(value);
+  push();
+}
+
+double RecordedInputs::parameter(double newest) noexcept {
+  begin(BehaviorInput::Kind::parameter);
+  event_.put(newest);
+  push();
+  return newest;
+}
+
+bool RecordedInputs::time_is_over(bool (*over)(void*) noexcept, void* budget) noexcept {
+  ++looks_;
+  if (!over(budget)) return false;
+  begin(BehaviorInput::Kind::time_over);
+  event_.put(looks_);
+  push();
+  return true;
+}
+
+void RecordedInputs::file_read(const std::string& path, std::string_view text) {
+  const std::filesystem::path below = std::filesystem::path(path).lexically_relative(root_);
+  const std::string name = below.empty() || *below.begin() == ".." ? path : below.generic_string();
+  const std::size_t hash = std::hash<std::string_view>()(text);
+  const auto [known, added] = hash_of_.try_emplace(name, hash);
+  if (!added && known->second == hash) return;
+  known->second = hash;
+  begin(BehaviorInput::Kind::file);
+  event_.put_string(name);
+  event_.put_string(text);
+  push();
+}
+
+void RecordedInputs::asked(Asked kind, std::span<const std::byte> bytes) {
+  looks_ = 0;
+  begin(BehaviorInput::Kind::asked);
+  event_.put(static_cast<std::uint8_t>(kind));
+  event_.put(bytes);
+  push();
+}
+
+void RecordedInputs::take(ByteWriter& message) {
+  const std::size_t waiting = ring_->size();
+  const std::span<std::byte> to = message.grow(waiting);
+  for (std::size_t i = 0; i < waiting; ++i) to[i] = ring_->peek(i);
+  ring_->drop(waiting);
+}
+
+bool take_behavior_input(ByteReader& message, std::uint32_t& expected, BehaviorInput& input) {
+  const auto size = message.take<std::uint32_t>();
+  const auto number = message.take<std::uint32_t>();
+  ByteReader bytes(message.take_bytes(size));
+  if (!message.ok() || number != expected++) return false;
+  const auto kind = bytes.take<std::uint8_t>();
+  if (!bytes.ok() || kind > static_cast<std::uint8_t>(BehaviorInput::last_kind)) return false;
+  input = {.kind = static_cast<BehaviorInput::Kind>(kind)};
+  const auto rest = [&bytes] {
+    const std::span<const std::byte> all = bytes.take_bytes(bytes.left());
+    return std::vector<std::byte>(all.begin(), all.end());
+  };
+  switch (input.kind) {
+    case BehaviorInput::Kind::tick_begins:
+      input.snapshot = bytes.take<std::uint64_t>();
+      input.time_ns = bytes.take<std::int64_t>();
+      break;
+    case BehaviorInput::Kind::tick_ends:
+      break;
+    case BehaviorInput::Kind::sent: {
+      input.in_tick = bytes.take<std::uint8_t>() != 0;
+      const std::size_t count = bytes.left() / sizeof(Command);
+      if (count == 0 || count > max_transaction || bytes.left() % sizeof(Command) != 0) return false;
+      const std::span<const std::byte> from = bytes.take_bytes(bytes.left());
+      input.commands.resize(count);
+      std::memcpy(input.commands.data(), from.data(), from.size());
+      break;
+    }
+    case BehaviorInput::Kind::newer:
+      input.number = bytes.take<std::uint32_t>();
+      input.bytes = rest();
+      break;
+    case BehaviorInput::Kind::parameter:
+      input.value = bytes.take<double>();
+      break;
+    case BehaviorInput::Kind::time_over:
+      input.number = bytes.take<std::uint32_t>();
+      break;
+    case BehaviorInput::Kind::file:
+      input.path = bytes.take_string();
+      input.text = bytes.take_string();
+      break;
+    case BehaviorInput::Kind::asked: {
+      const auto how = bytes.take<std::uint8_t>();
+      if (how > static_cast<std::uint8_t>(BehaviorInputs::Asked::note)) return false;
+      input.how = static_cast<BehaviorInputs::Asked>(how);
+      input.bytes = rest();
+      break;
+    }
+  }
+  return bytes.ok() && bytes.left() == 0;
+}
+
+}  // namespace kadans

@@ -1,0 +1,134 @@
+// kadans replay of a run on threads: it happens again from the inputs in its record.
+#include <algorithm>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace repeated_run_test {
+
+using namespace kadans::program;
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string on_threads = " --threads-on-virtual-time --record run.mcap --flight 0 ";
+
+// Whether the record is repeated to its last tick.
+void check_same(const fs::path& project, std::uint64_t ticks_min, bool whole = true) {
+  const Outcome outcome = run("replay run.mcap --json", project);
+  REQUIRE_MESSAGE(!outcome.out.empty(), outcome.err);
+  CHECK_MESSAGE(outcome.exit_code == 0, outcome.out);
+  const Json json = Json::parse(outcome.out);
+  CHECK(json["same"] == true);
+  CHECK(json["ticks"].get<std::uint64_t>() >= ticks_min);
+  CHECK_MESSAGE(has(json["notes"].dump(), "not whole") != whole, outcome.out);
+}
+
+}  // namespace
+
+TEST_CASE("Runs on threads of every robot are repeated bit for bit from their inputs") {
+  for (const char* what :
+       {"jiwiy/robot.json --plant ideal --play sine", "jiwiy/robot.json --plant bullet --play look",
+        "head/robot.json --plant bullet --play wander", "tulip/robot.json --plant bullet --play squat",
+        "tulip/robot.json --plant ideal --play wave --seed 7"}) {
+    CAPTURE(what);
+    const fs::path project = project_copy("repeat_robots");
+    const Outcome made = run(std::string("run config/") + what + " --duration 1.5" + on_threads, project);
+    REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+    check_same(project, 1500);
+  }
+}
+
+TEST_CASE("A run whose behaviors play in a process of their own is repeated with their commands") {
+  const fs::path project = project_copy("repeat_process");
+  const Outcome made =
+      run("run config/tulip/robot.json --play squat --behaviors process --duration 1.5" + on_threads, project);
+  REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+  check_same(project, 1500);
+}
+
+TEST_CASE("What people order, reload and stop in a run is repeated, with the files as they were then") {
+  const fs::path project = project_copy("repeat_orders");
+  Running robot(project, "run config/head/robot.json --plant bullet --play wander --duration 1000 --ctl ctl -v" +
+                             on_threads + "2>&1");
+  REQUIRE(robot.says("wander: "));
+  CHECK(edit(project / "behaviors/head/wander.lua", "return", "-- another version\nreturn"));
+  for (const char* order : {"reload", "pause", "resume", "play saccade --replace", "estop", "fault clear", "stop"})
+    (void)run(std::string("ctl --socket ctl ") + order, project);
+  robot.end(SIGTERM);
+  check_same(project, 500);
+  CHECK(edit(project / "behaviors/head/wander.lua", "-- another version\n", ""));  // the record has its own
+  check_same(project, 500);
+}
+
+TEST_CASE("A record that was cut short is repeated up to its end, and damage never ends the program otherwise") {
+  const fs::path project = project_copy("repeat_cut");
+  REQUIRE(run("run config/jiwiy/robot.json --plant ideal --play sine --duration 3" + on_threads, project).exit_code ==
+          0);
+  const std::string whole = read(project / "run.mcap");
+  write(project / "run.mcap", whole.substr(0, whole.size() * 3 / 4));
+  check_same(project, 500, false);
+  for (std::size_t i = 1; i < 12; ++i) {
+    std::string damaged = whole;
+    damaged[i * whole.size() / 12] = static_cast<char>(~damaged[i * whole.size() / 12]);
+    write(project / "run.mcap", damaged);
+    const Outcome outcome = run("replay run.mcap", project);
+    CAPTURE(i);
+    CHECK(outcome.exit_code <= 2);
+    const std::string said = outcome.out + outcome.err;
+    CHECK_MESSAGE(has(said, "run.mcap"), said);
+  }
+}
+
+TEST_CASE(
+    "A record that went on in further files is repeated through all of them, and a later one says that it begins "
+    "late") {
+  const fs::path project = project_copy("repeat_files");
+  REQUIRE(edit(project / "config/jiwiy/robot.json", "{", "{ \"record\": { \"file_MB\": 0.3 },"));
+  fs::create_directory(project / "records");
+  REQUIRE(
+      run("run config/jiwiy/robot.json --plant bullet --play sine --duration 6 --threads-on-virtual-time --flight 0 "
+          "--record records/",
+          project)
+          .exit_code == 0);
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(project / "records")) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  REQUIRE(files.size() > 2);
+  const Outcome all = run("replay '" + files.front().string() + "' --json", project);
+  CHECK_MESSAGE(all.exit_code == 0, all.out);
+  CHECK(Json::parse(all.out)["ticks"].get<int>() >= 6000);
+  const Outcome later = run("replay '" + files[1].string() + "'", project);
+  CHECK(later.exit_code == 2);
+  CHECK_MESSAGE(has(later.err, "of its run: only a record from the first tick on can be repeated"), later.err);
+}
+
+TEST_CASE("A run with another file says where its commands part, and that the robot does not answer") {
+  const fs::path project = project_copy("repeat_with");
+  REQUIRE(run("run config/tulip/robot.json --play squat --duration 2.7" + on_threads, project).exit_code == 0);
+  const Outcome same = run("replay run.mcap --with behaviors/tulip/squat.lua", project);
+  CHECK_MESSAGE(same.exit_code == 0, same.out);
+  REQUIRE(edit(project / "behaviors/tulip/squat.lua", "0.10", "0.11"));
+  const Outcome other = run("replay run.mcap --with behaviors/tulip/squat.lua", project);
+  CHECK(other.exit_code == 1);
+  CHECK_MESSAGE(has(other.out, "the behaviors send "), other.out);
+  CHECK(has(other.out, "the robot does not answer"));
+  CHECK(has(run("replay run.mcap --with nothing.lua", project).err, "nothing.lua: there is no such file"));
+  check_same(project, 2700);
+}
+
+TEST_CASE("A record without inputs says in a sentence why it is not repeated") {
+  const fs::path project = project_copy("repeat_none");
+  const std::string robot = read(project / "config/jiwiy/robot.json");
+  REQUIRE(edit(project / "config/jiwiy/robot.json", "{", "{ \"record\": { \"inputs\": false },"));
+  REQUIRE(run("run config/jiwiy/robot.json --plant ideal --duration 0.3" + on_threads, project).exit_code == 0);
+  const Outcome none = run("replay run.mcap", project);
+  CHECK(none.exit_code == 2);
+  CHECK_MESSAGE(has(none.err, "holds no inputs"), none.err);
+}
+
+}  // namespace repeated_run_test

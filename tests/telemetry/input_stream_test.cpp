@@ -1,0 +1,195 @@
+// The inputs of a run in its record: read as they were written, and never believed when they are damaged.
+#include "telemetry/record/input_stream.h"
+
+#include <bit>
+#include <limits>
+
+#include <doctest/doctest.h>
+
+#include "kadans/signal/random.h"
+
+namespace input_stream_test {
+
+using namespace kadans;
+
+namespace {
+
+constexpr InputLayout layout{.joints = 2, .feet = 1, .channels = 1, .down = 2};
+constexpr std::size_t signals = 3;
+
+// Ticks of a run: words that stand still, count, are noise, signals or an encoder's positions.
+struct Ticks final : SignalBits {
+  std::vector<std::vector<std::uint64_t>> words;
+  std::vector<std::vector<double>> rows;
+  std::uint64_t first = 0;
+
+  Ticks(std::size_t count, std::uint64_t from) : first(from) {
+    RandomStream random(7, "inputs");
+    std::int64_t place = -12'345;
+    constexpr double step = 9.587379924285257e-05;  // of an encoder
+    for (std::size_t t = 0; t < count; ++t) {
+      std::vector<std::uint64_t>& tick = words.emplace_back(layout.words());
+      std::vector<double>& row = rows.emplace_back(signals);
+      for (double& value : row) value = random.uniform(-1, 1);
+      for (std::size_t w = 0; w < tick.size(); ++w) {
+        const std::size_t kind = w % 6;
+        if (kind == 1) tick[w] = 1000 + 3 * t;
+        if (kind == 2) tick[w] = random.next();
+        if (kind == 3) tick[w] = std::bit_cast<std::uint64_t>(row[w % signals]);
+        if (kind == 4) tick[w] = t < count / 2 ? 5 : std::numeric_limits<std::uint64_t>::max();
+        if (kind == 5)
+          tick[w] = std::bit_cast<std::uint64_t>(
+              static_cast<double>(place += 3 - 2 * static_cast<std::int64_t>(t % 4)) * step);
+      }
+    }
+  }
+  std::optional<std::uint64_t> bits(std::uint64_t tick, std::uint32_t signal) const override {
+    if (tick < first || tick - first >= rows.size() || signal >= signals) return std::nullopt;
+    return std::bit_cast<std::uint64_t>(rows[tick - first][signal]);
+  }
+  static std::int64_t time_ns(std::size_t t) { return static_cast<std::int64_t>(t * 1'000'000 + t % 7); }
+};
+
+std::vector<std::vector<std::byte>> messages_of(const Ticks& ticks) {
+  InputEncoder encoder(layout, {true, true, true});
+  std::vector<std::vector<std::byte>> messages;
+  ByteWriter message;
+  const auto end = [&] {
+    message.clear();
+    encoder.encode(message);
+    messages.emplace_back(message.bytes().begin(), message.bytes().end());
+  };
+  for (std::size_t t = 0; t < ticks.words.size(); ++t) {
+    if (encoder.full()) end();
+    REQUIRE(encoder.add(ticks.first + t, Ticks::time_ns(t), ticks.words[t], ticks.rows[t]));
+  }
+  end();
+  return messages;
+}
+
+void check_same(const TickTaken& read, const std::vector<std::uint64_t>& words) {
+  TickTaken expected;
+  unpack(words, layout, expected);
+  CHECK(std::bit_cast<std::uint64_t>(read.inputs.dt_s) == std::bit_cast<std::uint64_t>(expected.inputs.dt_s));
+  CHECK(read.inputs.heartbeat_ns == expected.inputs.heartbeat_ns);
+  CHECK(read.inputs.commands == expected.inputs.commands);
+  CHECK(read.stopped_by == expected.stopped_by);
+  CHECK(read.down == expected.down);
+  CHECK(read.sensors.time_ns == expected.sensors.time_ns);
+  for (std::size_t i = 0; i < layout.joints; ++i) {
+    const JointSample &a = read.sensors.joints[i], &b = expected.sensors.joints[i];
+    CHECK(std::bit_cast<std::uint64_t>(a.position_rad) == std::bit_cast<std::uint64_t>(b.position_rad));
+    CHECK(std::bit_cast<std::uint64_t>(a.motor_effort_Nm) == std::bit_cast<std::uint64_t>(b.motor_effort_Nm));
+    CHECK(a.sequence == b.sequence);
+    CHECK(a.time_ns == b.time_ns);
+    CHECK(a.drive == b.drive);
+  }
+  CHECK(read.sensors.channels[0].sequence == expected.sensors.channels[0].sequence);
+}
+
+}  // namespace
+
+TEST_CASE("Inputs of ticks are read with the bits with which they were written, from any first tick on") {
+  for (const std::uint64_t first : {std::uint64_t{0}, std::uint64_t{1} << 33U}) {
+    const Ticks ticks(250, first);
+    InputDecoder decoder(layout);
+    std::deque<TickTaken> read;
+    for (const std::vector<std::byte>& message : messages_of(ticks)) REQUIRE(decoder.decode(message, ticks, read));
+    REQUIRE(read.size() == ticks.words.size());
+    for (std::size_t t = 0; t < read.size(); ++t) {
+      CHECK(read[t].tick == first + t);
+      CHECK(read[t].time_ns == Ticks::time_ns(t));
+      check_same(read[t], ticks.words[t]);
+    }
+  }
+}
+
+TEST_CASE("Inputs that stand still, count or are signals take some bytes a message, an encoder one a tick") {
+  const Ticks ticks(100, 0);
+  std::size_t noisy = 0;
+  for (std::size_t w = 0; w < layout.words(); ++w) noisy += w % 6 == 2 ? 1U : 0U;
+  const std::vector<std::vector<std::byte>> messages = messages_of(ticks);
+  REQUIRE(messages.size() == 1);
+  // Noise takes eight bytes a tick; so does what changes once, in the message in which it does; an encoder takes one.
+  CHECK(messages.front().size() < 100 * (8 + 8 + 1) * (noisy + 1) + 24 * layout.words());
+}
+
+TEST_CASE("Damaged inputs are refused, or read as other values of the same types; nothing else happens") {
+  const Ticks ticks(100, 0);
+  const std::vector<std::byte> whole = messages_of(ticks).front();
+  RandomStream random(11, "damage");
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<std::byte> damaged = whole;
+    if (i % 3 == 0) damaged.resize(random.next() % whole.size());
+    for (int k = 0; k < 1 + i % 4 && !damaged.empty(); ++k)
+      damaged[random.next() % (i % 2 == 0 ? damaged.size() : std::min<std::size_t>(damaged.size(), 40))] =
+          static_cast<std::byte>(random.next());
+    InputDecoder decoder(layout);
+    std::deque<TickTaken> read;
+    if (!decoder.decode(damaged, ticks, read)) ++refused;
+    for (const TickTaken& taken : read) {
+      CHECK(taken.sensors.joint_count <= layout.joints);
+      CHECK(taken.sensors.foot_count <= layout.feet);
+      CHECK(static_cast<int>(taken.sensors.joints[1].drive) <= static_cast<int>(DriveState::fault));
+    }
+  }
+  CHECK(refused > 1000);
+  CHECK_FALSE(InputLayout::of({{"format", "1"}, {"joints", "5000"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
+  CHECK_FALSE(InputLayout::of({{"format", "9"}, {"joints", "2"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
+}
+
+TEST_CASE("What the behavior thread took is read in its order; damage and a missing event are noticed") {
+  RecordedInputs inputs("/project");
+  Snapshot snapshot;
+  snapshot.tick = 41;
+  snapshot.time_ns = 42'000'000;
+  inputs.file_read("/project/behaviors/a.lua", "return 1");
+  inputs.file_read("/project/behaviors/a.lua", "return 1");  // known by now
+  inputs.tick_begins(snapshot, 43'000'000);
+  CHECK(inputs.parameter(0.1) == 0.1);
+  const std::array<Command, 2> batch{Command{.kind = CommandKind::transaction, .count = 1, .sequence = 3},
+                                     Command{.kind = CommandKind::set_point, .index = 4, .value = 0.5}};
+  inputs.sent(batch, true);
+  CHECK(inputs.time_is_over([](void*) noexcept { return true; }, nullptr));
+  inputs.tick_ends();
+  ByteWriter message;
+  inputs.take(message);
+  const auto read_all = [](std::span<const std::byte> bytes, std::vector<BehaviorInput>& all) {
+    ByteReader reader(bytes);
+    std::uint32_t expected = 0;
+    while (reader.left() > 0) {
+      BehaviorInput input;
+      if (!take_behavior_input(reader, expected, input)) return false;
+      all.push_back(std::move(input));
+    }
+    return true;
+  };
+  std::vector<BehaviorInput> all;
+  REQUIRE(read_all(message.bytes(), all));
+  REQUIRE(all.size() == 6);
+  CHECK(all[0].path == "behaviors/a.lua");
+  CHECK(all[0].text == "return 1");
+  CHECK(all[1].snapshot == 42);
+  CHECK(all[2].value == 0.1);
+  CHECK(all[3].in_tick);
+  REQUIRE(all[3].commands.size() == 2);
+  CHECK(all[3].commands[1].value == 0.5);
+  CHECK(all[4].number == 1);
+  CHECK(all[5].kind == BehaviorInput::Kind::tick_ends);
+
+  RandomStream random(13, "damage");
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<std::byte> damaged(message.bytes().begin(), message.bytes().end());
+    damaged[random.next() % damaged.size()] = static_cast<std::byte>(random.next());
+    if (i % 2 == 0) damaged.resize(random.next() % damaged.size());
+    std::vector<BehaviorInput> some;
+    (void)read_all(damaged, some);
+    CHECK(some.size() <= all.size());
+  }
+  const std::size_t first = 8 + 1 + 4 + 15 + 4 + 8;  // head, kind, and two texts with their lengths
+  std::vector<BehaviorInput> rest;
+  CHECK_FALSE(read_all(message.bytes().subspan(first), rest));
+}
+
+}  // namespace input_stream_test
