@@ -39,7 +39,7 @@ class DownStorage {
  public:
   virtual ~DownStorage() = default;
   // Control thread: the number of the value that was read last.
-  std::int64_t taken() const noexcept { return taken_; }
+  virtual std::int64_t taken() const noexcept = 0;
   // In a repeated run, where all is one thread: from now on values wait until they are let through by their number.
   virtual void hold() = 0;
   virtual void let_through(std::int64_t number) = 0;
@@ -48,7 +48,6 @@ class DownStorage {
   DownStorage() = default;
   DownStorage(const DownStorage&) = default;
   DownStorage& operator=(const DownStorage&) = default;
-  std::int64_t taken_ = 0;
 };
 
 class UpStorage {
@@ -88,13 +87,10 @@ class HandDown final : public DownStorage {
     else
       waiting_->push_back(value);
   }
-  Reading read() noexcept {  // control thread
-    const Reading found = latest_.read();
-    taken_ = found->handed;
-    return latest_.read();  // the same, because `found` lives
-  }
+  Reading read() noexcept { return latest_.read(); }  // control thread
+  std::int64_t taken() const noexcept override { return latest_.held().handed; }
   T newest() noexcept { return latest_.newest(); }
-  void replace(const T& value) noexcept { latest_.replace(Handed<T>{value, taken_}); }
+  void replace(const T& value) noexcept { latest_.replace(Handed<T>{value, taken()}); }
 
   void hold() override { waiting_ = std::make_unique<std::deque<Handed<T>>>(); }
   void let_through(std::int64_t number) override {

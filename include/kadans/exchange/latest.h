@@ -98,6 +98,11 @@ class Latest {
     return *reading;
   }
 
+  // Thread of reader `reader` only: what the last read() found, or `first`; nothing newer is fetched. Wait-free.
+  const T& held(std::size_t reader = 0) const noexcept {
+    return channels_[reader].slots[channels_[reader].read_slot].value;
+  }
+
   // Thread of reader `reader` only, while it has no Reading: read() finds this value until a newer one is published.
   // Wait-free.
   void replace(const T& value, std::size_t reader = 0) noexcept {

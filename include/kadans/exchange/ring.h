@@ -93,7 +93,7 @@ class Ring {
   static constexpr std::uint32_t mask = static_cast<std::uint32_t>(Capacity - 1);
 
   // Copies in at most two pieces, the second from the start of the slots.
-  void copy_in(std::uint32_t position, std::span<const T> batch) noexcept {
+  [[gnu::always_inline]] void copy_in(std::uint32_t position, std::span<const T> batch) noexcept {
     const std::size_t start = position & mask;
     const std::size_t before_end = std::min(batch.size(), Capacity - start);
     std::copy_n(batch.begin(), before_end, slots_.begin() + static_cast<std::ptrdiff_t>(start));

@@ -62,8 +62,9 @@ void Recorder::record(std::uint64_t tick, std::int64_t time_ns, std::span<const 
   std::array<double, head_size> head{};
   std::memcpy(&head[0], &tick, sizeof tick);
   std::memcpy(&head[1], &time_ns, sizeof time_ns);
-  const bool fits = row.size() == signal_count_ && head_size + signal_count_ <= ring_->free() &&
-                    (pieces_ == nullptr || inputs_ring_->try_push_all(pieces_->gather()));
+  bool fits = row.size() == signal_count_;
+  if (pieces_ != nullptr)  // both or none
+    fits = fits && ring_->free() >= head_size + signal_count_ && inputs_ring_->try_push_all(pieces_->gather());
   if (!fits || !ring_->try_push(head, row)) dropped_.fetch_add(1, std::memory_order_relaxed);
 }
 
