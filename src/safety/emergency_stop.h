@@ -74,8 +74,8 @@ enum StopHeard : std::uint32_t { heard_lift = 1, heard_stop = 2, heard_leave = 4
 
 class EmergencyStop : public BasicEmergencyStop<FaultWords> {
  public:
-  using BasicEmergencyStop::ask;
   void ask(std::string_view who) noexcept { BasicEmergencyStop::ask(fault_words(who)); }
+  void ask_as_recorded(const FaultWords& who) noexcept { BasicEmergencyStop::ask(who); }
 };
 
 }  // namespace kadans

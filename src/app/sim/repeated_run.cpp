@@ -283,7 +283,7 @@ void RepeatedRun::feed(const TickTaken& taken) {
   if (taken.ball.confidence > 0) exchange.ball.publish(taken.ball);
   EmergencyStop& stop = control.safety().emergency_stop();
   if ((taken.inputs.stop & heard_lift) != 0) stop.lift();
-  if ((taken.inputs.stop & heard_stop) != 0) stop.ask(taken.stopped_by);
+  if ((taken.inputs.stop & heard_stop) != 0) stop.ask_as_recorded(taken.stopped_by);
   if ((taken.inputs.stop & heard_leave) != 0) stop.leave();
   for (std::size_t i = 0; i < hand_overs_.down.size() && i < taken.down.size(); ++i)
     hand_overs_.down[i]->let_through(taken.down[i]);
