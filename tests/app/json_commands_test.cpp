@@ -224,14 +224,17 @@ TEST_CASE("what stdout does not take is told, and the exit code is not 0") {
 TEST_CASE("--json of every verb of ctl is one object a line, whether it is done or refused") {
   const auto folder = project("json_ctl");
   const std::string program = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
-  const std::vector<std::string> order{"ctl status",        "ctl list",         "ctl get",           "ctl watch",
-                                       "ctl drives",        "ctl set",          "ctl save",          "ctl undo",
-                                       "ctl play",          "ctl pause",        "ctl resume",        "ctl switch",
-                                       "ctl lead",          "ctl why",          "ctl emit",          "ctl reload",
-                                       "ctl record start",  "ctl record stop",  "ctl record dump",   "ctl repl",
-                                       "ctl stop",          "ctl fault list",   "ctl estop",         "ctl fault clear",
-                                       "ctl drive disable", "ctl drive enable", "ctl drive reset",   "ctl drive home",
-                                       "ctl drive release", "ctl drive brake",  "ctl odometry reset"};
+  const std::vector<std::string> order{"ctl status",         "ctl list",          "ctl get",
+                                       "ctl watch",          "ctl drives",        "ctl set",
+                                       "ctl save",           "ctl undo",          "ctl play",
+                                       "ctl pause",          "ctl resume",        "ctl switch",
+                                       "ctl lead",           "ctl why",           "ctl emit",
+                                       "ctl reload",         "ctl record start",  "ctl record stop",
+                                       "ctl record dump",    "ctl repl",          "ctl stop",
+                                       "ctl fault list",     "ctl estop",         "ctl fault clear",
+                                       "ctl drive disable",  "ctl drive enable",  "ctl drive reset",
+                                       "ctl drive home",     "ctl drive release", "ctl drive brake",
+                                       "ctl odometry reset", "ctl mark"};
   std::string script = "export XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/none\"\n'" + program +
                        "' run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time --ctl c "
                        ">out 2>err &\nrun=$!\nuntil '" +

@@ -114,7 +114,7 @@ TEST_CASE("Inputs that stand still, count or are signals take some bytes a messa
   CHECK(messages.front().size() < 100 * (8 + 8 + 1) * (noisy + 1) + 24 * layout.words());
 }
 
-TEST_CASE("Damaged inputs are refused, or read as other values of the same types; nothing else happens") {
+TEST_CASE("Damaged inputs are refused, or read as other values of the same types, and nothing else happens") {
   const Ticks ticks(100, 0);
   const std::vector<std::byte> whole = messages_of(ticks).front();
   RandomStream random(11, "damage");
@@ -139,7 +139,7 @@ TEST_CASE("Damaged inputs are refused, or read as other values of the same types
   CHECK_FALSE(InputLayout::of({{"format", "9"}, {"joints", "2"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
 }
 
-TEST_CASE("What the behavior thread took is read in its order; damage and a missing event are noticed") {
+TEST_CASE("What the behavior thread took is read in its order, damage and a missing event are noticed") {
   RecordedInputs inputs("/project");
   Snapshot snapshot;
   snapshot.tick = 41;

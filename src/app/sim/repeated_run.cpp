@@ -11,6 +11,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "script/host/play_list.h"
+#include "signal/durable_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -290,19 +291,25 @@ void RepeatedRun::feed(const TickTaken& taken) {
 }
 
 bool RepeatedRun::feed_commands(std::uint32_t waiting) {
-  if (behaviors_ == Behaviors::leading) return true;
-  CommandQueue& queue = assembly_.control().exchange().commands;
-  while (queue.size() < waiting) {
-    BehaviorInput input;
-    if (!commands_read_.next(input)) {
+  if (led()) return true;
+  while (assembly_.control().exchange().commands.size() < waiting) {
+    if (!feed_next()) {
       out_of_commands_ = true;
       return false;
     }
-    if (input.kind != BehaviorInput::Kind::sent) continue;
-    if (!queue.try_push(input.commands)) return out_of_commands_ = true, false;
-    commands_ += input.commands.size() - 1;
   }
   return true;
+}
+
+// The next batch of the record's commands.
+bool RepeatedRun::feed_next() {
+  BehaviorInput input;
+  do {
+    if (!commands_read_.next(input)) return false;
+  } while (input.kind != BehaviorInput::Kind::sent);
+  ++fed_;
+  commands_ += input.commands.size() - 1;
+  return assembly_.control().exchange().commands.try_push(input.commands);
 }
 
 // All that began before this control tick.
@@ -359,16 +366,18 @@ void RepeatedRun::repeat_behavior_tick() {
                                  [](const auto& input) { return input.kind == BehaviorInput::Kind::sent; });
   if (more != inputs.end() && !behaviors_end_ && behaviors_ != Behaviors::none)
     part("the behaviors do not send " + command_text(more->commands.back(), assembly_.catalog()));
-  if (behaviors_ == Behaviors::leading) {
-    const std::vector<Command> led = take_all();
-    (void)queue.try_push(waiting);
-    (void)queue.try_push(led);
-    commands_ +=
-        led.size() - static_cast<std::size_t>(std::ranges::count(led, CommandKind::transaction, &Command::kind));
-  } else {
-    (void)take_all();
-    (void)queue.try_push(waiting);
+  const std::vector<Command> commanded = take_all();
+  (void)queue.try_push(waiting);
+  if (led()) {  // after what was commanded before, and has not arrived yet
+    while (fed_ < sent_before_ && feed_next()) {
+    }
+    (void)queue.try_push(commanded);
+    commands_ += commanded.size() -
+                 static_cast<std::size_t>(std::ranges::count(commanded, CommandKind::transaction, &Command::kind));
   }
+  sent_before_ += static_cast<std::uint64_t>(
+      std::ranges::count(inputs, BehaviorInput::Kind::sent, [](const BehaviorInput& input) { return input.kind; }));
+  if (led()) fed_ = sent_before_;
   if (behaviors_ != Behaviors::none) compare_events();
 }
 
@@ -380,8 +389,7 @@ void RepeatedRun::write_files() {
     if (path.empty() || path.is_absolute() || *path.begin() == "..") continue;
     std::error_code ignored;
     fs::create_directories((fs::path(root_) / path).parent_path(), ignored);
-    fs::remove(fs::path(root_) / path, ignored);
-    std::ofstream(fs::path(root_) / path, std::ios::binary) << input.text;
+    write_durably(fs::path(root_) / path, input.text);
   }
 }
 

@@ -122,7 +122,7 @@ class RepeatedRun final : private BehaviorInputs {
   enum class Behaviors : std::uint8_t {
     none,      // the high levels of control objects; commands are taken from the record
     compared,  // the behaviors, whose commands are compared with those of the record
-    leading    // the behaviors, and what they command now counts: a run with other files
+    leading    // the behaviors, and from where they first command otherwise that counts: a run with other files
   };
   RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const Roots& roots, Behaviors behaviors);
 
@@ -146,6 +146,8 @@ class RepeatedRun final : private BehaviorInputs {
   void compare(const TickTaken& taken);
   void feed(const TickTaken& taken);
   bool feed_commands(std::uint32_t waiting);
+  bool feed_next();
+  bool led() const noexcept { return behaviors_ == Behaviors::leading && !parting_.empty(); }
   void repeat_behaviors(std::uint64_t until_tick);
   bool read_behavior_tick();
   void repeat_behavior_tick();
@@ -188,6 +190,8 @@ class RepeatedRun final : private BehaviorInputs {
   bool behaviors_end_ = false, out_of_commands_ = false;
   std::size_t moment_ = 0;  // in the inputs of next_behaviors_: those before are used up
   std::size_t sent_ = 0;    // the same for what was sent
+  std::uint64_t fed_ = 0,
+                sent_before_ = 0;  // batches of commands: given to the control engine, in behavior ticks before
   std::uint32_t looks_ = 0;
   JoystickState joystick_{};
   std::uint64_t ticks_ = 0, behavior_ticks_ = 0, commands_ = 0, events_ = 0;

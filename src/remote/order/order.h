@@ -153,8 +153,7 @@ inline constexpr OrderInfo orders[] = {
         .shown = "NAME",
         .doc = "name of a behavior (default: all that play)",
         .lists = "behaviors"}}},
-     "  kadans ctl why\n"
-     "  kadans ctl why squat --json\n"},
+     "  kadans ctl why\n  kadans ctl why squat --json\n"},
     {"list",
      "list",
      ctl,
@@ -166,8 +165,7 @@ inline constexpr OrderInfo orders[] = {
         .shown = "KIND",
         .doc = "behaviors, sets, objects, parameters, signals, joints or events",
         .required = true}}},
-     "  kadans ctl list behaviors\n"
-     "  kadans ctl list parameters --names\n"},
+     "  kadans ctl list behaviors\n  kadans ctl list parameters --names\n"},
     {"get",
      "get",
      ctl,
