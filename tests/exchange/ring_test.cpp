@@ -84,6 +84,21 @@ TEST_CASE("Ring takes a batch that lies in two places as one, whole or not at al
   CHECK(waiting(ring) == std::vector{1, 2, 3, 4, 5, 6, 7, 8});
 }
 
+TEST_CASE("Ring takes a batch that lies in many places as one, whole or not at all, across the end of its slots") {
+  SmallRing ring = ring_after(6);
+  const std::array first{1, 2, 3};
+  const std::array second{4};
+  const std::array third{5, 6, 7, 8};
+  const std::array<std::span<const int>, 4> pieces{first, {}, second, third};
+  CHECK(ring.try_push(0));
+  CHECK_FALSE(ring.try_push_all(pieces));
+  CHECK(ring.size() == 1);
+  ring.drop(1);
+  CHECK(ring.try_push_all(pieces));
+  CHECK(waiting(ring) == std::vector{1, 2, 3, 4, 5, 6, 7, 8});
+  CHECK_FALSE(ring.try_push_all(pieces));
+}
+
 TEST_CASE("Ring takes a batch as large as its capacity, none larger, and an empty one always") {
   SmallRing ring;
   CHECK_FALSE(ring.try_push(std::array{0, 1, 2, 3, 4, 5, 6, 7, 8}));
