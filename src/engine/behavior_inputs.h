@@ -30,19 +30,22 @@ class BehaviorInputs {
   BehaviorInputs(const BehaviorInputs&) = delete;
   BehaviorInputs& operator=(const BehaviorInputs&) = delete;
 
-  virtual void tick_begins(const Snapshot& snapshot, std::int64_t time_ns) = 0;
-  virtual void tick_ends() = 0;
+  virtual void tick_begins(const Snapshot& /*snapshot*/, std::int64_t /*time_ns*/) { looks_ = 0; }
+  virtual void tick_ends() { looks_ = 0; }
   // A transaction went into the queue: `batch` begins with its header. `in_tick`: a behavior sent it.
   virtual void sent(std::span<const Command> batch, bool in_tick) noexcept = 0;
   // The high level of a control object finds a value that is newer than its snapshot.
-  virtual void found_newer(std::uint32_t storage, std::span<const std::byte> value) = 0;
+  virtual void found_newer(std::uint32_t /*storage*/, std::span<const std::byte> /*value*/) {}
   // A script reads a parameter, whose newest value is this; returns the value that counts.
   virtual double parameter(double newest) noexcept = 0;
   // A script's budget is looked at. `over` says whether its time is over; returns what counts.
   virtual bool time_is_over(bool (*over)(void*) noexcept, void* budget) noexcept = 0;
   // A script's file was read.
-  virtual void file_read(const std::string& path, std::string_view text) = 0;
-  virtual void asked(Asked kind, std::span<const std::byte> bytes) = 0;
+  virtual void file_read(const std::string& /*path*/, std::string_view /*text*/) {}
+  virtual void asked(Asked /*kind*/, std::span<const std::byte> /*bytes*/) { looks_ = 0; }
+
+ protected:
+  std::uint32_t looks_ = 0;  // at the clock, since a tick began or ended or somebody asked
 };
 
 }  // namespace kadans

@@ -161,6 +161,33 @@ TEST_CASE("Unpacking refuses a file in the place of a plug-in's link, and a link
   CHECK(read(project / "models/own.so") == "mine");
 }
 
+TEST_CASE("A file that a recorded run read later replaces a file of the record, and nothing else") {
+  const fs::path project = project_copy("foreign_later");
+  write(project / "models/own.so", "mine");
+  const Inside inside(project);
+  const InputFile plugin{"models/own.so", content_hash("mine"), std::nullopt}, scenario = input("config/s.json", "{}");
+  const UnpackedInputs unpacked(
+      {.run = {{"scenario_input", scenario.path}}, .program = {}, .files = {scenario, plugin}}, "forged.mcap", false);
+  const auto refusal = [&](const char* path) {
+    try {
+      unpacked.replace(input(path, "theirs"));
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  CHECK(refusal("config/s.json").empty());
+  CHECK(read(unpacked.scenario()) == "theirs");
+  CHECK(refusal("behaviors/new/one.lua").empty());
+  CHECK(read(unpacked.root() / "behaviors/new/one.lua") == "theirs");
+  CHECK_MESSAGE(has(refusal("models/own.so"), "models/own.so: is a plug-in"), refusal("models/own.so"));
+  for (const char* outside : {"../stray", "config/../../stray", "/tmp/stray", ""})
+    CHECK_MESSAGE(has(refusal(outside), "leads out of the record's files"), outside);
+  CHECK_MESSAGE(has(refusal("models"), "is there already"), refusal("models"));
+  CHECK_MESSAGE(has(refusal("config/s.json/below.lua"), "cannot be unpacked"), refusal("config/s.json/below.lua"));
+  CHECK(read(project / "models/own.so") == "mine");
+}
+
 TEST_CASE("Native code that a record brings is not loaded, whatever its robot lists") {
   const Sent sent("foreign_native");
   for (const std::string& listed : {std::string("models/evil.so"), (sent.elsewhere / "evil.so").string()}) {

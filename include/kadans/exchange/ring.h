@@ -42,7 +42,7 @@ class Ring {
     Memory::at(head_).store(head + static_cast<std::uint32_t>(size), std::memory_order_release);
     return true;
   }
-  // Producer thread only. The same for a batch that lies in many places.
+  // Producer thread only. The same in many places; two are written out above, because each control tick pushes so.
   [[nodiscard]] bool try_push_all(std::span<const std::span<const T>> pieces) noexcept {
     std::size_t size = 0;
     for (const std::span<const T> piece : pieces) size += piece.size();

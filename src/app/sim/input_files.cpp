@@ -407,6 +407,31 @@ void UnpackedInputs::link_plugin(const InputFile& file, const std::string& recor
   plugins_.let_in.push_back(folder_ / file.path);
 }
 
+void UnpackedInputs::replace(const InputFile& file) const {
+  const fs::path name = fs::path(file.path).lexically_normal(), place = folder_ / name;
+  const auto refuse = [&](const std::string& why) { throw InputError({.file = file.path, .message = why}); };
+  if (name.empty() || name.is_absolute() || *name.begin() == "..") refuse("leads out of the record's files");
+  try {
+    if (fs::is_symlink(fs::symlink_status(place)))
+      refuse("is a plug-in, and native code does not come out of a record");
+    if (fs::is_regular_file(place)) fs::remove(place);
+    unpack(file);
+  } catch (const fs::filesystem_error& error) {
+    refuse(std::string("cannot be unpacked: ") + error.what());
+  }
+}
+
+void UnpackedInputs::put_in_place(const std::string& file) const {
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  const fs::path name = whole.lexically_relative(project_root(whole));
+  std::error_code error;
+  if (!fs::is_regular_file(whole, error)) throw InputError({.file = file, .message = "there is no such file"});
+  if (name.empty() || *name.begin() == "..")
+    throw InputError({.file = file, .message = "lies in no project, so it has no place in the record"});
+  fs::remove(folder_ / name, error);
+  replace({name.generic_string(), "", read_input_file(whole, input_max_bytes)});
+}
+
 void UnpackedInputs::unpack(const InputFile& file) const {
   const fs::path place = folder_ / file.path;
   fs::create_directories(place.parent_path());

@@ -65,6 +65,12 @@ class UnpackedInputs {
   // Adds the behaviors of the project around the working directory that the record lacks, so that they can be played.
   // They become inputs of the run.
   void add_behaviors(RunInputs& inputs) const;
+  // Another text of a file, or one that came later. Throws InputError when the path leads out of the folder, or when a
+  // plug-in stands there.
+  void replace(const InputFile& file) const;
+  // A file of a project here takes the place of the record's, also of a plug-in. Throws InputError when it is not
+  // there.
+  void put_in_place(const std::string& file) const;
 
   const std::filesystem::path& root() const noexcept { return folder_; }
   const std::filesystem::path& scenario() const noexcept { return scenario_; }

@@ -5,13 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
 #include "kadans/signal/input_error.h"
 #include "script/host/play_list.h"
-#include "signal/durable_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -205,10 +203,10 @@ bool BehaviorInputReader::next(BehaviorInput& input) {
   return !damaged_;
 }
 
-RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const Roots& roots,
-                         Behaviors behaviors)
-    : root_(roots.root),
-      recorded_root_(roots.recorded_root),
+RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const UnpackedInputs& unpacked,
+                         std::string recorded_root, Behaviors behaviors)
+    : unpacked_(unpacked),
+      recorded_root_(std::move(recorded_root)),
       behaviors_(behaviors),
       assembly_(scenario, scenario.seed, log_, &link_),
       engine_(assembly_.sets(), assembly_.control().exchange(),
@@ -349,7 +347,6 @@ void RepeatedRun::repeat_behavior_tick() {
   };
   waiting = take_all();
   moment_ = sent_ = 0;
-  looks_ = 0;
   const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
   for (const BehaviorInput& input : inputs) {
     if (input.kind == BehaviorInput::Kind::newer && input.number < hand_overs_.up.size() &&
@@ -382,14 +379,9 @@ void RepeatedRun::repeat_behavior_tick() {
 }
 
 void RepeatedRun::write_files() {
-  namespace fs = std::filesystem;
   for (const BehaviorInput& input : next_behaviors_->inputs) {
-    if (input.kind != BehaviorInput::Kind::file) continue;
-    const fs::path path = fs::path(input.path).lexically_normal();
-    if (path.empty() || path.is_absolute() || *path.begin() == "..") continue;
-    std::error_code ignored;
-    fs::create_directories((fs::path(root_) / path).parent_path(), ignored);
-    write_durably(fs::path(root_) / path, input.text);
+    const bool below = !std::filesystem::path(input.path).is_absolute();  // others are those of this machine
+    if (input.kind == BehaviorInput::Kind::file && below) unpacked_.replace({input.path, "", input.text});
   }
 }
 
@@ -414,9 +406,9 @@ void RepeatedRun::ask_again(const BehaviorInput& input) {
 
 // A file of the run, among those of the record.
 std::filesystem::path RepeatedRun::moved(const std::filesystem::path& file) const {
-  if (file.is_relative()) return std::filesystem::path(root_) / file;
+  if (file.is_relative()) return unpacked_.root() / file;
   const std::filesystem::path below = file.lexically_relative(recorded_root_);
-  return below.empty() || *below.begin() == ".." ? file : std::filesystem::path(root_) / below;
+  return below.empty() || *below.begin() == ".." ? file : unpacked_.root() / below;
 }
 
 void RepeatedRun::send_again(const BehaviorInput& input) {
@@ -470,12 +462,6 @@ std::string RepeatedRun::shortened() const {
   if (out_of_commands_) return "its last commands are missing";
   return "";
 }
-
-void RepeatedRun::tick_begins(const Snapshot&, std::int64_t) { looks_ = 0; }
-void RepeatedRun::tick_ends() { looks_ = 0; }
-void RepeatedRun::found_newer(std::uint32_t, std::span<const std::byte>) {}
-void RepeatedRun::file_read(const std::string&, std::string_view) {}
-void RepeatedRun::asked(Asked, std::span<const std::byte>) { looks_ = 0; }
 
 void RepeatedRun::sent(std::span<const Command> batch, bool) noexcept {
   if (!next_behaviors_ || behaviors_ == Behaviors::none) return;

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "app/assembly.h"
+#include "input_files.h"
 #include "telemetry/mcap/mcap_reader.h"
 #include "telemetry/reading/record_comparison.h"
 #include "telemetry/record/event_log.h"
@@ -114,17 +115,16 @@ struct TakenByBehaviors {
 
 class RepeatedRun final : private BehaviorInputs {
  public:
-  struct Roots {
-    std::string root;           // the folder in which the scenario's files lie; files that were read later come into it
-    std::string recorded_root;  // the same in the recorded run
-  };
   // What is repeated beside the control engine.
   enum class Behaviors : std::uint8_t {
     none,      // the high levels of control objects; commands are taken from the record
     compared,  // the behaviors, whose commands are compared with those of the record
     leading    // the behaviors, and from where they first command otherwise that counts: a run with other files
   };
-  RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const Roots& roots, Behaviors behaviors);
+  // `unpacked` holds the scenario's files, and gets those that were read later; `recorded_root` was their folder in the
+  // recorded run.
+  RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const UnpackedInputs& unpacked,
+              std::string recorded_root, Behaviors behaviors);
 
   // `stop` is asked between ticks.
   void go(const std::function<bool()>& stop);
@@ -160,16 +160,12 @@ class RepeatedRun final : private BehaviorInputs {
   void part(const std::string& what);
   std::string place() const;
 
-  void tick_begins(const Snapshot& snapshot, std::int64_t time_ns) override;
-  void tick_ends() override;
   void sent(std::span<const Command> batch, bool in_tick) noexcept override;
-  void found_newer(std::uint32_t storage, std::span<const std::byte> value) override;
   double parameter(double newest) noexcept override;
   bool time_is_over(bool (*over)(void*) noexcept, void* budget) noexcept override;
-  void file_read(const std::string& path, std::string_view text) override;
-  void asked(Asked kind, std::span<const std::byte> bytes) override;
 
-  std::string root_, recorded_root_;
+  const UnpackedInputs& unpacked_;
+  std::string recorded_root_;
   Behaviors behaviors_;
   EventLog said_;
   RunLog log_{{&said_}, 1000};
@@ -190,9 +186,8 @@ class RepeatedRun final : private BehaviorInputs {
   bool behaviors_end_ = false, out_of_commands_ = false;
   std::size_t moment_ = 0;  // in the inputs of next_behaviors_: those before are used up
   std::size_t sent_ = 0;    // the same for what was sent
-  std::uint64_t fed_ = 0,
-                sent_before_ = 0;  // batches of commands: given to the control engine, in behavior ticks before
-  std::uint32_t looks_ = 0;
+  // Batches of the record's commands: given to the control engine, and sent in the behavior ticks before.
+  std::uint64_t fed_ = 0, sent_before_ = 0;
   JoystickState joystick_{};
   std::uint64_t ticks_ = 0, behavior_ticks_ = 0, commands_ = 0, events_ = 0;
   std::string parting_;

@@ -11,7 +11,6 @@
 #include "app/run/observers.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
-#include "config/robot/project_root.h"
 #include "input_files.h"
 #include "ordered_events.h"
 #include "repeated_run.h"
@@ -266,30 +265,16 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
   return notes;
 }
 
-// A file of this project takes the place of the one that the record has.
-void put_in_place(const std::string& file, const fs::path& root) {
-  const fs::path whole = fs::absolute(file).lexically_normal(), here = project_root(whole);
-  const fs::path name = whole.lexically_relative(here);
-  std::error_code error;
-  if (!fs::is_regular_file(whole, error)) throw InputError({.file = file, .message = "there is no such file"});
-  if (name.empty() || *name.begin() == "..")
-    throw InputError({.file = file, .message = "lies in no project, so it has no place in the record"});
-  fs::create_directories((root / name).parent_path(), error);
-  fs::remove(root / name, error);
-  if (!fs::copy_file(whole, root / name, error))
-    throw InputError({.file = file, .message = "cannot be copied: " + error.message()});
-}
-
 // A run on threads: its files come out of the record.
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   const UnpackedInputs unpacked(inputs, options.record, options.allow_plugins);
-  for (const std::string& file : options.with) put_in_place(file, unpacked.root());
+  for (const std::string& file : options.with) unpacked.put_in_place(file);
   RunOptions run = options_of(inputs, options.record);
   run.robot = unpacked.scenario().string();
   ScenarioConfig scenario = live_scenario(run);
   scenario.plugins = unpacked.plugins();
   scenario.repeats = true;
-  RepeatedRun repeated(options.record, scenario, {unpacked.root().string(), inputs.fact("root")},
+  RepeatedRun repeated(options.record, scenario, unpacked, inputs.fact("root"),
                        !options.with.empty()        ? RepeatedRun::Behaviors::leading
                        : run.behaviors == "process" ? RepeatedRun::Behaviors::none
                                                     : RepeatedRun::Behaviors::compared);

@@ -9,6 +9,11 @@ namespace {
 constexpr int times_tried = 16;
 constexpr double late_s = 0.25;  // a foot that finds no ground until then counts as put down
 
+// A robot that sank rests while xi is over the feet, and steps on when it is up again and xi near the middle.
+constexpr double safe_share = 0.5, held_share = 0.9;  // of a sole before and behind: to begin to rest, to go on with it
+constexpr double up_share = 0.3;                      // of sunk_m: what counts as up
+constexpr double still_m = 0.03;
+
 double side_of(std::size_t foot) noexcept { return foot == 0 ? 1 : -1; }  // of left: +y
 
 double toward(double from, double to, double most) noexcept { return from + std::clamp(to - from, -most, most); }
@@ -178,7 +183,7 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
       std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m)
     s.phase = Phase::bears;
-  if (sight.sunk_m > c.sunk_m && between_feet(c, 0.5)) s.phase = Phase::rests;
+  if (sight.sunk_m > c.sunk_m && between_feet(c, safe_share)) s.phase = Phase::rests;
 }
 
 // Whether xi is between the feet, or over this share of a sole before or behind them.
@@ -195,8 +200,9 @@ bool WalkPlan::between_feet(const Config& c, double share) const noexcept {
 void WalkPlan::rest(const Config& c, const Wanted& wanted, const Sight& sight) noexcept {
   State& s = state_;
   const GroundPoint to = goal(c, sight);
-  const bool up = sight.sunk_m < 0.3 * c.sunk_m, still = std::hypot(s.dcm.x_m - to.x_m, s.dcm.y_m - to.y_m) < 0.03;
-  const bool holds = between_feet(c, 0.9);
+  const bool up = sight.sunk_m < up_share * c.sunk_m,
+             still = std::hypot(s.dcm.x_m - to.x_m, s.dcm.y_m - to.y_m) < still_m;
+  const bool holds = between_feet(c, held_share);
   if (holds && !(up && still) && s.time_s < c.rest_s) return;
   s.phase = Phase::bears;
   s.time_s = 0;

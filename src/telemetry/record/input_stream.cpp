@@ -361,7 +361,7 @@ void RecordedInputs::push() noexcept {
 }
 
 void RecordedInputs::tick_begins(const Snapshot& snapshot, std::int64_t time_ns) {
-  looks_ = 0;
+  BehaviorInputs::tick_begins(snapshot, time_ns);
   begin(BehaviorInput::Kind::tick_begins);
   event_.put(snapshot.time_ns == 0 ? std::uint64_t{0} : snapshot.tick + 1);
   event_.put(time_ns);
@@ -369,7 +369,7 @@ void RecordedInputs::tick_begins(const Snapshot& snapshot, std::int64_t time_ns)
 }
 
 void RecordedInputs::tick_ends() {
-  looks_ = 0;
+  BehaviorInputs::tick_ends();
   begin(BehaviorInput::Kind::tick_ends);
   push();
 }
@@ -418,7 +418,7 @@ void RecordedInputs::file_read(const std::string& path, std::string_view text) {
 }
 
 void RecordedInputs::asked(Asked kind, std::span<const std::byte> bytes) {
-  looks_ = 0;
+  BehaviorInputs::asked(kind, bytes);
   begin(BehaviorInput::Kind::asked);
   event_.put(static_cast<std::uint8_t>(kind));
   event_.put(bytes);

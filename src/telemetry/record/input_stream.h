@@ -196,7 +196,7 @@ class RecordedInputs final : public BehaviorInputs {
   std::string root_;
   std::unordered_map<std::string, std::size_t> hash_of_;
   ByteWriter event_;
-  std::uint32_t number_ = 0, looks_ = 0;
+  std::uint32_t number_ = 0;
   std::unique_ptr<Bytes> ring_;
   std::atomic<std::uint32_t> dropped_{0};
 };
