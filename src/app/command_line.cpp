@@ -40,6 +40,7 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_sweep(app, sweep);
   add_merge(app, merge);
   add_margin(app, margin);
+  add_shrink(app, shrink);
   add_tune(app, tune);
   add_behavior(app, behavior);
   add_repl(app, repl);

@@ -26,6 +26,7 @@ struct CommandLine {
   SweepOptions sweep;
   MergeOptions merge;
   MarginOptions margin;
+  ShrinkOptions shrink;
   TuneOptions tune;
   BehaviorOptions behavior;
   ReplOptions repl;

@@ -231,6 +231,19 @@ struct MarginOptions {
 void add_margin(CLI::App& app, MarginOptions& options);
 int run_margin(const MarginOptions& options);
 
+// `kadans shrink`: the least with which a scenario, or a case of a sweep, still fails in the same way.
+struct ShrinkOptions : RunChoices {     // `scenario` may also be the results of a sweep, or one of them
+  std::string check;                    // that shall fail; "": the first that does
+  std::optional<std::uint32_t> number;  // of the sweep's case
+  std::uint32_t runs_max = 2000;
+  unsigned jobs = 0;  // 0: one for each core
+  std::string out;    // "": NAME_shrunk.json
+  bool overwrite = false;
+  bool json = false;
+};
+void add_shrink(CLI::App& app, ShrinkOptions& options);
+int run_shrink(const ShrinkOptions& options);
+
 // Checks a plan beyond its fields: patterns, ranges, signals. Throws InputError with all mistakes. Returns a
 // description of the plan.
 std::string check_sweep_plan(const std::string& file, const PluginGate& gate);

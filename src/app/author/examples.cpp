@@ -58,6 +58,9 @@ constexpr Examples all_examples[] = {
      "  kadans margin config/tulip/robot.json config/scenarios/squat.json --quantity delay\n"
      "  kadans margin config/tulip/robot.json config/scenarios/squat.json --quantity "
      "'joint.*_knee.torque_scale=0.02'\n"},
+    {"shrink",
+     "  kadans shrink config/scenarios/weak_knees.json --set 'joint.*_knee.torque_scale=0.2'\n"
+     "  kadans shrink sweeps/push_varied-0123abcd --case 3 --out least.json    a case of a sweep that failed\n"},
     {"tune",
      "  kadans tune config/tuning/squat_height.json --generations 2 --runs 1 --out tuned\n"
      "  kadans tune config/tuning/squat_height.json --write better.json --overwrite\n"},

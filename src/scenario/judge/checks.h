@@ -46,6 +46,7 @@ class Check {
   // To be called after each control tick; time must not run backwards.
   void update(double time_s, const Observation& seen) noexcept;
   CheckResult result() const;
+  bool lost() const noexcept;  // it has failed, whatever comes
   const ScenarioCheck& config() const noexcept { return check_; }
 
  private:
@@ -79,6 +80,7 @@ class Checks {
   // To be called after each control tick.
   void update(double time_s, std::span<const double> row) noexcept;
   std::vector<CheckResult> results() const;
+  bool lost(std::size_t index) const noexcept { return broken_ || judged_[index].check.lost(); }
   const std::string& error() const noexcept { return conditions_.error(); }  // of a condition that failed
 
   std::size_t size() const noexcept { return judged_.size(); }
