@@ -36,6 +36,7 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_sim(app, sim);
   add_test(app, test);
   add_replay(app, replay);
+  add_debug(app, debug);
   add_check(app, check);
   add_sweep(app, sweep);
   add_merge(app, merge);

@@ -22,6 +22,7 @@ struct CommandLine {
   SimOptions sim;
   TestOptions test;
   ReplayOptions replay;
+  DebugOptions debug;
   CheckOptions check;
   SweepOptions sweep;
   MergeOptions merge;

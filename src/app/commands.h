@@ -193,6 +193,17 @@ void add_replay(CLI::App& app, ReplayOptions& options);
 // Returns 0 when everything is the same, else 1. Throws InputError when the record cannot be run again.
 int run_replay(const ReplayOptions& options);
 
+// `kadans debug`: serves the Debug Adapter Protocol for a simulation or the repetition of a record (docs/debugging.md).
+struct DebugOptions {
+  std::string file;         // scenario or record; "": the client names it
+  std::optional<int> port;  // of this machine, for one client; nullopt: stdin and stdout
+  double memory_MB = 1024;  // of all processes of the run
+  bool from_record = false, allow_plugins = false;
+};
+
+void add_debug(CLI::App& app, DebugOptions& options);
+int run_debug(const DebugOptions& options);
+
 // `kadans sweep` runs the cases of a plan, each in a process of its own. `kadans merge` makes one table of the results
 // of several sweeps of the same plan.
 struct SweepOptions {

@@ -43,6 +43,9 @@ constexpr Examples all_examples[] = {
     {"replay",
      "  kadans replay squat.mcap                  with the files as they are now\n"
      "  kadans replay squat.mcap --from-record    with those in the record: has the program changed?\n"},
+    {"debug",
+     "  kadans debug config/scenarios/get_up_prone.json               what an editor starts: docs/debugging.md\n"
+     "  kadans debug fall.mcap --port 4711                            a record, for an editor that connects\n"},
     {"check",
      "  kadans check behaviors/tulip/squat.lua config/tulip/robot.json\n"
      "  kadans check config/scenarios              every file in it, with the behaviors that are played there\n"

@@ -258,9 +258,18 @@ bool RepeatedRun::repeat_tick(const TickTaken& taken) {
       part("a control object found value " + std::to_string(hand_overs_.down[i]->taken()) + " of its high level, not " +
            std::to_string(taken.down[i]));
   }
+  if (observer_ != nullptr) show(taken);
   for (Fault fault; control.safety().log().try_pop(fault);) {
+    if (observer_ != nullptr) observer_->fault(fault);
   }
   return true;
+}
+
+void RepeatedRun::show(const TickTaken& taken) {
+  const std::span<const double> row = assembly_.control().row();
+  rows_.add(row);
+  observer_->tick(1e-9 * static_cast<double>(taken.time_ns), row);
+  observer_->between_ticks({ticks_, taken.time_ns, rows_.value()});
 }
 
 // With the file in which the tick lies.

@@ -20,6 +20,7 @@
 
 #include "app/assembly.h"
 #include "input_files.h"
+#include "kadans/signal/state_hash.h"
 #include "telemetry/mcap/mcap_reader.h"
 #include "telemetry/reading/record_comparison.h"
 #include "telemetry/record/event_log.h"
@@ -128,6 +129,10 @@ class RepeatedRun final : private BehaviorInputs {
 
   // `stop` is asked between ticks.
   void go(const std::function<bool()>& stop);
+  // Before go(): it hears of ticks and faults, with the hash of the rows of all signals.
+  void show_to(RunObserver& observer) noexcept { observer_ = &observer; }
+  Assembly& assembly() noexcept { return assembly_; }
+  RunLog& log() noexcept { return log_; }
 
   const RecordComparison& comparison() const noexcept { return *comparison_; }
   bool same() const;
@@ -147,6 +152,7 @@ class RepeatedRun final : private BehaviorInputs {
   void feed(const TickTaken& taken);
   bool feed_commands(std::uint32_t waiting);
   bool feed_next();
+  void show(const TickTaken& taken);
   bool led() const noexcept { return behaviors_ == Behaviors::leading && !parting_.empty(); }
   void repeat_behaviors(std::uint64_t until_tick);
   bool read_behavior_tick();
@@ -191,6 +197,8 @@ class RepeatedRun final : private BehaviorInputs {
   JoystickState joystick_{};
   std::uint64_t ticks_ = 0, behavior_ticks_ = 0, commands_ = 0, events_ = 0;
   std::string parting_;
+  RunObserver* observer_ = nullptr;
+  StateHash rows_;  // for the observer
 };
 
 }  // namespace kadans

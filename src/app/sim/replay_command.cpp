@@ -30,7 +30,8 @@ std::optional<std::uint64_t> number_in(const TextMap& facts, const char* name) {
   return found == facts.end() ? std::nullopt : number_of<std::uint64_t>(found->second);
 }
 
-// Reads the inputs at the front of the record. Throws InputError when the record cannot be run again.
+}  // namespace
+
 RunInputs read_front(const std::string& record) {
   const auto refuse = [&](const std::string& why) { throw InputError({.file = record, .message = why}); };
   McapReader reader(record);
@@ -54,6 +55,8 @@ RunInputs read_front(const std::string& record) {
            " or ends too early");
   return inputs;
 }
+
+namespace {
 
 ScenarioConfig repeated_scenario(const std::string& record, const RunInputs& inputs, const RunChoices& choices) {
   ScenarioConfig scenario = read_scenario(choices);

@@ -46,7 +46,8 @@ class Check {
   // To be called after each control tick; time must not run backwards.
   void update(double time_s, const Observation& seen) noexcept;
   CheckResult result() const;
-  bool lost() const noexcept;  // it has failed, whatever comes
+  // True once nothing that comes can let it pass.
+  bool lost() const noexcept;
   const ScenarioCheck& config() const noexcept { return check_; }
 
  private:
