@@ -25,11 +25,7 @@ namespace kadans {
 struct CommandLine;
 
 struct SimOptions : RunChoices {
-  bool json = false;
-  bool verbose = false;
-  bool no_record = false;
-  bool realtime = false;
-  bool watch = false;
+  bool json = false, verbose = false, no_record = false, realtime = false, watch = false;
   std::string metrics;  // plan whose metrics are reported; "": none
   std::string record;   // "": NAME.mcap in the working directory
   RecordOptions recording;
@@ -54,10 +50,7 @@ struct TestOptions {
   unsigned jobs = 0;                   // 0: one for each core
   std::optional<std::uint32_t> repeat;
   std::optional<std::uint64_t> seed;
-  bool fail_fast = false;
-  bool rerun_failed = false;
-  bool list = false;
-  bool json = false;
+  bool fail_fast = false, rerun_failed = false, list = false, json = false;
   bool golden = false;        // state hashes must equal those of the golden file
   bool renew_golden = false;  // write them to the golden file instead
   std::string junit;
@@ -299,7 +292,6 @@ struct BehaviorOptions {
 };
 
 void add_behavior(CLI::App& app, BehaviorOptions& options);
-// After parsing. Returns the program's exit code.
 int run_behavior(const CLI::App& app, const BehaviorOptions& options);
 int run_behavior_test(const BehaviorOptions& options);
 
@@ -341,7 +333,6 @@ struct CtlOptions {
   std::optional<long> count;                                                        // of samples; nullopt: until Ctrl-C
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
 };
-
 void add_ctl(CLI::App& app, CtlOptions& options);
 // After parsing. Returns the program's exit code.
 int run_ctl(const CLI::App& app, const CtlOptions& options);
@@ -370,7 +361,6 @@ struct CompletionOptions {
 };
 void add_completion(CLI::App& app, CompletionOptions& options);
 std::string completion_script(const CLI::App& app, const std::string& shell);
-// Prints the completion script.
 int run_completion(const CLI::App& app, const CompletionOptions& options);
 
 // `kadans view` shows a record in the web page; `kadans render` makes pictures of it.

@@ -30,8 +30,9 @@ std::string hash_of(const std::string& said) {
   return std::regex_search(said, found, std::regex("state hash ([0-9a-f]{16})")) ? found[1].str() : "none";
 }
 
-std::string sim_hash(const fs::path& where, const std::string& arguments) {
-  const Outcome outcome = run("sim " + arguments + " --no-record --json", where);
+std::string sim_hash(const fs::path& scenario_file, const std::string& arguments) {
+  const Outcome outcome =
+      run("sim " + scenario_file.string() + arguments + " --no-record --json", fresh_folder("debug_sim"));
   return Json::parse(outcome.out).at("state_hash");
 }
 
@@ -97,7 +98,7 @@ TEST_CASE("A debugged run ends as that of sim, wherever it stopped and went back
     }
     (void)client.get("continue");
     CHECK(client.wait("exited").is_object());
-    CHECK(hash_of(client.said()) == sim_hash(source, file + " --duration 2.5"));
+    CHECK(hash_of(client.said()) == sim_hash(source / file, " --duration 2.5"));
   }
 }
 
@@ -265,7 +266,7 @@ TEST_CASE("debug waits for an editor at a port, where the command line alone say
   CHECK(client.begin({{"stopOnEntry", true}}).at("reason") == "entry");
   (void)client.get("disconnect");
   CHECK(program.end() == 0);
-  CHECK(has(run("debug --port 0", source).err, "name the scenario or record"));
+  CHECK(has(run("debug --port 0", fresh_folder("debug_port")).err, "name the scenario or record"));
 }
 
 TEST_CASE("debug tells wrong input in a sentence and goes on, and ends at bytes that are no message") {
@@ -292,7 +293,7 @@ TEST_CASE("debug tells wrong input in a sentence and goes on, and ends at bytes 
   CHECK(has(set.at("breakpoints").at(0).at("message"), "not in the project"));
   client.write("Content-Length: 99999999999\r\n\r\n");
   CHECK(client.end() == 1);
-  CHECK(run("debug --port 70000", source).exit_code == 2);
+  CHECK(run("debug --port 70000", fresh_folder("debug_port")).exit_code == 2);
   DebugClient page(source, "");
   page.write("POST / HTTP/1.1\r\nContent-Length: 2\r\n\r\n{}");
   CHECK(page.end() == 1);

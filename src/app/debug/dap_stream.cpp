@@ -18,8 +18,8 @@ constexpr std::size_t head_bytes_max = 1024, text_bytes_max = std::size_t{4} << 
   throw InputError({.file = "debug adapter protocol", .message = why});
 }
 
-// The length that the head gives. A head with other fields is none of an editor: a web page, which may send what it likes
-// to a port of this machine, cannot leave them out.
+// The length that the head gives. A head with other fields is none of an editor: a web page, which may send what it
+// likes to a port of this machine, cannot leave them out.
 std::size_t length_in(std::string_view head) {
   constexpr std::string_view wanted = "content-length:";
   for (std::size_t begin = 0; begin < head.size();) {
