@@ -12,10 +12,7 @@ constexpr double hold_max_s = 5, keeper_hold_max_s = 10;
 constexpr double get_up_within_s = 20, inactive_max_s = 10;
 constexpr int attempts_max = 3;  // one more when another robot disturbed it
 
-bool match_runs(const Match& match) noexcept {
-  return !match.stopped() &&
-         (match.state() == GameState::ready || match.state() == GameState::set || match.state() == GameState::playing);
-}
+bool match_runs(const Match& match) noexcept { return !match.stopped() && match.runs(); }
 
 }  // namespace
 

@@ -169,9 +169,7 @@ void Match::penalise(RobotId robot, Penalty penalty) {
 void Match::restart_penalty(RobotId robot) noexcept { entry(robot).left_ns = entry(robot).whole_ns; }
 
 void Match::count_message(Side side, std::size_t bytes) noexcept {
-  const bool counts =
-      now_.state == GameState::ready || now_.state == GameState::set || now_.state == GameState::playing;
-  if (!counts) return;
+  if (!runs()) return;
   TeamSide& team = sides_.at(index_of(side));
   if (bytes > 512 || team.messages == 0) {
     team.goals_count = false;

@@ -91,6 +91,10 @@ class Match {
   GameState state() const noexcept { return now_.state; }
   bool stopped() const noexcept { return now_.stopped; }
   bool first_half() const noexcept { return first_half_; }
+  // Ready, set or playing.
+  bool runs() const noexcept {
+    return now_.state == GameState::ready || now_.state == GameState::set || now_.state == GameState::playing;
+  }
   bool over() const noexcept { return now_.state == GameState::finished && !first_half_; }
   Restart restart() const noexcept { return now_.restart; }
   std::optional<Side> kicking() const noexcept { return now_.kicking; }

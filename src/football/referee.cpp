@@ -285,9 +285,7 @@ void Referee::judge_positions(const WorldTruth& world) {
   for (const RobotId id : all_robots()) {
     const RobotTruth& robot = world.robot(id);
     if (!robot.present || !match_.plays(id) || match_.time_ns() < watch(id).placed_ns + placed_grace_ns) continue;
-    const bool runs =
-        match_.state() == GameState::ready || match_.state() == GameState::set || match_.state() == GameState::playing;
-    if (runs && off_carpet(robot, setup_.field)) {
+    if (match_.runs() && off_carpet(robot, setup_.field)) {
       penalise(id, Penalty::leaving_the_field, world, "game.tex, Leaving the Field", "left the carpet");
     } else if (is_illegal(id, world)) {
       penalise(id, Penalty::illegal_positioning, world, "game.tex, Illegal Positioning",
@@ -482,9 +480,7 @@ void Referee::judge_penalty_kick() {
 }
 
 void Referee::judge_time() {
-  const bool runs =
-      match_.state() == GameState::ready || match_.state() == GameState::set || match_.state() == GameState::playing;
-  if (!runs || !(match_.remaining_s() < 0) || penalty_kick_runs_) return;
+  if (!match_.runs() || !(match_.remaining_s() < 0) || penalty_kick_runs_) return;
   const bool rolls = !ball_rests(0) && match_.remaining_s() > -match_.rules().half_more_max_s;
   if (match_.state() == GameState::playing && rolls) return;
   match_.finish_half();

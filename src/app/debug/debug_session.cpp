@@ -210,8 +210,12 @@ Json DebugSession::configuration_done(const Json&) {
   return {};
 }
 
-void DebugSession::need_standing() const {
+void DebugSession::need_run() const {
   if (doing_ == Doing::nothing) refuse_it("there is no run yet: launch comes first");
+}
+
+void DebugSession::need_standing() const {
+  need_run();
   if (doing_ == Doing::over) refuse_it("the run is over");
   if (doing_ != Doing::standing) refuse_it("notStopped");
 }

@@ -30,12 +30,6 @@ class DebugSession {
 
  private:
   enum class Doing : std::uint8_t { nothing, standing, running, searching, arriving, over };
-  struct LineWish {  // as the editor has set it
-    int id = 0;
-    std::string chunk;
-    int line = 0;
-    std::string condition, hits, log;
-  };
   struct Wish {
     int id = 0;
     std::string text;
@@ -96,8 +90,8 @@ class DebugSession {
   Json breaks() const;
   void tell_breaks();
   std::string wrong_condition(const std::string& text);
+  void need_run() const;
   void need_standing() const;
-  [[noreturn]] static void refuse_early();
   RunPosition here() const { return stop_.at("at").get<RunPosition>(); }
   std::string chunk_of(const std::string& path) const;
   Json source_of(const std::string& chunk) const;
@@ -129,8 +123,8 @@ class DebugSession {
   int branches_ = 0;
 
   int last_id_ = 0;
-  std::map<std::string, std::vector<LineWish>> lines_;  // by path
-  std::vector<LineWish> functions_;
+  std::map<std::string, std::vector<LineBreak>> lines_;  // by path
+  std::vector<LineBreak> functions_;
   std::vector<Wish> states_, conditions_, data_;
   Json filters_ = Json::array();
 };

@@ -352,10 +352,7 @@ void DebuggedRun::take_breaks(const Json& breaks) {
   if (breaks == breaks_as_told_) return;
   breaks_as_told_ = breaks;
   breaks_ = {};
-  for (const Json& one : breaks.at("lines")) {
-    breaks_.lines.push_back({one.at("id"), one.at("chunk"), one.at("line"), one.value("condition", ""),
-                             one.value("hits", ""), one.value("log", "")});
-  }
+  breaks.at("lines").get_to(breaks_.lines);
   for (Chunk& chunk : chunks_) {
     for (LineCount& line : chunk.lines) line.broken = false;
   }

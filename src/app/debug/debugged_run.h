@@ -43,12 +43,6 @@ class DebuggedRun final : public RunObserver, private LineSink, private LineWatc
   void fault(const Fault& fault) override;
 
  private:
-  struct LineBreak {
-    int id = 0;
-    std::string chunk;
-    int line = 0;
-    std::string condition, hits, log;
-  };
   struct NamedBreak {
     int id = 0;
     std::string text;

@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,21 @@ struct RunPosition {
 };
 inline void to_json(Json& json, const RunPosition& at) { json = Json::array({at.tick, at.point}); }
 inline void from_json(const Json& json, RunPosition& at) { json.at(0).get_to(at.tick), json.at(1).get_to(at.point); }
+
+// A breakpoint on a line, as the editor sets it.
+struct LineBreak {
+  int id = 0;
+  std::string chunk;
+  int line = 0;
+  std::string condition, hits, log;
+};
+inline void to_json(Json& json, const LineBreak& one) {
+  json = Json::array({one.id, one.chunk, one.line, one.condition, one.hits, one.log});
+}
+inline void from_json(const Json& json, LineBreak& one) {
+  json.at(0).get_to(one.id), json.at(1).get_to(one.chunk), json.at(2).get_to(one.line);
+  json.at(3).get_to(one.condition), json.at(4).get_to(one.hits), json.at(5).get_to(one.log);
+}
 
 class RunChannel {
  public:

@@ -47,12 +47,12 @@ std::string DebugSession::chunk_of(const std::string& path) const {
 }
 
 Json DebugSession::set_breakpoints(const Json& arguments) {
-  if (doing_ == Doing::nothing) refuse_early();
+  need_run();
   const std::string path = arguments.at("source").value("path", "");
   const std::string chunk = chunk_of(path);
   const bool read = paths_.contains(chunk);
   const CodeLines code = chunk.empty() ? CodeLines() : code_lines_of(path);
-  std::vector<LineWish> wishes;
+  std::vector<LineBreak> wishes;
   Json answers = Json::array();
   for (const Json& one : arguments.value("breakpoints", Json::array())) {
     const int id = ++last_id_, wanted = one.at("line");
@@ -76,7 +76,7 @@ Json DebugSession::set_breakpoints(const Json& arguments) {
 
 // A function of Lua, a state, or a condition on signals.
 Json DebugSession::set_function_breakpoints(const Json& arguments) {
-  if (doing_ == Doing::nothing) refuse_early();
+  need_run();
   functions_.clear(), states_.clear(), conditions_.clear();
   Json answers = Json::array();
   for (const Json& one : arguments.at("breakpoints")) {
@@ -127,7 +127,7 @@ Json DebugSession::data_breakpoint_info(const Json& arguments) {
 
 // "> 0.3", "joint.l_knee.position_rad > 0.3", or nothing: it changes.
 Json DebugSession::set_data_breakpoints(const Json& arguments) {
-  if (doing_ == Doing::nothing) refuse_early();
+  need_run();
   data_.clear();
   Json answers = Json::array();
   for (const Json& one : arguments.at("breakpoints")) {
@@ -148,8 +148,6 @@ Json DebugSession::set_data_breakpoints(const Json& arguments) {
   return {{"breakpoints", answers}};
 }
 
-void DebugSession::refuse_early() { throw std::runtime_error("there is no run yet: launch comes first"); }
-
 // What is wrong with a condition on signals; "": nothing.
 std::string DebugSession::wrong_condition(const std::string& text) {
   if (doing_ != Doing::standing) return "while the run goes on, nobody can tell; pause it first";
@@ -163,16 +161,10 @@ std::string DebugSession::wrong_condition(const std::string& text) {
 
 Json DebugSession::breaks() const {
   Json lines = Json::array(), states = Json::array(), conditions = Json::array();
-  const auto add = [&](const LineWish& one) {
-    lines.push_back({{"id", one.id},
-                     {"chunk", one.chunk},
-                     {"line", one.line},
-                     {"condition", one.condition},
-                     {"hits", one.hits},
-                     {"log", one.log}});
-  };
-  for (const auto& [path, wishes] : lines_) std::ranges::for_each(wishes, add);
-  std::ranges::for_each(functions_, add);
+  for (const auto& [path, wishes] : lines_) {
+    for (const LineBreak& one : wishes) lines.push_back(one);
+  }
+  for (const LineBreak& one : functions_) lines.push_back(one);
   for (const Wish& one : states_) states.push_back({{"id", one.id}, {"text", one.text}});
   for (const auto* wishes : {&conditions_, &data_}) {
     for (const Wish& one : *wishes) conditions.push_back({{"id", one.id}, {"text", one.text}});

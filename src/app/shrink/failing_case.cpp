@@ -17,25 +17,9 @@ namespace fs = std::filesystem;
   throw InputError({.file = file, .message = why});
 }
 
-// The words of a line as shell_word() quotes them.
-std::vector<std::string> words_of(const std::string& line) {
-  std::vector<std::string> words(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '\'') {
-      quoted = !quoted;
-    } else if (line[i] == ' ' && !quoted) {
-      words.emplace_back();
-    } else {
-      words.back() += line[i] == '\\' && !quoted && i + 1 < line.size() ? line[++i] : line[i];
-    }
-  }
-  return words;
-}
-
 // "kadans sim FILE --seed N --set NAME=NUMBER ..."
 RunChoices choices_of_line(const std::string& line, const std::string& file) {
-  const std::vector<std::string> words = words_of(line);
+  const std::vector<std::string> words = shell_words(line);
   RunChoices choices;
   bool known = words.size() >= 5 && words.size() % 2 == 1 && words[1] == "sim";
   if (known) choices.scenario = words[2];
