@@ -58,7 +58,7 @@ class PlantService {
   }
 
   int run() {
-    lock_program(true);
+    lock_program();
     bool failed = false, told = false;
     while (!interrupted()) {
       const std::unique_ptr<World> world = make();

@@ -16,7 +16,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U, heap_reserve_of_model_bytes = std::size_t{1} << 20U;
+constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U;  // TULip squats, walks and falls without any
 
 }  // namespace
 
@@ -44,8 +44,8 @@ void bind_all_functions(char** argv) {
       (error ? error.message() : std::strerror(errno)) + "); set LD_BIND_NOW=1");
 }
 
-void lock_program(bool with_model) noexcept {
-  const int refused = lock_memory(with_model ? heap_reserve_of_model_bytes : heap_reserve_bytes);
+void lock_program() noexcept {
+  const int refused = lock_memory(heap_reserve_bytes);
   if (refused != 0 && read_rights("/").memory())  // else the missing right was told
     print_error(std::string("going on without locked memory, late when the system swaps: ") + std::strerror(refused));
 }

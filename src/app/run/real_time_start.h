@@ -12,6 +12,6 @@ bool rights_suffice(int priority, bool soft);
 void bind_all_functions(char** argv);
 
 // All memory stays where it is. Without the right to it, which has been told, nothing happens.
-void lock_program(bool with_model) noexcept;
+void lock_program() noexcept;
 
 }  // namespace kadans

@@ -247,7 +247,7 @@ class WallClockRun {
     const bool may_record = flies || !options_.record.empty() || place_of(options_).wanted || options_.live.wanted() ||
                             options_.ros2.commands;
     const RunTiming timing = timing_of(options_, assembly_.robot().engine);
-    if (!timing.virtual_time) lock_program(plant_ != nullptr);
+    if (!timing.virtual_time) lock_program();
     ctl_.start();  // clients that connect before the first tick may read, and stop the robot
     if (!assembly_.plant().open(interrupted)) return exit_interrupted;
     LastResort last_resort(timing.real_time && !timing.virtual_time ? last_resort_priority : 0, exit_failed);
