@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include "app/sim/input_files.h"
+
 namespace kadans::document {
 
 using namespace kadans::program;
@@ -51,7 +53,12 @@ std::string run_commands(const Block& block, const std::filesystem::path& projec
 
 namespace {
 
-// The last digits are those of one processor and one version of Bullet: numbers may differ by a hundredth.
+// The physics of the pages is that of the golden hashes. With another architecture or build of Bullet the last digits
+// are others: there, numbers may differ by a hundredth.
+bool has_physics_of_pages() {
+  return has(read(KADANS_SOURCE_DIR "/config/scenarios.golden.json"), "\"bullet\": \"" + bullet_build() + "\"");
+}
+
 bool is_alike(const std::string& shown, const std::string& line) {
   const char *a = shown.c_str(), *b = line.c_str();
   while (*a != 0 && *b != 0) {
@@ -79,11 +86,12 @@ bool shows_alike(const std::string& printed, const std::string& shown) {
 }  // namespace
 
 void check_shown(const Block& block, const std::string& printed) {
+  const bool exact = has_physics_of_pages();
   std::istringstream lines(block.text);
   for (std::string line; std::getline(lines, line);) {
     CAPTURE(line);
     CAPTURE(printed);
-    CHECK((has(printed, line) || shows_alike(printed, line)));
+    CHECK((has(printed, line) || (!exact && shows_alike(printed, line))));
   }
 }
 

@@ -5,7 +5,7 @@
 //                                         must accept it, unless another word stands behind the fence
 //   ```sh                                 commands of kadans, a line each; "# exits N" is the exit code wanted
 //   ```sh long                            the same, with KADANS_SOAK=1 in the environment only
-//   ```text                               lines that the commands before printed, their numbers to a hundredth
+//   ```text                               lines that the commands before printed
 #pragma once
 
 #include <filesystem>
@@ -27,7 +27,8 @@ std::vector<Block> blocks_of(const std::string& page);
 
 // Runs the commands of a block, checks their exit codes, returns what they printed.
 std::string run_commands(const Block& block, const std::filesystem::path& project);
-// Checks that each line of the block was printed, its numbers to a hundredth.
+// Checks that each line of the block was printed; with other physics than the golden hashes', its numbers to a
+// hundredth.
 void check_shown(const Block& block, const std::string& printed);
 // Writes a block that is a file where it says.
 void write_file(const Block& block, const std::filesystem::path& project);

@@ -54,7 +54,6 @@ bool has_room_to_come() noexcept {
 }  // namespace
 
 int lock_memory(std::size_t reserve_bytes) noexcept {
-  malloc_trim(0);  // what reading the files has left is not locked
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
   auto* const reserve = static_cast<volatile char*>(std::malloc(reserve_bytes));
