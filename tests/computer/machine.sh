@@ -33,6 +33,16 @@ fail() {
   [ ! -e "$console" ] || tail -n 25 "$console" | tr -d '\r' | sed 's/^/  console: /' >&2
   exit 1
 }
+# edit FILE SUBSTITUTION...: each changes something in the file.
+edit() {
+  local file=$1 one
+  shift
+  for one in "$@"; do
+    cp "$file" "$work/before"
+    sed -i -E "$one" "$file"
+    ! cmp -s "$work/before" "$file" || fail "$file has no '$one' any more: mend this trial"
+  done
+}
 machine_off() {
   [ -z "$machine" ] || { kill -9 "$machine" && wait "$machine" || true; } 2>/dev/null
   machine=""
