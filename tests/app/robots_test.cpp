@@ -196,6 +196,32 @@ TEST_CASE("Robots need a world that they can share, and one clock") {
                        InputError);
 }
 
+TEST_CASE("A robot that is carried stands on, and its odometry does not notice; so are further robots and a ball") {
+  ScenarioConfig scenario = with_left(1);
+  scenario.behaviors.clear();
+  scenario.robots[0].behaviors.clear();
+  for (ScenarioConfig* robot : {&scenario, &scenario.robots[0]})
+    robot->behaviors = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/side_by_side.json").behaviors;  // stand
+  scenario.carried = {{.at_s = 1, .heading_rad = 1.2, .to_m = {3, 4}}};
+  scenario.robots[0].carried = {{.at_s = 1.5, .heading_rad = -1, .to_m = {-2, 1}}};
+  WorldObject ball{.name = "ball", .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4}};
+  ball.pose.position_m = {8, 0, 0.1};
+  scenario.world.settings.objects = {ball};
+  scenario.world.carried = {{.object = 0, .at_s = 0.5, .to_m = {5, 5, 0.1}}};
+  Played played(scenario);
+  (void)played.run(2.5);
+  const auto is = [&](const std::string& signal) { return value(played.robot, signal); };
+  CHECK(std::abs(is("plant.base.x_m") - 3) < 0.02);
+  CHECK(std::abs(is("plant.base.y_m") - 4) < 0.02);
+  CHECK(std::abs(is("left.plant.base.x_m") + 2) < 0.02);
+  CHECK(is("plant.base.height_m") > 0.8);
+  CHECK(is("left.plant.base.height_m") > 0.8);
+  CHECK(std::abs(is("odometry.x_m")) < 0.02);
+  CHECK(std::abs(is("odometry.heading_rad")) < 0.02);
+  CHECK(is("safety.faults") == 0);
+  CHECK(std::abs(is("world.ball.x_m") - 5) < 1e-3);
+}
+
 TEST_CASE("What plant serves of a scenario is its world: all robots, what it sets and draws, its pushes") {
   ScenarioConfig scenario = with_left(1);
   scenario.set.push_back({.key = "link.torso.mass_scale", .value = 1.5});
