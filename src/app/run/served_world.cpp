@@ -22,11 +22,11 @@ ServedWorld::ServedWorld(const ScenarioConfig& scenario, std::uint64_t seed)
   const RunParts parts = assembly_->parts();
   robots_.push_back(&parts.robot);
   pushes_.emplace_back(scenario.pushes, parts.model, scenario.file);
-  carried_.emplace_back(scenario);
+  hands_.emplace_back(scenario);
   for (std::size_t i = 0; i < parts.others.size(); ++i) {
     robots_.push_back(&parts.others[i].robot);
     pushes_.emplace_back(scenario.robots[i].pushes, parts.others[i].model, scenario.file);
-    carried_.emplace_back(scenario.robots[i]);
+    hands_.emplace_back(scenario.robots[i]);
   }
 }
 
@@ -40,7 +40,7 @@ std::vector<ServedWorld::Site> ServedWorld::sites() const {
 void ServedWorld::step(std::int64_t dt_ns) {
   const double time_s = 1e-9 * static_cast<double>(time_ns_), dt_s = 1e-9 * static_cast<double>(dt_ns);
   for (std::size_t i = 0; i < pushes_.size(); ++i) {
-    carried_[i].apply(*world_, *robots_[i], time_ns_, dt_ns);
+    hands_[i].apply(*world_, *robots_[i], time_ns_, dt_ns);
     pushes_[i].apply(*robots_[i], time_s, dt_s);
   }
   world_->step(dt_ns);

@@ -39,7 +39,7 @@ class ServedWorld final : public World {
   World* world_ = nullptr;
   std::vector<WorldRobot*> robots_;
   std::vector<Pushes> pushes_;  // a robot each; none of a robot alone
-  std::vector<Carried> carried_;
+  std::vector<Hands> hands_;
   std::int64_t time_ns_ = 0;
 };
 

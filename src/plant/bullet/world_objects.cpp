@@ -174,7 +174,7 @@ void WorldObjects::put(std::size_t number, const btVector3& position_m) {
     throw std::invalid_argument("put: '" + object.settings.name + "' is not free");
   if (!bullet::finite(position_m)) throw std::invalid_argument("put: the place must be finite");
   object.multibody->clearVelocities();
-  object.multibody->setBaseWorldTransform({to_bullet(object.settings.pose).getBasis(), position_m});
+  object.multibody->setBaseWorldTransform(btTransform(to_bullet(object.settings.pose).getBasis(), position_m));
   object.parts[0].collider->setWorldTransform(object.multibody->getBaseWorldTransform());
 }
 

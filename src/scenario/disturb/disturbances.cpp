@@ -16,7 +16,7 @@ double given_share(const ScenarioPush& push, double time_s) {
 }  // namespace
 
 Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& model)
-    : pushes_(scenario.pushes, model, scenario.file), carried_(scenario) {
+    : pushes_(scenario.pushes, model, scenario.file), hands_(scenario) {
   for (const ScenarioFault& fault : scenario.faults) {
     if (fault.kind == ScenarioFault::Kind::behaviors_silent || fault.kind == ScenarioFault::Kind::clock_missed)
       faults_.push_back(fault);
@@ -38,11 +38,11 @@ void Disturbances::apply(Lockstep& lockstep, const BehaviorEngine& behaviors, Wo
     happened_[i] = true;
   }
   if (!faults_.empty()) lockstep.silence_behaviors(behaviors, silent);
-  carried_.apply(world, robot, lockstep.time_ns(), lockstep.control_period_ns());
+  hands_.apply(world, robot, lockstep.time_ns(), lockstep.control_period_ns());
   pushes_.apply(robot, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
 }
 
-void Carried::apply(World& world, WorldRobot& robot, std::int64_t time_ns, std::int64_t dt_ns) const {
+void Hands::apply(World& world, WorldRobot& robot, std::int64_t time_ns, std::int64_t dt_ns) const {
   const auto now = [&](double at_s) {
     const std::int64_t at_ns = std::llround(1e9 * at_s);
     return at_ns >= time_ns && at_ns < time_ns + dt_ns;

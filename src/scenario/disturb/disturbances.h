@@ -30,12 +30,12 @@ class Pushes {
 };
 
 // Carries a robot, and the objects of the world, where the scenario says. Those of the world are the first robot's.
-class Carried {
+class Hands {
  public:
-  explicit Carried(const ScenarioConfig& scenario) : robot_(scenario.carried), objects_(scenario.world.carried) {}
+  explicit Hands(const ScenarioConfig& scenario) : robot_(scenario.carried), objects_(scenario.world.carried) {}
 
-  // To be called before the step that begins at time_ns and lasts dt_ns. Throws std::invalid_argument for what cannot be
-  // carried.
+  // To be called before the step that begins at time_ns and lasts dt_ns. Throws std::invalid_argument for what cannot
+  // be carried.
   void apply(World& world, WorldRobot& robot, std::int64_t time_ns, std::int64_t dt_ns) const;
 
  private:
@@ -53,7 +53,7 @@ class Disturbances {
 
  private:
   Pushes pushes_;
-  Carried carried_;
+  Hands hands_;
   std::vector<ScenarioFault> faults_;  // only those of behaviors and clock
   std::vector<bool> happened_;         // for each fault: it has begun
 };
