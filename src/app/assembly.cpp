@@ -166,6 +166,7 @@ void Assembly::begin_others() {
     robot.world = scenario_.world;
     robot.world.settings.payloads.clear();  // the first robot's
     robot.world.payload_links.clear();
+    robot.world.carried.clear();
     robot.plugins = scenario_.plugins;
     const std::uint64_t seed = RandomStream(seed_, "robot " + robot.name).next();
     others_.emplace_back(new Assembly(Begun{}, robot, seed, log_, nullptr, nullptr, others_.size() + 1));

@@ -105,11 +105,11 @@ void add_behavior_process(CLI::App& app, RunOptions& options);
 int run_behavior_process(const RunOptions& options);
 
 struct PlantOptions {
-  std::string robot;
-  std::string listen;
-  std::string imu;                           // link to the IMU's terminal; "": none is served
-  std::string plant = "bullet", as = "udp";  // plant types: of the served model, of the protocol
-  std::uint64_t seed = 1;
+  std::string robot;                // or a scenario
+  std::vector<std::string> listen;  // for each robot
+  std::string imu;                  // link to the IMU's terminal; "": none is served
+  std::string plant, as = "udp";    // plant types: of the served model ("": as the file says), of the protocol
+  std::optional<std::uint64_t> seed;
   bool soft = false;                // also without the rights for real time
   bool once = false;                // ends with the first session
   std::vector<std::string> faults;  // "KIND:OF@FROM+FOR=SIZE"

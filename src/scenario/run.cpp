@@ -123,7 +123,7 @@ class Run {
 
 void RunParts::begin_step() const {
   truth.update(1e-9 * static_cast<double>(lockstep.time_ns()), control.row());
-  if (disturbances != nullptr) disturbances->apply(lockstep, behaviors, robot);
+  if (disturbances != nullptr) disturbances->apply(lockstep, behaviors, world, robot);
   if (joystick != nullptr) control.exchange().joystick.publish(joystick->at(lockstep.time_ns()));
   if (sight != nullptr) control.exchange().ball.publish(sight->at(lockstep.time_ns(), robot.truth()));
   for (const RunParts& other : others) other.begin_step();

@@ -7,6 +7,8 @@
 #include <doctest/doctest.h>
 
 #include "app/assembly.h"
+#include "app/program.h"
+#include "app/run/served_world.h"
 #include "app/services.h"
 #include "telemetry/record/viewer_messages.h"
 
@@ -192,6 +194,88 @@ TEST_CASE("Robots need a world that they can share, and one clock") {
   const ScenarioConfig two = with_left(1);
   CHECK_THROWS_WITH_AS(Assembly(two, 1, log, &link), doctest::Contains("a run on the wall clock has one robot"),
                        InputError);
+}
+
+TEST_CASE("A robot that is carried stands on, and its odometry does not notice; so are further robots and a ball") {
+  ScenarioConfig scenario = with_left(1);
+  scenario.behaviors.clear();
+  scenario.robots[0].behaviors.clear();
+  for (ScenarioConfig* robot : {&scenario, &scenario.robots[0]})
+    robot->behaviors = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/side_by_side.json").behaviors;  // stand
+  scenario.carried = {{.at_s = 1, .heading_rad = 1.2, .to_m = {3, 4}}};
+  scenario.robots[0].carried = {{.at_s = 1.5, .heading_rad = -1, .to_m = {-2, 1}}};
+  WorldObject ball{.name = "ball", .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4}};
+  ball.pose.position_m = {8, 0, 0.1};
+  scenario.world.settings.objects = {ball};
+  scenario.world.carried = {{.object = 0, .at_s = 0.5, .to_m = {5, 5, 0.1}}};
+  Played played(scenario);
+  (void)played.run(2.5);
+  const auto is = [&](const std::string& signal) { return value(played.robot, signal); };
+  CHECK(std::abs(is("plant.base.x_m") - 3) < 0.02);
+  CHECK(std::abs(is("plant.base.y_m") - 4) < 0.02);
+  CHECK(std::abs(is("left.plant.base.x_m") + 2) < 0.02);
+  CHECK(is("plant.base.height_m") > 0.8);
+  CHECK(is("left.plant.base.height_m") > 0.8);
+  CHECK(std::abs(is("odometry.x_m")) < 0.02);
+  CHECK(std::abs(is("odometry.heading_rad")) < 0.02);
+  CHECK(is("safety.faults") == 0);
+  CHECK(std::abs(is("world.ball.x_m") - 5) < 1e-3);
+}
+
+TEST_CASE("What plant serves of a scenario is its world: all robots, what it sets and draws, its pushes") {
+  ScenarioConfig scenario = with_left(1);
+  scenario.set.push_back({.key = "link.torso.mass_scale", .value = 1.5});
+  ServedWorld still(scenario, 3);
+  scenario.robots[0].pushes.push_back(
+      {.link = {"torso", {}}, .at_s = 0.002, .duration_s = 0.01, .impulse_Ns = {0, 5, 0}});
+  ServedWorld pushed(scenario, 3);
+  REQUIRE(pushed.robot_count() == 2);
+  const std::vector<ServedWorld::Site> sites = pushed.sites();
+  CHECK(sites[0].robot.name == "tulip");
+  CHECK(sites[1].name == "left");
+  for (int i = 0; i < 20; ++i) {
+    still.step(1'000'000);
+    pushed.step(1'000'000);
+  }
+  CHECK(pushed.robot(1).truth().com_m[1] - pushed.robot(0).truth().com_m[1] > 0.9);
+  CHECK(pushed.robot(0).truth().com_velocity_m_s[1] == still.robot(0).truth().com_velocity_m_s[1]);
+  CHECK(pushed.robot(1).truth().com_velocity_m_s[1] - still.robot(1).truth().com_velocity_m_s[1] > 0.1);
+
+  scenario.robots[0].pushes[0].link.name = "tail";
+  CHECK_THROWS_WITH_AS(ServedWorld(scenario, 3), doctest::Contains("tail"), InputError);
+}
+
+TEST_CASE("plant serves each robot of a scenario to a run of its own, and ends when both have gone") {
+  using namespace kadans::program;
+  const auto folder = project_copy("served_robots");
+  write(folder / "config/scenarios/two.json",
+        R"({"name": "two", "doc": "Two heads.", "robot": "config/jiwiy/robot.json", "duration_s": 1,
+            "robots": [{"name": "other", "set": {"start.y_m": 1}}], "checks": []})");
+  const std::string listen = " --listen 127.0.7.90:7300 --listen 127.0.7.90:7301";
+  Running plant(folder, "plant config/scenarios/two.json --soft --once" + listen);
+  REQUIRE(plant.says("serves 'other' on 127.0.7.90:7301"));
+  const std::string run_of =
+      "run config/jiwiy/robot.json --plant udp --soft --no-ctl --duration 0.5 --peer 127.0.7.90:";
+  Running first(folder, run_of + "7300"), other(folder, run_of + "7301");
+  CHECK(plant.says("jiwiy: driven by 127."));
+  CHECK(plant.says("other: driven by 127."));
+  CHECK(first.end() == 0);
+  CHECK(other.end() == 0);
+  CHECK(plant.says("no peer is left"));
+  CHECK(plant.end() == 0);
+  CHECK(has(plant.heard(), "jiwiy: the peer left"));
+  CHECK(has(plant.heard(), "other: the peer left"));
+
+  const auto refused = [&](const std::string& options) {
+    const Outcome outcome = run("plant config/scenarios/two.json --soft --once " + options, folder);
+    CHECK(outcome.exit_code == 2);
+    return outcome.err;
+  };
+  CHECK(has(refused("--listen :7300"), "--listen: once for each robot, in this order: jiwiy, other"));
+  CHECK(has(refused(listen + " --plant ideal"), "--plant: does not go with a scenario, which says its plant"));
+  CHECK(has(refused(listen + " --in-step"), "--in-step: is for one robot"));
+  CHECK(has(refused(listen + " --fault cable_out@1"), "--fault: is for one robot alone"));
+  CHECK(has(run("plant config/jiwiy/robot.json --soft" + listen, folder).err, "--listen: one robot is served"));
 }
 
 }  // namespace robots_test

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "kadans/model/kinematics.h"
 #include "kadans/testing/allocation_count.h"
 #include "small_robots.h"
 
@@ -147,6 +148,51 @@ TEST_CASE("A payload's inertia is in what a torque turns") {
   plant.write(effort(0.1));
   run(plant, 500);
   CHECK(plant.truth().velocity_rad_s[0] == doctest::Approx(0.1 * 0.5 / (0.02 + 0.5 * 0.09)).epsilon(1e-3));
+}
+
+TEST_CASE("A ball that is put elsewhere lies there at rest, and a fixed object cannot be put") {
+  Robot robot = box(4, {0.22, 0.1, 0.03});
+  WorldObject ball{.name = "ball", .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4, .velocity_m_s = {2, 0, 0}}};
+  ball.pose.position_m = {1, 0, 0.1};
+  WorldObject wall{.name = "wall", .shape = WorldWall{1, 1, 0.1}};
+  wall.pose.position_m = {5, 0, 0};
+  robot.settings.world.objects = {ball, wall};
+  BulletWorld plant(robot.model, robot.settings, 1);
+  run(plant, 200);
+  CHECK(plant.truth().objects[0].pose.position_m[0] > 1.3);
+  plant.put(0, {-2, 3, 0.1});
+  run(plant, 200);
+  const ObjectTruth& there = plant.truth().objects[0];
+  CHECK(std::abs(there.pose.position_m[0] + 2) < 1e-4);
+  CHECK(std::abs(there.pose.position_m[1] - 3) < 1e-4);
+  CHECK(std::abs(there.velocity_m_s[0]) < 1e-6);
+  CHECK_THROWS_WITH(plant.put(1, {0, 0, 0}), "put: 'wall' is not free");
+  CHECK_THROWS_WITH(plant.put(2, {0, 0, 0}), "put: no object number 2");
+  CHECK_THROWS_WITH(plant.put(0, {0, NAN, 0}), "put: the place must be finite");
+}
+
+TEST_CASE("A robot that is carried stands where it is put, turned, with the weight that it had") {
+  Robot robot = box(4, {0.22, 0.1, 0.03});
+  robot.settings.surfaces.push_back({"box", 0.8});
+  WorldObject step{.name = "step", .shape = WorldBox{{1, 1, 0.2}}};
+  step.pose.position_m = {3, 0, 0.1};
+  robot.settings.world.objects = {step};
+  BulletWorld plant(robot.model, robot.settings, 1);
+  run(plant, 100);
+  plant.push(0, {50, 0, 0}, {0, 0, 0});
+  run(plant, 5);
+  plant.carry(3, 0.2, 1.5);
+  run(plant, 500);
+  const PlantTruth& truth = plant.truth();
+  CHECK(std::abs(truth.base.position_m[0] - 3) < 1e-4);
+  CHECK(std::abs(truth.base.position_m[1] - 0.2) < 1e-4);
+  CHECK(std::abs(truth.base.position_m[2] - 0.215) < 1e-5);  // on the step
+  CHECK(std::abs(roll_pitch_yaw(truth.base.orientation)[2] - 1.5) < 1e-4);
+  CHECK(truth.foot_force_N[0][2] == doctest::Approx(4 * g).epsilon(1e-3));
+  CHECK_THROWS_WITH(plant.carry(0, INFINITY, 0), "carry: the place must be finite");
+  robot.settings.fixed_base = true;
+  BulletWorld bolted(robot.model, robot.settings, 1);
+  CHECK_THROWS_WITH(bolted.carry(0, 0, 0), "carry: the base is fixed");
 }
 
 TEST_CASE("A world that has settled allocates nothing more") {

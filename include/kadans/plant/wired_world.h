@@ -39,6 +39,8 @@ class WiredWorld : public OneRobotWorld {
   void read(SensorFrame& sensors) noexcept final;
   void write(const ActuationFrame& actuation) noexcept final;
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_m) final { inner().push(link, force_N, point_m); }
+  void carry(double x_m, double y_m, double heading_rad) final { inner().carry(x_m, y_m, heading_rad); }
+  void put(std::size_t object, const Vec3& position_m) final { model_->put(object, position_m); }
   void step(std::int64_t dt_ns) final;
   const PlantTruth& truth() const noexcept final { return model_->robot(0).truth(); }
   void hash(StateHash& hash) const noexcept final;  // with all that passed on the wire

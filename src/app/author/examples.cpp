@@ -104,6 +104,7 @@ constexpr Examples all_examples[] = {
      "  kadans commission config/jiwiy/servos.json pan --steps names,direction --share 0.05\n"},
     {"plant",
      "  kadans plant config/tulip/robot.json --listen :7100\n"
+     "  kadans plant config/scenarios/side_by_side.json --listen :7100 --listen :7101\n"
      "  kadans plant config/jiwiy/servos.json --as dynamixel --listen /tmp/bus\n"},
     {"dynamixel",
      "  kadans dynamixel scan /dev/ttyUSB0\n"

@@ -134,14 +134,6 @@ const Known& known(JsonKind kind) {
   return all[static_cast<std::size_t>(kind)];
 }
 
-std::optional<JsonKind> kind_in(const std::filesystem::path& file) {
-  try {
-    return kind_of(parse_based_json(read_input_file(file), file.string()).value);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
-
 }  // namespace
 
 FileChecks::FileChecks(std::string robot, bool plugins, UrdfOptions urdf)
@@ -305,6 +297,14 @@ JsonKind kind_of(const JsonValue& json) {
   if (has("scenarios")) return JsonKind::sweep;
   if (has("urdf") || has("control")) return JsonKind::robot;
   return has("robot") || has("duration_s") || has("checks") ? JsonKind::scenario : JsonKind::other;
+}
+
+std::optional<JsonKind> kind_in(const std::filesystem::path& file) {
+  try {
+    return kind_of(parse_based_json(read_input_file(file), file.string()).value);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 void require_kind(const std::filesystem::path& file, JsonKind wanted) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,7 @@ class FileChecks {
 enum class JsonKind : std::uint8_t { other, scenario, robot, sweep, tuning };
 
 JsonKind kind_of(const JsonValue& json);
+std::optional<JsonKind> kind_in(const std::filesystem::path& file);  // nullopt: it cannot be read
 // Throws InputError for a file of another kind; the message says what it is and which command takes it. A file that
 // cannot be read, or whose kind is unknown, passes: its reader refuses it.
 void require_kind(const std::filesystem::path& file, JsonKind wanted);

@@ -248,6 +248,14 @@ void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     push_fields(e, push, problems);
     if (e.reading()) scenario.pushes.push_back(std::move(push));
   });
+  f.list("carried", {0, 1000}, "a person lifts the robot as it stands, and puts it down at rest elsewhere",
+         [&](Fields& e) {
+           ScenarioCarry carry;
+           e.number("at_s", carry.at_s, {0, scenario_duration_max_s, "s"}, "time", Need::required);
+           e.numbers("to_m", carry.to_m, {-1000, 1000, "m"}, "x and y of the base, in the world", Need::required);
+           e.number("heading_rad", carry.heading_rad, {-7, 7, "rad"}, "its heading then; 0: along x");
+           if (e.reading()) scenario.carried.push_back(carry);
+         });
   f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {
     ScenarioFault fault;
     fault_fields(e, fault, problems);

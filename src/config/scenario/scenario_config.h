@@ -18,8 +18,8 @@
 
 namespace kadans {
 
-// What happens in a scenario at given times, so that the run can be repeated: orders of the supervisor, faults and
-// pushes.
+// What happens in a scenario at given times, so that the run can be repeated: orders of the supervisor, faults, pushes
+// and what a person carries.
 
 // An order of the supervisor at a given time. A reload lets a behavior continue with another file, as if somebody had
 // saved it.
@@ -85,6 +85,12 @@ struct ScenarioPush {
   Vec3 impulse_Ns{};  // world axes; the integral of the force
   Vec3 point_m{};     // in the link's frame
   Shape shape = Shape::constant;
+};
+
+// A robot is carried elsewhere: lifted as it stands, and put down at rest.
+struct ScenarioCarry {
+  double at_s = 0, heading_rad = 0;
+  std::array<double, 2> to_m{};  // of the base
 };
 
 // The fields of one push, with "impulse_Ns" or "force_N" (its peak).
@@ -172,6 +178,7 @@ struct ScenarioConfig {
   std::vector<PlayItem> behaviors;
   std::vector<ScenarioEvent> events;
   std::vector<ScenarioPush> pushes;
+  std::vector<ScenarioCarry> carried;
   std::vector<ScenarioFault> faults;
   WorldConfig world;
   ScenarioJoystick joystick;
@@ -180,8 +187,8 @@ struct ScenarioConfig {
   bool repeats = false;         // a record stands for the plant, which is not driven
   bool on_wall_clock = false;   // not in the file: time goes on while a behavior is slow
   std::vector<ScenarioCheck> checks;
-  // Further robots in the same world and time. Of each only name, robot, quantities, behaviors, events, pushes and
-  // faults are its own; plant_place is that of its name.
+  // Further robots in the same world and time. Of each only name, robot, quantities, behaviors, events, pushes,
+  // faults and where it is carried are its own; plant_place is that of its name.
   std::vector<ScenarioConfig> robots;
   PluginGate plugins;  // not in the file
 };

@@ -30,6 +30,7 @@ struct Entry {
   double release_s = 0, from_s = 0, until_s = std::numeric_limits<double>::infinity();
   std::uint32_t count = 1;
   MotionSettings motion;
+  std::vector<ObjectCarry> carried;
 };
 
 // Lists the fields of one entry: those of its kind, or all when there is no file, or no kind that we know.
@@ -99,6 +100,8 @@ class EntryReader {
     }
     if (of({box, ball}))
       f_.numbers("velocity_m_s", entry_.velocity_m_s, velocity_m_s, "velocity at the start, for a free object");
+    if (of({box, ball}))
+      f_.list("carried", {0, 1000}, "a person puts a free object elsewhere, at rest", [&](Fields& e) { carry(e); });
     if (of({pendulum})) {
       f_.number("distance_m", entry_.distance_m, {0, 1000, "m"}, "horizontal distance to which the bob is drawn back",
                 needed());
@@ -118,6 +121,13 @@ class EntryReader {
     if (of({box, ramp, stairs, wall, ground})) {
       f_.object("motion", "prescribed motion, which no load changes", [&](Fields& e) { motion(e); });
     }
+  }
+
+  void carry(Fields& f) {
+    ObjectCarry carry;
+    f.number("at_s", carry.at_s, time_s, "time", Need::required);
+    f.numbers("to_m", carry.to_m, anywhere_m, "its centre then", Need::required);
+    if (f.reading()) entry_.carried.push_back(carry);
   }
 
   void motion(Fields& f) {
@@ -164,8 +174,9 @@ void verify(const Fields& f, const Entry& entry, Problems& problems) {
   if (f.has("mass_kg") && f.has("motion")) {
     problems.add(f.place("motion"), f.path("motion") + ": a box with a mass moves freely and cannot be driven");
   }
-  if (!f.has("mass_kg") && f.has("velocity_m_s")) {
-    problems.add(f.place("velocity_m_s"), f.path("velocity_m_s") + " means nothing: a box without mass_kg is fixed");
+  for (const std::string key : {"velocity_m_s", "carried"}) {
+    if (!f.has("mass_kg") && f.has(key))
+      problems.add(f.place(key), f.path(key) + " means nothing: a box without mass_kg is fixed");
   }
 }
 
@@ -198,6 +209,10 @@ void add(const Fields& f, const Entry& entry, WorldConfig& world) {
   } else {
     const auto& [roll_rad, pitch_rad, yaw_rad] = entry.angles_rad;
     const Pose pose{entry.position_m, from_roll_pitch_yaw(roll_rad, pitch_rad, yaw_rad)};
+    for (ObjectCarry carry : entry.carried) {
+      carry.object = settings.objects.size();
+      world.carried.push_back(carry);
+    }
     settings.objects.push_back({entry.name, shape_of(entry), pose, entry.friction, entry.motion});
   }
 }

@@ -12,8 +12,16 @@
 
 namespace kadans {
 
+// A free object is put elsewhere, at rest.
+struct ObjectCarry {
+  std::size_t object = 0;
+  double at_s = 0;
+  Vec3 to_m{};  // its centre
+};
+
 struct WorldConfig {
   WorldSettings settings;
+  std::vector<ObjectCarry> carried;
   TextPlace place;                       // of the list, in a file that has one
   std::vector<TextPlace> payload_links;  // places in the file at which the payloads' links are named
 };

@@ -203,6 +203,20 @@ void Body::place(const PlantSettings& settings) {
   set_base(btTransform(base.getBasis(), base.getOrigin() - btVector3(0, 0, over_m)));
 }
 
+void Body::carry(const WorldSettings& world, double x_m, double y_m, double heading_rad) {
+  const btTransform base = link_frame(0);
+  const double now_rad = std::atan2(base.getBasis()[1][0], base.getBasis()[0][0]);
+  const btMatrix3x3 turned = btMatrix3x3(btQuaternion({0, 0, 1}, heading_rad - now_rad)) * base.getBasis();
+  multibody_->clearVelocities();
+  set_base(btTransform(turned, {x_m, y_m, base.getOrigin().z()}));
+  const double over_m = over_surface_m(world);
+  if (over_m != std::numeric_limits<double>::infinity())
+    set_base(btTransform(turned, {x_m, y_m, base.getOrigin().z() - over_m}));
+  for (auto& collider : colliders_)
+    collider->setWorldTransform(collider->m_link < 0 ? multibody_->getBaseWorldTransform()
+                                                     : multibody_->getLink(collider->m_link).m_cachedWorldTransform);
+}
+
 void Body::set_base(const btTransform& base) {
   multibody_->setBaseWorldTransform(base * frames_[0].com_in_link);
   multibody_->forwardKinematics(scratch_rotations_, scratch_origins_);

@@ -31,6 +31,9 @@ class Body {
   // it.
   void place(const PlantSettings& settings);
 
+  // Puts the base over this place with this heading, tilt and joints as they are, at rest on what is under it.
+  void carry(const WorldSettings& world, double x_m, double y_m, double heading_rad);
+
   btMultiBody& multibody() { return *multibody_; }
   const btMultiBody& multibody() const { return *multibody_; }
   std::size_t link_count() const { return frames_.size(); }

@@ -82,6 +82,12 @@ void BulletRobot::push(std::size_t link, const Vec3& force_N, const Vec3& point_
   body_.push(link, to_bullet(force_N), to_bullet(point_in_link_m));
 }
 
+void BulletRobot::carry(double x_m, double y_m, double heading_rad) {
+  if (settings_.fixed_base) throw std::invalid_argument("carry: the base is fixed");
+  if (!std::isfinite(x_m + y_m + heading_rad)) throw std::invalid_argument("carry: the place must be finite");
+  body_.carry(settings_.world, x_m, y_m, heading_rad);
+}
+
 void BulletRobot::begin_step(std::int64_t dt_ns) {
   electronics_.step(dt_ns);
   drives_.begin_step(electronics_, static_cast<double>(dt_ns) * 1e-9);

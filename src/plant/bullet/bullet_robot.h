@@ -23,6 +23,7 @@ class BulletRobot final : public WorldRobot {
   void write_drives(const ActuationFrame& drives) noexcept override;
   const PlantTruth& truth() const noexcept override { return truth_.truth(); }
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override;
+  void carry(double x_m, double y_m, double heading_rad) override;
 
   // A step: begin, then that of the contact world, end, and sample once the objects have moved, too.
   void begin_step(std::int64_t dt_ns);

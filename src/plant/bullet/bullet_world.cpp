@@ -73,6 +73,8 @@ class BulletWorld::Inside {
     for (const auto& robot : robots_) robot->hash_sensors(hash);
   }
 
+  void put(std::size_t object, const Vec3& position_m) { objects_.put(object, to_bullet(position_m)); }
+
   std::size_t size() const noexcept { return robots_.size(); }
   BulletRobot& robot(std::size_t number) const noexcept { return *robots_[number]; }
 
@@ -128,6 +130,8 @@ WorldRobot& BulletWorld::robot(std::size_t number) noexcept { return inside_->ro
 
 void BulletWorld::step(std::int64_t dt_ns) { inside_->step(dt_ns); }
 
+void BulletWorld::put(std::size_t object, const Vec3& position_m) { inside_->put(object, position_m); }
+
 void BulletWorld::hash(StateHash& hash) const noexcept { inside_->hash(hash); }
 
 void BulletWorld::read(SensorFrame& sensors) noexcept { inside_->robot(0).read(sensors); }
@@ -141,5 +145,7 @@ const PlantTruth& BulletWorld::truth() const noexcept { return inside_->robot(0)
 void BulletWorld::push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) {
   inside_->robot(0).push(link, force_N, point_in_link_m);
 }
+
+void BulletWorld::carry(double x_m, double y_m, double heading_rad) { inside_->robot(0).carry(x_m, y_m, heading_rad); }
 
 }  // namespace kadans

@@ -1,6 +1,8 @@
 #include "world_objects.h"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "convert.h"
 #include "plant/bullet/contact/object_contact.h"
@@ -163,6 +165,17 @@ void WorldObjects::end_step(const ContactWorld& world, double time_s) {
     }
     if (object.multibody != nullptr && time_s <= object.release_s) hold(object);
   }
+}
+
+void WorldObjects::put(std::size_t number, const btVector3& position_m) {
+  if (number >= objects_.size()) throw std::invalid_argument("put: no object number " + std::to_string(number));
+  Object& object = objects_[number];
+  if (object.multibody == nullptr || object.multibody->getNumLinks() > 0)
+    throw std::invalid_argument("put: '" + object.settings.name + "' is not free");
+  if (!bullet::finite(position_m)) throw std::invalid_argument("put: the place must be finite");
+  object.multibody->clearVelocities();
+  object.multibody->setBaseWorldTransform(btTransform(to_bullet(object.settings.pose).getBasis(), position_m));
+  object.parts[0].collider->setWorldTransform(object.multibody->getBaseWorldTransform());
 }
 
 bool WorldObjects::finite(std::size_t object) const {

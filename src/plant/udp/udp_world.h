@@ -26,6 +26,8 @@ class UdpWorld final : public OneRobotWorld {
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_m) override {
     model_->robot(0).push(link, force_N, point_m);
   }
+  void carry(double x_m, double y_m, double heading_rad) override { model_->robot(0).carry(x_m, y_m, heading_rad); }
+  void put(std::size_t object, const Vec3& position_m) override { model_->put(object, position_m); }
   void step(std::int64_t) override { (void)server_.beat(*model_, 1); }
   const PlantTruth& truth() const noexcept override { return model_->robot(0).truth(); }
   void hash(StateHash& hash) const noexcept override { model_->hash(hash); }

@@ -16,7 +16,7 @@ double given_share(const ScenarioPush& push, double time_s) {
 }  // namespace
 
 Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& model)
-    : pushes_(scenario.pushes, model, scenario.file) {
+    : pushes_(scenario.pushes, model, scenario.file), hands_(scenario) {
   for (const ScenarioFault& fault : scenario.faults) {
     if (fault.kind == ScenarioFault::Kind::behaviors_silent || fault.kind == ScenarioFault::Kind::clock_missed)
       faults_.push_back(fault);
@@ -24,7 +24,7 @@ Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& mod
   happened_.resize(faults_.size());
 }
 
-void Disturbances::apply(Lockstep& lockstep, const BehaviorEngine& behaviors, WorldRobot& robot) {
+void Disturbances::apply(Lockstep& lockstep, const BehaviorEngine& behaviors, World& world, WorldRobot& robot) {
   const double time_s = 1e-9 * static_cast<double>(lockstep.time_ns());
   bool silent = false;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
@@ -38,7 +38,21 @@ void Disturbances::apply(Lockstep& lockstep, const BehaviorEngine& behaviors, Wo
     happened_[i] = true;
   }
   if (!faults_.empty()) lockstep.silence_behaviors(behaviors, silent);
+  hands_.apply(world, robot, lockstep.time_ns(), lockstep.control_period_ns());
   pushes_.apply(robot, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
+}
+
+void Hands::apply(World& world, WorldRobot& robot, std::int64_t time_ns, std::int64_t dt_ns) const {
+  const auto now = [&](double at_s) {
+    const std::int64_t at_ns = std::llround(1e9 * at_s);
+    return at_ns >= time_ns && at_ns < time_ns + dt_ns;
+  };
+  for (const ScenarioCarry& carry : robot_) {
+    if (now(carry.at_s)) robot.carry(carry.to_m[0], carry.to_m[1], carry.heading_rad);
+  }
+  for (const ObjectCarry& carry : objects_) {
+    if (now(carry.at_s)) world.put(carry.object, carry.to_m);
+  }
 }
 
 Pushes::Pushes(const std::vector<ScenarioPush>& pushes, const RobotModel& model, const std::string& file) {

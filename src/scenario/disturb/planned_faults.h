@@ -98,6 +98,8 @@ class FaultyPlant final : public OneRobotWorld {
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
     robot_.push(link, force_N, point_in_link_m);
   }
+  void carry(double x_m, double y_m, double heading_rad) override { robot_.carry(x_m, y_m, heading_rad); }
+  void put(std::size_t object, const Vec3& position_m) override { world_.put(object, position_m); }
   void hash(StateHash& hash) const noexcept override;
   // Of this robot alone: what its faults hold back, and the actuation that is under way to its late drives. Needed for
   // a further robot, whose faults are not in the hash of the first one's world.

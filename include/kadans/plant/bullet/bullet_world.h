@@ -39,6 +39,7 @@ class BulletWorld final : public World, public WorldRobot {
   std::size_t robot_count() const noexcept override;
   WorldRobot& robot(std::size_t number) noexcept override;
   void step(std::int64_t dt_ns) override;
+  void put(std::size_t object, const Vec3& position_m) override;
   void hash(StateHash& hash) const noexcept override;
 
   void read(SensorFrame& sensors) noexcept override;
@@ -46,6 +47,7 @@ class BulletWorld final : public World, public WorldRobot {
   void write_drives(const ActuationFrame& drives) noexcept override;
   const PlantTruth& truth() const noexcept override;
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override;
+  void carry(double x_m, double y_m, double heading_rad) override;
 
  private:
   class Inside;

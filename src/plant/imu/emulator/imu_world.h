@@ -30,6 +30,8 @@ class ImuWorld : public OneRobotWorld {
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_m) override {
     robot_->robot(0).push(link, force_N, point_m);
   }
+  void carry(double x_m, double y_m, double heading_rad) override { robot_->robot(0).carry(x_m, y_m, heading_rad); }
+  void put(std::size_t object, const Vec3& position_m) override { robot_->put(object, position_m); }
   void step(std::int64_t dt_ns) override;
   const PlantTruth& truth() const noexcept override { return robot_->robot(0).truth(); }
   void hash(StateHash& hash) const noexcept override;

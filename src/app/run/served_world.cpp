@@ -1,0 +1,50 @@
+#include "served_world.h"
+
+#include <stdexcept>
+
+#include "kadans/plant/plant_type.h"
+
+namespace kadans {
+
+ServedWorld::ServedWorld(const Robot& robot, const std::string& type, std::uint64_t seed) : alone_(&robot.config) {
+  const PlantType& served = plant_type_named(robot.config, "--plant", {type, {}}, &PlantType::is_model);
+  try {
+    model_ = served.make_world({robot.config.model, robot.config.plant, seed});
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.file = robot.config.file, .message = error.what()});
+  }
+  world_ = model_.get();
+  robots_.push_back(&world_->robot(0));
+}
+
+ServedWorld::ServedWorld(const ScenarioConfig& scenario, std::uint64_t seed)
+    : assembly_(std::make_unique<Assembly>(scenario, seed, log_)), world_(assembly_->world()) {
+  const RunParts parts = assembly_->parts();
+  robots_.push_back(&parts.robot);
+  pushes_.emplace_back(scenario.pushes, parts.model, scenario.file);
+  hands_.emplace_back(scenario);
+  for (std::size_t i = 0; i < parts.others.size(); ++i) {
+    robots_.push_back(&parts.others[i].robot);
+    pushes_.emplace_back(scenario.robots[i].pushes, parts.others[i].model, scenario.file);
+    hands_.emplace_back(scenario.robots[i]);
+  }
+}
+
+std::vector<ServedWorld::Site> ServedWorld::sites() const {
+  if (alone_ != nullptr) return {{"", *alone_}};
+  std::vector<Site> sites{{"", assembly_->robot()}};
+  for (const auto& other : assembly_->others()) sites.push_back({other->scenario().name, other->robot()});
+  return sites;
+}
+
+void ServedWorld::step(std::int64_t dt_ns) {
+  const double time_s = 1e-9 * static_cast<double>(time_ns_), dt_s = 1e-9 * static_cast<double>(dt_ns);
+  for (std::size_t i = 0; i < pushes_.size(); ++i) {
+    hands_[i].apply(*world_, *robots_[i], time_ns_, dt_ns);
+    pushes_[i].apply(*robots_[i], time_s, dt_s);
+  }
+  world_->step(dt_ns);
+  time_ns_ += dt_ns;
+}
+
+}  // namespace kadans
