@@ -187,6 +187,8 @@ struct ReplayOptions {
   bool allow_plugins = false;
   bool json = false;
   std::vector<std::string> with;  // files that take the place of the record's
+  std::string then_simulate;      // a scenario in which a run on threads goes on; "": none
+  double at_s = 0;                // when
 };
 
 void add_replay(CLI::App& app, ReplayOptions& options);
@@ -378,7 +380,8 @@ struct LogOptions {
   std::string out;
   double tolerance = 0;
   bool json = false;
-  bool force = false;  // replaces an existing output file
+  bool force = false;   // replaces an existing output file
+  bool inputs = false;  // a cut can be repeated
 };
 void add_log(CLI::App& app, LogOptions& options);
 int run_log(const CLI::App& app, const LogOptions& options);

@@ -7,6 +7,7 @@
 
 #include "app/assembly.h"
 #include "app/commands.h"
+#include "app/option_checks.h"
 #include "app/run/behavior_process.h"
 #include "app/run/observers.h"
 #include "app/terminal.h"
@@ -28,31 +29,6 @@ constexpr std::size_t shown_differences = 12;
 std::optional<std::uint64_t> number_in(const TextMap& facts, const char* name) {
   const auto found = facts.find(name);
   return found == facts.end() ? std::nullopt : number_of<std::uint64_t>(found->second);
-}
-
-// Reads the inputs at the front of the record. Throws InputError when the record cannot be run again.
-RunInputs read_front(const std::string& record) {
-  const auto refuse = [&](const std::string& why) { throw InputError({.file = record, .message = why}); };
-  McapReader reader(record);
-  McapMessage message;
-  const bool holds_messages = reader.next(message);
-  RunInputs inputs = read_inputs(reader, record);
-  if (inputs.run.empty()) {
-    refuse(holds_messages || reader.complete() ? "was not recorded by kadans"
-                                               : "ends before it begins: " + reader.problem());
-  }
-  const std::string clock = inputs.fact("clock");
-  if (!clock.empty() && clock != "virtual" && clock != clock_of_threads)
-    refuse("was made by another version of kadans: it says that its clock is " + in_quotes(clock));
-  const bool of_robot = clock == clock_of_threads || (clock.empty() && inputs.run.contains("robot"));
-  if (of_robot && !reader.metadata().contains(inputs_metadata))
-    refuse(
-        "holds no inputs of its ticks, so what went into the run cannot be had again: it is a flight record, was begun "
-        "while its run went on, or was made with record.inputs false or by an older kadans");
-  if (inputs.empty())
-    refuse("does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
-           " or ends too early");
-  return inputs;
 }
 
 ScenarioConfig repeated_scenario(const std::string& record, const RunInputs& inputs, const RunChoices& choices) {
@@ -241,6 +217,16 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
       ->add_option("--with", options.with,
                    "Of a run on threads: files of this project that take the place of the record's")
       ->type_name("FILE");
+  CLI::Option* then =
+      replay
+          ->add_option("--then-simulate", options.then_simulate,
+                       "Of a run on threads: from --at on, its engines go on in this scenario's world, with its checks")
+          ->type_name("SCENARIO");
+  CLI::Option* at = replay->add_option("--at", options.at_s, "Second of the record from which that is simulated")
+                        ->type_name("S")
+                        ->check(number_within(0.001, scenario_duration_max_s))
+                        ->needs(then);
+  then->needs(at);
   replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
@@ -267,17 +253,11 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
 
 // A run on threads: its files come out of the record.
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
-  const UnpackedInputs unpacked(inputs, options.record, options.allow_plugins);
-  for (const std::string& file : options.with) unpacked.put_in_place(file);
-  RunOptions run = options_of(inputs, options.record);
-  run.robot = unpacked.scenario().string();
-  ScenarioConfig scenario = live_scenario(run);
-  scenario.plugins = unpacked.plugins();
-  scenario.repeats = true;
-  RepeatedRun repeated(options.record, scenario, unpacked, inputs.fact("root"),
-                       !options.with.empty()        ? RepeatedRun::Behaviors::leading
-                       : run.behaviors == "process" ? RepeatedRun::Behaviors::none
-                                                    : RepeatedRun::Behaviors::compared);
+  const UnpackedRun run(inputs, options.record, options.allow_plugins, options.with);
+  RepeatedRun repeated(options.record, run.scenario, run.files, inputs.fact("root"),
+                       !options.with.empty()                ? RepeatedRun::Behaviors::leading
+                       : run.options.behaviors == "process" ? RepeatedRun::Behaviors::none
+                                                            : RepeatedRun::Behaviors::compared);
   catch_interrupts();
   repeated.go(interrupted);
   if (interrupted()) return exit_interrupted;
@@ -296,6 +276,7 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
 
 int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
+  if (!options.then_simulate.empty()) return run_then_simulation(options);
   if (inputs.fact("clock") == clock_of_threads) return repeat_run(options, inputs);
   if (!options.with.empty())
     throw InputError(

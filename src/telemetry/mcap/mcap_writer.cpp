@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <system_error>
 
 #include <fcntl.h>
@@ -90,15 +91,20 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
   put_definitions(channel);
 
   Channel& to = channels_[channel - 1U];
-  to.index.emplace_back(log_time_ns, records_.size());
-  {
-    const McapRecord record(records_, McapOpcode::message);
-    records_.put(channel);
-    records_.put(sequence);
-    records_.put(log_time_ns);
-    records_.put(log_time_ns);  // published when logged
-    records_.put(payload);
-  }
+  to.index.push_back({log_time_ns, records_.size()});
+  // At once: there are thousands a second.
+  std::byte* at = records_.grow(message_head + payload.size()).data();
+  const auto put = [&at](const auto& value) {
+    std::memcpy(at, &value, sizeof value);
+    at += sizeof value;
+  };
+  put(McapOpcode::message);
+  put(static_cast<std::uint64_t>(message_head - mcap_record_head + payload.size()));
+  put(channel);
+  put(sequence);
+  put(log_time_ns);
+  put(log_time_ns);  // published when logged
+  std::ranges::copy(payload, at);
   start_ns_ = messages_ == 0 ? log_time_ns : std::min(start_ns_, log_time_ns);
   end_ns_ = std::max(end_ns_, log_time_ns);
   ++to.messages;
@@ -156,11 +162,9 @@ void McapWriter::put_message_indexes(Chunk& chunk) {
     chunk.indexes.emplace_back(channel, chunk.offset + block_.size());
     const McapRecord record(block_, McapOpcode::message_index);
     block_.put(channel);
-    block_.put(static_cast<std::uint32_t>(channels_[i].index.size() * 2 * sizeof(std::uint64_t)));
-    for (const auto& [time_ns, offset] : channels_[i].index) {
-      block_.put(time_ns);
-      block_.put(offset);
-    }
+    const std::span<const std::byte> index = std::as_bytes(std::span(channels_[i].index));
+    block_.put(static_cast<std::uint32_t>(index.size()));
+    block_.put(index);
     channels_[i].index.clear();
   }
   chunk.index_length = block_.size() - chunk.length;
