@@ -146,6 +146,7 @@ class ThenSimulation final : public JudgedRun {
       throw InputError(
           {.file = options.record, .message = "its behaviors played in a process of their own, so they cannot go on"});
     if (!scenario.robots.empty()) refuse("has further robots: a record goes on alone");
+    if (!scenario.bus.type.name.empty()) refuse("has a bus: a record goes on in its world itself");
     if (!(scenario.events.empty() && scenario.pushes.empty() && scenario.faults.empty()))
       refuse("has events, pushes or faults: a record goes on in its world, with its quantities and checks alone");
     if (read_robot(scenario.robot, scenario.plugins).config.model.joint_names() !=

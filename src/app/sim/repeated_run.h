@@ -68,7 +68,7 @@ class RepeatedRun final : private BehaviorInputs {
   RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const UnpackedInputs& unpacked,
               std::string recorded_root, Behaviors behaviors);
 
-  // `stop` is asked between ticks. Each tick is shown to `observers`.
+  // `stop` is asked between ticks. Each tick is shown to `observers`; with some, a signal that differs ends nothing.
   void go(const std::function<bool()>& stop, const std::vector<RunObserver*>& observers = {});
   // After go(): the engines go on, with a model of the robot in place of the record. `model` was made for a scenario of
   // this robot; only its world is used. The observers see its signals, as these engines compute them, and its time,
