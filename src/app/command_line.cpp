@@ -36,10 +36,12 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_sim(app, sim);
   add_test(app, test);
   add_replay(app, replay);
+  add_debug(app, debug);
   add_check(app, check);
   add_sweep(app, sweep);
   add_merge(app, merge);
   add_margin(app, margin);
+  add_shrink(app, shrink);
   add_tune(app, tune);
   add_behavior(app, behavior);
   add_repl(app, repl);

@@ -22,10 +22,12 @@ struct CommandLine {
   SimOptions sim;
   TestOptions test;
   ReplayOptions replay;
+  DebugOptions debug;
   CheckOptions check;
   SweepOptions sweep;
   MergeOptions merge;
   MarginOptions margin;
+  ShrinkOptions shrink;
   TuneOptions tune;
   BehaviorOptions behavior;
   ReplOptions repl;

@@ -25,11 +25,7 @@ namespace kadans {
 struct CommandLine;
 
 struct SimOptions : RunChoices {
-  bool json = false;
-  bool verbose = false;
-  bool no_record = false;
-  bool realtime = false;
-  bool watch = false;
+  bool json = false, verbose = false, no_record = false, realtime = false, watch = false;
   std::string metrics;  // plan whose metrics are reported; "": none
   std::string record;   // "": NAME.mcap in the working directory
   RecordOptions recording;
@@ -54,10 +50,7 @@ struct TestOptions {
   unsigned jobs = 0;                   // 0: one for each core
   std::optional<std::uint32_t> repeat;
   std::optional<std::uint64_t> seed;
-  bool fail_fast = false;
-  bool rerun_failed = false;
-  bool list = false;
-  bool json = false;
+  bool fail_fast = false, rerun_failed = false, list = false, json = false;
   bool golden = false;        // state hashes must equal those of the golden file
   bool renew_golden = false;  // write them to the golden file instead
   std::string junit;
@@ -183,17 +176,26 @@ int run_reference(const CommandLine& line, const ReferenceOptions& options);
 // inputs changed. With the record's own files, only a change of the program or of its libraries can make a difference.
 struct ReplayOptions {
   std::string record;
-  bool from_record = false;  // use its files instead of those on the disk
-  bool allow_plugins = false;
-  bool json = false;
-  std::vector<std::string> with;  // files that take the place of the record's
-  std::string then_simulate;      // a scenario in which a run on threads goes on; "": none
-  double at_s = 0;                // when
+  bool from_record = false, allow_plugins = false, json = false;  // the first: its files, not those on the disk
+  std::vector<std::string> with;                                  // files that take the place of the record's
+  std::string then_simulate;  // a scenario in which a run on threads goes on; "": none
+  double at_s = 0;            // when
 };
 
 void add_replay(CLI::App& app, ReplayOptions& options);
 // Returns 0 when everything is the same, else 1. Throws InputError when the record cannot be run again.
 int run_replay(const ReplayOptions& options);
+
+// `kadans debug`: serves the Debug Adapter Protocol for a simulation or the repetition of a record (docs/debugging.md).
+struct DebugOptions {
+  std::string file;         // scenario or record; "": the client names it
+  std::optional<int> port;  // of this machine, for one client; nullopt: stdin and stdout
+  double memory_MB = 1024;  // of all processes of the run
+  bool from_record = false, allow_plugins = false;
+};
+
+void add_debug(CLI::App& app, DebugOptions& options);
+int run_debug(const DebugOptions& options);
 
 // `kadans sweep` runs the cases of a plan, each in a process of its own. `kadans merge` makes one table of the results
 // of several sweeps of the same plan.
@@ -232,6 +234,19 @@ struct MarginOptions {
 };
 void add_margin(CLI::App& app, MarginOptions& options);
 int run_margin(const MarginOptions& options);
+
+// `kadans shrink`: the least with which a scenario, or a case of a sweep, still fails in the same way.
+struct ShrinkOptions : RunChoices {     // `scenario` may also be the results of a sweep, or one of them
+  std::string check;                    // that shall fail; "": the first that does
+  std::optional<std::uint32_t> number;  // of the sweep's case
+  std::uint32_t runs_max = 2000;
+  unsigned jobs = 0;  // 0: one for each core
+  std::string out;    // "": NAME_shrunk.json
+  bool overwrite = false;
+  bool json = false;
+};
+void add_shrink(CLI::App& app, ShrinkOptions& options);
+int run_shrink(const ShrinkOptions& options);
 
 // Checks a plan beyond its fields: patterns, ranges, signals. Throws InputError with all mistakes. Returns a
 // description of the plan.
@@ -277,7 +292,6 @@ struct BehaviorOptions {
 };
 
 void add_behavior(CLI::App& app, BehaviorOptions& options);
-// After parsing. Returns the program's exit code.
 int run_behavior(const CLI::App& app, const BehaviorOptions& options);
 int run_behavior_test(const BehaviorOptions& options);
 
@@ -319,7 +333,6 @@ struct CtlOptions {
   std::optional<long> count;                                                        // of samples; nullopt: until Ctrl-C
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
 };
-
 void add_ctl(CLI::App& app, CtlOptions& options);
 // After parsing. Returns the program's exit code.
 int run_ctl(const CLI::App& app, const CtlOptions& options);
@@ -348,7 +361,6 @@ struct CompletionOptions {
 };
 void add_completion(CLI::App& app, CompletionOptions& options);
 std::string completion_script(const CLI::App& app, const std::string& shell);
-// Prints the completion script.
 int run_completion(const CLI::App& app, const CompletionOptions& options);
 
 // `kadans view` shows a record in the web page; `kadans render` makes pictures of it.
@@ -380,8 +392,7 @@ struct LogOptions {
   std::string out;
   double tolerance = 0;
   bool json = false;
-  bool force = false;   // replaces an existing output file
-  bool inputs = false;  // a cut can be repeated
+  bool force = false, inputs = false;  // replaces an existing output file; a cut can be repeated
 };
 void add_log(CLI::App& app, LogOptions& options);
 int run_log(const CLI::App& app, const LogOptions& options);

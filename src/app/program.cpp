@@ -181,9 +181,11 @@ int run(int argc, char** argv) {
   if (app.got_subcommand("log")) return run_log(app, line.log);
   if (app.got_subcommand("doctor")) return run_doctor(line.doctor);
   if (app.got_subcommand("replay")) return run_replay(line.replay);
+  if (app.got_subcommand("debug")) return run_debug(line.debug);
   if (app.got_subcommand("sweep")) return run_sweep(line.sweep);
   if (app.got_subcommand("merge")) return run_merge(line.merge);
   if (app.got_subcommand("margin")) return run_margin(line.margin);
+  if (app.got_subcommand("shrink")) return run_shrink(line.shrink);
   if (app.got_subcommand("tune")) return start_tune_program(argv);
   if (app.got_subcommand("new")) return run_new(app, line.made);
   if (app.got_subcommand("reference")) return run_reference(line, line.reference);

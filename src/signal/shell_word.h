@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace kadans {
 
@@ -18,6 +19,22 @@ inline std::string shell_word(const std::string& word) {
                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                          "_-+./,:=@%") == std::string::npos;
   return plain && !word.empty() ? word : shell_quoted(word);
+}
+
+// The words of a line that shell_word() has quoted.
+inline std::vector<std::string> shell_words(const std::string& line) {
+  std::vector<std::string> words(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '\'') {
+      quoted = !quoted;
+    } else if (line[i] == ' ' && !quoted) {
+      words.emplace_back();
+    } else {
+      words.back() += line[i] == '\\' && !quoted && i + 1 < line.size() ? line[++i] : line[i];
+    }
+  }
+  return words;
 }
 
 }  // namespace kadans

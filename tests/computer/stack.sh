@@ -13,6 +13,12 @@ turn_s=$(awk -v m="$minutes" -v t=$turns 'BEGIN {printf "%d", m * 60 / t}')
 
 root=$work/root
 unsquashfs -q -n -d "$root" "$images/root.squashfs" >/dev/null
+# This machine's own stalls (20 ms were seen where it is a guest) are counted as missed ticks, in both kinds of turn, but do
+# not take the torque from the robot.
+robot_json=$root/usr/share/kadans/config/tulip/robot.json
+cp "$robot_json" "$work/robot.json"
+sed -i -E 's/("overruns_in_a_row_max": )[0-9]+/\110000/; s/("heartbeat_timeout_s": )[0-9.]+/\15/' "$robot_json"
+[ "$(diff "$work/robot.json" "$robot_json" | grep -c '^>')" = 2 ] || fail "$robot_json has changed: mend this trial"
 # A group of processes with a bound of memory, of whichever version of cgroups is here.
 group=/sys/fs/cgroup/memory/kadans_stack bound=memory.limit_in_bytes peak=memory.max_usage_in_bytes
 [ -d /sys/fs/cgroup/memory ] || group=/sys/fs/cgroup/kadans_stack bound=memory.max peak=memory.peak

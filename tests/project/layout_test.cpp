@@ -90,6 +90,30 @@ TEST_CASE("a plug-in includes what is installed, what lies beside it and what is
   CHECK(read(rules).find("src/") == std::string::npos);
 }
 
+TEST_CASE("football includes what is installed and its own headers alone, and nothing includes football") {
+  std::size_t checked = 0;
+  for (const fs::path& file : files_below(root / "src/football")) {
+    if (!is_code(file)) continue;
+    for (const std::string& finding : check_public(fs::relative(file, root).generic_string(), read(file))) {
+      const auto begin = finding.find("includes ") + 9;
+      if (!fs::exists(file.parent_path() / finding.substr(begin, finding.find(',') - begin))) FAIL_CHECK(finding);
+    }
+    ++checked;
+  }
+  CHECK(checked > 5);
+  for (const char* folder : {"src", "include", "plugins", "tests"}) {
+    for (const fs::path& file : files_below(root / folder)) {
+      const std::string path = fs::relative(file, root).generic_string();
+      const bool own =
+          path.starts_with("src/football/") || path.starts_with("tests/football/") || path == "tests/fuzz/football.cpp";
+      if (!own && is_code(file) &&
+          read(file).find("#include \"football"
+                          "/") != std::string::npos)
+        FAIL_CHECK(path);
+    }
+  }
+}
+
 TEST_CASE("no folder has more than 25 files") {
   std::map<fs::path, std::size_t> count;
   for (const char* folder : {"src", "include", "plugins"}) {

@@ -146,3 +146,28 @@ TEST_CASE("A condition cannot loop or reach for anything but signals and mathema
     CHECK_THROWS_AS(judged({.name = "n", .kind = CheckKind::always, .that = text}, {0}), InputError);
   }
 }
+
+TEST_CASE(
+    "A check is lost from the tick on in which nothing can save it; at_end and eventually are not before the end") {
+  const double unused = 0;
+  SignalTable signals;
+  signals.add({"x", "", ""}, &unused);
+  const std::vector<double> values{0, 1, 0, 0, 2, 0};  // one a second
+  const auto lost_at_s = [&](const ScenarioCheck& check) {
+    Checks checks(signals, {check});
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      checks.update(static_cast<double>(i), std::vector<double>{values[i]});
+      if (checks.lost(0)) return static_cast<int>(i);
+    }
+    return -1;
+  };
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::always, .signal = "x", .max = 1}) == 4);
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::always, .signal = "x", .max = 1, .until_s = 3}) == -1);
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::never, .signal = "x", .min = 1}) == 1);
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::within, .that = "x > 1", .when = "x == 1", .within_s = 2}) == 4);
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::within, .that = "x > 1", .when = "x == 1", .within_s = 1}) == 3);
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::settles, .that = "x < 2", .within_s = 3}) == 4);
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::settles, .that = "x < 2", .within_s = 4}) == -1);
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::eventually, .signal = "x", .min = 9}) == -1);
+  CHECK(lost_at_s({.name = "n", .kind = CheckKind::at_end, .signal = "x", .min = 9}) == -1);
+}

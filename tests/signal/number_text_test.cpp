@@ -1,5 +1,8 @@
 #include "signal/number_text.h"
 
+#include <string>
+#include <vector>
+
 #include <doctest/doctest.h>
 
 #include "signal/shell_word.h"
@@ -42,4 +45,11 @@ TEST_CASE("a word of a command is quoted when the shell would take it for someth
   CHECK(shell_word("") == "''");
   for (const char* word : {"a*", "$HOME", "a;b", "a&b", "`x`", "~", "a|b", "(x)", "#1", "a\nb"})
     CHECK(shell_word(word).front() == '\'');
+}
+
+TEST_CASE("the words of a quoted line are read back") {
+  std::string line = "kadans";
+  const std::vector<std::string> words{"kadans", "a b", "it's", "", "x*=1", "\\", "plain"};
+  for (std::size_t i = 1; i < words.size(); ++i) line += " " + shell_word(words[i]);
+  CHECK(shell_words(line) == words);
 }

@@ -43,6 +43,9 @@ constexpr Examples all_examples[] = {
     {"replay",
      "  kadans replay squat.mcap                  with the files as they are now\n"
      "  kadans replay squat.mcap --from-record    with those in the record: has the program changed?\n"},
+    {"debug",
+     "  kadans debug config/scenarios/get_up_prone.json               what an editor starts: docs/debugging.md\n"
+     "  kadans debug fall.mcap --port 4711                            a record, for an editor that connects\n"},
     {"check",
      "  kadans check behaviors/tulip/squat.lua config/tulip/robot.json\n"
      "  kadans check config/scenarios              every file in it, with the behaviors that are played there\n"
@@ -58,6 +61,9 @@ constexpr Examples all_examples[] = {
      "  kadans margin config/tulip/robot.json config/scenarios/squat.json --quantity delay\n"
      "  kadans margin config/tulip/robot.json config/scenarios/squat.json --quantity "
      "'joint.*_knee.torque_scale=0.02'\n"},
+    {"shrink",
+     "  kadans shrink config/scenarios/weak_knees.json --set 'joint.*_knee.torque_scale=0.2'\n"
+     "  kadans shrink sweeps/push_varied-0123abcd --case 3 --out least.json    a case of a sweep that failed\n"},
     {"tune",
      "  kadans tune config/tuning/squat_height.json --generations 2 --runs 1 --out tuned\n"
      "  kadans tune config/tuning/squat_height.json --write better.json --overwrite\n"},

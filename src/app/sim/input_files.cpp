@@ -25,6 +25,8 @@
 #include "signal/input_file.h"
 #include "signal/nearest_name.h"
 #include "signal/number_text.h"
+#include "telemetry/mcap/mcap_reader.h"
+#include "telemetry/record/input_stream.h"
 #include "version.h"
 
 namespace kadans {
@@ -361,6 +363,30 @@ fs::path find_scenario(const RunInputs& recorded, const fs::path& record) {
   throw InputError(
       {.file = record.string(),
        .message = "its scenario " + written.string() + " is not here; run this in its project, or with --from-record"});
+}
+
+RunInputs read_front(const std::string& record) {
+  const auto refuse = [&](const std::string& why) { throw InputError({.file = record, .message = why}); };
+  McapReader reader(record);
+  McapMessage message;
+  const bool holds_messages = reader.next(message);
+  RunInputs inputs = read_inputs(reader, record);
+  if (inputs.run.empty()) {
+    refuse(holds_messages || reader.complete() ? "was not recorded by kadans"
+                                               : "ends before it begins: " + reader.problem());
+  }
+  const std::string clock = inputs.fact("clock");
+  if (!clock.empty() && clock != "virtual" && clock != clock_of_threads)
+    refuse("was made by another version of kadans: it says that its clock is " + in_quotes(clock));
+  const bool of_robot = clock == clock_of_threads || (clock.empty() && inputs.run.contains("robot"));
+  if (of_robot && !reader.metadata().contains(inputs_metadata))
+    refuse(
+        "holds no inputs of its ticks, so what went into the run cannot be had again: it is a flight record, was begun "
+        "while its run went on, or was made with record.inputs false or by an older kadans");
+  if (inputs.empty())
+    refuse("does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
+           " or ends too early");
+  return inputs;
 }
 
 PluginGate plugins_beside(const fs::path& scenario, bool any_plugins) {

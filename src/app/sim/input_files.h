@@ -46,6 +46,9 @@ std::string change_text(const std::vector<InputChange>& changes);
 // around the working directory, or when `any_plugins` is true.
 PluginGate plugins_beside(const std::filesystem::path& scenario, bool any_plugins);
 
+// Reads the inputs at the front of a record. Throws InputError when the record cannot be run again.
+RunInputs read_front(const std::string& record);
+
 // Finds the scenario of a record: at its recorded path, in the project around the working directory, or in the project
 // around the record. Throws InputError when it is in none of them.
 std::filesystem::path find_scenario(const RunInputs& recorded, const std::filesystem::path& record);

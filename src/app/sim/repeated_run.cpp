@@ -44,30 +44,6 @@ std::string command_text(const Command& command, const Catalog& catalog) {
 
 }  // namespace
 
-RunInputs read_front(const std::string& record) {
-  const auto refuse = [&](const std::string& why) { throw InputError({.file = record, .message = why}); };
-  McapReader reader(record);
-  McapMessage message;
-  const bool holds_messages = reader.next(message);
-  RunInputs inputs = read_inputs(reader, record);
-  if (inputs.run.empty()) {
-    refuse(holds_messages || reader.complete() ? "was not recorded by kadans"
-                                               : "ends before it begins: " + reader.problem());
-  }
-  const std::string clock = inputs.fact("clock");
-  if (!clock.empty() && clock != "virtual" && clock != clock_of_threads)
-    refuse("was made by another version of kadans: it says that its clock is " + in_quotes(clock));
-  const bool of_robot = clock == clock_of_threads || (clock.empty() && inputs.run.contains("robot"));
-  if (of_robot && !reader.metadata().contains(inputs_metadata))
-    refuse(
-        "holds no inputs of its ticks, so what went into the run cannot be had again: it is a flight record, was begun "
-        "while its run went on, or was made with record.inputs false or by an older kadans");
-  if (inputs.empty())
-    refuse("does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
-           " or ends too early");
-  return inputs;
-}
-
 UnpackedRun::UnpackedRun(const RunInputs& inputs, const std::string& record, bool any_plugins,
                          const std::vector<std::string>& with)
     : files(inputs, record, any_plugins, with), options(options_of(inputs, record)) {

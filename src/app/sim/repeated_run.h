@@ -20,8 +20,8 @@
 
 #include "app/assembly.h"
 #include "app/commands.h"
-#include "hash_trail.h"
 #include "input_files.h"
+#include "kadans/signal/state_hash.h"
 #include "telemetry/reading/input_reader.h"
 #include "telemetry/reading/record_comparison.h"
 #include "telemetry/record/event_log.h"
@@ -34,8 +34,6 @@ struct TakenByBehaviors {
   std::uint64_t snapshot = 0;
 };
 
-// Reads what stands at the front of a record. Throws InputError when the record cannot be run again.
-RunInputs read_front(const std::string& record);
 // Repeats the record that the scenario names, and judges it by the scenario's checks; returns the program's exit code.
 int run_record_test(const SimOptions& options, const ScenarioConfig& test);
 // Repeats a record up to a time, and goes on in the world of a scenario, which judges it; returns the exit code.
@@ -90,7 +88,7 @@ class RepeatedRun final : private BehaviorInputs {
   std::uint64_t state_hash() const noexcept { return hash_.value(); }
   const std::vector<RunFault>& faults() const noexcept { return faults_; }
   Assembly& assembly() noexcept { return assembly_; }
-  const RunLog& log() const noexcept { return log_; }
+  RunLog& log() noexcept { return log_; }
   std::int64_t time_ns() const noexcept { return taken_.time_ns; }  // of the last tick
 
  private:

@@ -104,9 +104,9 @@ class WalkPlan {
   void reset() noexcept { state_ = {}; }
   // Begins with the foot that bears less. `sight` is in the frame of the heading.
   void begin(const Config& config, const Sight& sight) noexcept;
-  // True in the tick of a landing: then turn the heading by step_turn_rad and call turned().
-  // Where xi shall be while both feet bear, and the gain toward that.
+  // Where xi shall be while both feet bear.
   GroundPoint goal(const Config& config, const Sight& sight) const noexcept;
+  // True in the tick of a landing: then turn the heading by meant.turn_rad and call turned().
   bool advance(const Config& config, const Wanted& wanted, const Sight& sight, double dt_s) noexcept;
   void turned(double by_rad) noexcept;
 

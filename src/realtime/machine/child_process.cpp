@@ -140,6 +140,8 @@ std::optional<ChildProcess> ChildProcess::copy() {
   return ChildProcess(pid, false);
 }
 
+pid_t ChildProcess::copy_alone() noexcept { return fork(); }
+
 void ChildProcess::wait_for_one(std::span<const ChildProcess* const> running, int most_ms) {
   std::vector<pollfd> ends;
   for (const ChildProcess* process : running) {

@@ -40,6 +40,9 @@ class ChildProcess {
   explicit ChildProcess(const ProgramStart& start);  // throws std::system_error
   // Copies this process, which must have one thread. Returns nullopt in the copy. Throws std::system_error.
   static std::optional<ChildProcess> copy();
+  // The same, for a copy that ends by itself and for which nobody waits: whoever calls it ignores SIGCHLD. Returns the
+  // copy's number, 0 in the copy, -1: the system refuses.
+  static pid_t copy_alone() noexcept;
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
   ~ChildProcess() { stop(); }

@@ -162,6 +162,23 @@ void Check::update_settling(double time_s, const Observation& seen) noexcept {
   at_s_ = time_s;
 }
 
+bool Check::lost() const noexcept {
+  switch (check_.kind) {
+    case CheckKind::always:
+      return seen_ && !(excess_ <= 0);
+    case CheckKind::never:
+      return seen_ && excess_ <= 0;
+    case CheckKind::within:
+      return failed_;
+    case CheckKind::settles:
+      return started_ && outside_s_ - began_s_ > check_.within_s;
+    case CheckKind::eventually:
+    case CheckKind::at_end:
+      return false;
+  }
+  return false;
+}
+
 CheckResult Check::settled() const {
   CheckResult result{.name = check_.name,
                      .value = std::max(0.0, outside_s_ - began_s_),

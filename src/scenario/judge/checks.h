@@ -46,6 +46,8 @@ class Check {
   // To be called after each control tick; time must not run backwards.
   void update(double time_s, const Observation& seen) noexcept;
   CheckResult result() const;
+  // True once nothing that comes can let it pass.
+  bool lost() const noexcept;
   const ScenarioCheck& config() const noexcept { return check_; }
 
  private:
@@ -79,6 +81,7 @@ class Checks {
   // To be called after each control tick.
   void update(double time_s, std::span<const double> row) noexcept;
   std::vector<CheckResult> results() const;
+  bool lost(std::size_t index) const noexcept { return broken_ || judged_[index].check.lost(); }
   const std::string& error() const noexcept { return conditions_.error(); }  // of a condition that failed
 
   std::size_t size() const noexcept { return judged_.size(); }

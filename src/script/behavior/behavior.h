@@ -121,6 +121,7 @@ class Behavior {
   [[nodiscard]] bool set_parameter(const std::string& name, double value) noexcept;
 
   struct Parts;
+  Parts& parts() noexcept { return *parts_; }  // for a debugger (script/debug)
 
  private:
   struct Past;  // the earlier version, until the new one has run for a second

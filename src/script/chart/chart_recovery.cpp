@@ -24,6 +24,8 @@ constexpr double failure_instructions = 500;
 constexpr int failure_slot = EventQueue::places + 1;  // in RunnerTables::event_data
 constexpr std::int8_t failure_place = EventQueue::places;
 
+}  // namespace
+
 const char* cause_of(const Chart& chart, StateIndex index, int function) noexcept {
   const Chart::State& state = chart.states[index];
   if (function == state.enter) return "enter";
@@ -37,8 +39,6 @@ const char* cause_of(const Chart& chart, StateIndex index, int function) noexcep
   }
   return "call";
 }
-
-}  // namespace
 
 struct ChartRunner::Attempt {
   Bindings::Mark commands;

@@ -5,6 +5,7 @@
 #include <lua.hpp>
 
 #include "script/bindings/bindings.h"
+#include "script/lua/line_watch.h"
 #include "script/lua/lua_core.h"
 #include "script/motion/motion.h"
 #include "signal/byte_order.h"
@@ -582,6 +583,7 @@ void ChartRunner::keep_run_error(lua_State* state, lua_State* thread) {
   luaL_traceback(state, thread, nullptr, 0);
   error.set_traceback(lua_tostring(state, -1));
   lua_pop(state, 1);
+  if (LineWatch* watch = core_of(state).budget.watch()) watch->raised(thread, error.message.data());
 }
 
 void ChartRunner::resume_run(lua_State* state, StateIndex index) {

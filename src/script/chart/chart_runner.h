@@ -70,6 +70,9 @@ class TransitionSink {
   virtual void recovered(const ScriptError& error) noexcept = 0;  // a transition for "error" is taken
 };
 
+// Which of the state's functions this is, by its registry reference: "enter", "when"; "call": one of a call's values.
+const char* cause_of(const Chart& chart, StateIndex index, int function) noexcept;
+
 class ChartRunner {
  public:
   // Make it before the first tick. All references must outlive the runner.
@@ -123,6 +126,10 @@ class ChartRunner {
   StateIndex innermost(StateIndex around = 0) const noexcept;
   double state_time_s(StateIndex state) const noexcept;
   bool run_done(StateIndex state) const noexcept { return run_[state].run_done; }
+  // Its `run` has begun, and is not over.
+  bool run_under_way(StateIndex state) const noexcept {
+    return run_[state].thread != nullptr && run_[state].thread_started && !run_[state].run_done;
+  }
   // The control sets that its innermost active states run on, those that are being entered with them or alone.
   enum class Asking : std::uint8_t { all, entering };
   SetMask sets_asked(Asking asking = Asking::all) const noexcept;

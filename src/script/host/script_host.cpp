@@ -51,6 +51,7 @@ ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, Behavio
       safe_(settings.safe, catalog),
       delivery_(log, settings.inputs) {
   settings_.limits.inputs = &inputs_;
+  settings_.limits.watch = &line_watch_;
   std::vector<InputProblem> problems;
   std::vector<PlayList::Entry> first =
       settings.kept.empty() ? load(settings.play, true, problems) : load_kept(problems);

@@ -65,6 +65,8 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
 
   // Before the loop: what people ask, and what scripts take from outside of their tick, goes by these.
   void take_inputs_by(BehaviorInputs* inputs) noexcept { inputs_ = inputs; }
+  // Before the loop: a debugger hears of every line of all behaviors.
+  void watch_lines_by(LineWatch* watch) noexcept { line_watch_ = watch; }
   // In a run that repeats a record: the question that was asked there. False: the bytes are damaged.
   [[nodiscard]] bool repeat_question(std::span<const std::byte> bytes, const Snapshot& snapshot);
 
@@ -151,6 +153,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   std::vector<SignalState> signal_states_;
   std::string lost_;
   BehaviorInputs* inputs_ = nullptr;
+  LineWatch* line_watch_ = nullptr;
 };
 
 }  // namespace kadans

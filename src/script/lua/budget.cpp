@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "engine/behavior_inputs.h"
+#include "line_watch.h"
 #include "lua_core.h"
 #include "lua_state.h"
 
@@ -77,11 +78,17 @@ void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wa
   error_.line = 0;
   error_.breach = ScriptBreach::none;
   heap_.forgive();
-  lua_sethook(state, hook, LUA_MASKCOUNT, interval_);
+  lua_sethook(state, hook, watch() != nullptr ? LUA_MASKCOUNT | LUA_MASKLINE : LUA_MASKCOUNT, interval_);
 }
 
-void Budget::hook(lua_State* state, lua_Debug* /*activation*/) {
+void Budget::hook(lua_State* state, lua_Debug* activation) {
   Budget& budget = core_of(state).budget;
+  if (activation->event == LUA_HOOKLINE) {
+    LineWatch* const watch = budget.watch();
+    if (watch != nullptr && lua_getinfo(state, "Sl", activation) != 0 && activation->source[0] == '@')
+      watch->line(state, activation->source + 1, activation->currentline);
+    return;
+  }
   if (!budget.breached()) budget.spent_ += static_cast<std::uint64_t>(budget.interval_);
   budget.look(state);
 }

@@ -23,6 +23,7 @@ struct lua_Debug;
 namespace kadans {
 
 class BehaviorInputs;
+class LineWatch;
 
 // To be called when the program shall end; any thread, also a signal handler. A running script is stopped after 0.2 s,
 // in which most scripts end by themselves. Scripts that are called later are stopped as well, until
@@ -34,6 +35,9 @@ class Budget {
   Budget(LuaHeap& heap, ScriptError& error) noexcept : heap_(heap), error_(error) {}
   // Whether time is over is then said by whoever records or repeats the run, while there is one.
   void ask(BehaviorInputs* const* inputs) noexcept { inputs_ = inputs; }
+  // A debugger hears of lines and errors, while there is one.
+  void tell_lines_to(LineWatch* const* watch) noexcept { watch_ = watch; }
+  LineWatch* watch() const noexcept { return watch_ != nullptr ? *watch_ : nullptr; }
 
   // Begins a new count. wall_ns 0: no limit of time.
   void begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept;
@@ -68,6 +72,7 @@ class Budget {
   LuaHeap& heap_;
   ScriptError& error_;
   BehaviorInputs* const* inputs_ = nullptr;
+  LineWatch* const* watch_ = nullptr;
   std::uint64_t limit_ = 0, spent_ = 0;
   std::uint64_t charged_ = 0;  // since the last look at the clock
   int interval_ = 1;           // instructions from hook to hook
@@ -89,6 +94,7 @@ struct ScriptLimits {
   std::size_t memory_bytes = std::size_t{4} << 20;
   std::size_t block_bytes = std::size_t{576} << 10;  // of one string or one table's array; the deepest stack fits
   BehaviorInputs* const* inputs = nullptr;           // of a run that is recorded or repeated: see Budget::ask
+  LineWatch* const* watch = nullptr;                 // of a run that is debugged
 };
 
 }  // namespace kadans

@@ -7,6 +7,7 @@
 
 #include "engine/behavior_inputs.h"
 #include "kadans/signal/input_error.h"
+#include "line_watch.h"
 #include "lua_core.h"
 #include "script/check/source_lexer.h"
 #include "script/check/syntax_hint.h"
@@ -58,6 +59,7 @@ int keep_error(lua_State* state) {
   error.add_hint(core_of(state).loading);
   luaL_traceback(state, state, nullptr, 1);
   error.set_traceback(lua_tostring(state, -1));
+  if (LineWatch* watch = core_of(state).budget.watch()) watch->raised(state, error.message.data());
   return 1;
 }
 
@@ -95,6 +97,7 @@ LuaState::LuaState(Settings settings)
   if (lua_ == nullptr) throw std::bad_alloc();
   core_->main = lua_;
   core_->budget.ask(settings_.limits.inputs);
+  core_->budget.tell_lines_to(settings_.limits.watch);
   core_->heap.for_ticks(false);
   luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   lua_gc(lua_, LUA_GCSTOP, 0);
