@@ -89,6 +89,7 @@ class RepeatedRun final : private BehaviorInputs {
   const std::vector<RunFault>& faults() const noexcept { return faults_; }
   Assembly& assembly() noexcept { return assembly_; }
   RunLog& log() noexcept { return log_; }
+  const RunLog& log() const noexcept { return log_; }
   std::int64_t time_ns() const noexcept { return taken_.time_ns; }  // of the last tick
 
  private:
