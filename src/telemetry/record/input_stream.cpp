@@ -72,13 +72,19 @@ void make_sound(TickTaken& taken) noexcept {
   sound(taken.joystick.connected, 1);
 }
 
-// Whether all values are whole multiples of one step, bit for bit, and counts_ which.
+// Multiples of a step by numbers that differ for the two zeros: -2 steps are -3, one is -2, -0.0 is -1, 0.0 is 0.
+double multiple(std::int64_t number, double step) noexcept {
+  return number < 0 ? -(static_cast<double>(-(number + 1)) * step) : static_cast<double>(number) * step;
+}
+
+// Whether all values are multiples of one step, bit for bit, and counts_ which.
 bool counted(std::span<const std::uint64_t> values, double step, std::vector<std::int64_t>& counts) {
   counts.clear();
   for (const std::uint64_t bits : values) {
-    const double value = std::bit_cast<double>(bits), count = std::round(value / step);
-    if (!(std::abs(count) < 1e9) || std::bit_cast<std::uint64_t>(count * step) != bits) return false;
-    counts.push_back(static_cast<std::int64_t>(count));
+    const double count = std::round(std::bit_cast<double>(bits) / step);
+    if (!(std::abs(count) < 1e9)) return false;
+    counts.push_back(static_cast<std::int64_t>(count) - (std::signbit(count) ? 1 : 0));
+    if (std::bit_cast<std::uint64_t>(multiple(counts.back(), step)) != bits) return false;
   }
   return true;
 }
@@ -107,7 +113,7 @@ std::optional<InputLayout> InputLayout::of(const TextMap& facts) {
   const auto format = facts.find("format");
   const auto joints = count_in(facts, "joints", max_joints), feet = count_in(facts, "feet", max_feet),
              channels = count_in(facts, "channels", max_channels), down = count_in(facts, "down", down_max);
-  const bool known = format != facts.end() && (format->second == inputs_format || format->second == "1");
+  const bool known = format != facts.end() && format->second == inputs_format;
   if (!known || !joints || !feet || !channels || !down) return std::nullopt;
   return InputLayout{*joints, *feet, *channels, *down};
 }
@@ -449,7 +455,7 @@ bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& 
         value = column.began + (values[t * columns_.size() + from] - columns_[from].began);
       } else if (counts) {
         if (t > 0) counted += unzigzag(rest);
-        value = std::bit_cast<std::uint64_t>(static_cast<double>(static_cast<std::int64_t>(counted)) * step);
+        value = std::bit_cast<std::uint64_t>(multiple(static_cast<std::int64_t>(counted), step));
       }
       column.before = column.last;
       column.last = values[t * columns_.size() + c] = value;

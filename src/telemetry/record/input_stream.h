@@ -8,7 +8,7 @@
 //   signal    the same bits as a recorded signal of the tick: they are not held twice
 //   xor       the bits that differ from those of the tick before, byte by byte, the lowest bytes of all ticks first
 //   change    how its growth changed, in the same way
-//   counts    a number that an encoder counts: multiples of a step, and how their number changes
+//   counts    what an encoder counts: multiples of a step, both zeros among them, and how their number changes
 //   near      how far it is from a signal of the tick, or of one of the ticks before: a drive tells the effort that it
 //             was asked for
 //   alike     grows as a word before it does: all readings of a frame are counted alike
@@ -43,7 +43,7 @@ namespace kadans {
 inline constexpr const char* inputs_topic = "/inputs";
 inline constexpr const char* behavior_inputs_topic = "/inputs/behaviors";
 inline constexpr const char* inputs_metadata = "tick_inputs";  // the layout, and all signals by their numbers
-inline constexpr const char* inputs_format = "2";              // "1": without near and alike
+inline constexpr const char* inputs_format = "2";
 
 // How many of each there are in a run.
 struct InputLayout {
