@@ -76,8 +76,18 @@ TEST_CASE("A test of a record that cannot be one is refused with what is wrong")
   write(scenario, test_of("stumble.mcap", "true"));
   CHECK(has(run("sim config/scenarios/stumble.json --seed 3", project).err, "--seed: is for simulations"));
 
-  const std::string whole = read(project / "config/scenarios/stumble.mcap");
-  write(project / "config/scenarios/stumble.mcap", whole.substr(0, whole.size() / 2));
+  const fs::path record = project / "config/scenarios/stumble.mcap";
+  REQUIRE(run("log cut config/scenarios/stumble.mcap --to 1 -o plain.mcap", project).exit_code == 0);
+  fs::rename(project / "plain.mcap", project / "config/scenarios/plain.mcap");
+  CHECK(has(refusal(test_of("plain.mcap", "true")), "plain.mcap: holds no inputs of its ticks"));
+  write(project / "config/scenarios/idle.json",
+        R"({"name": "idle", "robot": "config/jiwiy/robot.json", "duration_s": 0.1})");
+  REQUIRE(run("sim config/scenarios/idle.json --record config/scenarios/idle.mcap", project).exit_code == 0);
+  CHECK(has(refusal(test_of("idle.mcap", "true")), "idle.mcap: was simulated, so it is simulated again"));
+  write(scenario, test_of("stumble.mcap", "true"));
+
+  const std::string whole = read(record);
+  write(record, whole.substr(0, whole.size() / 2));
   const Outcome short_one = run("sim config/scenarios/stumble.json", project);
   CHECK(short_one.exit_code == 1);
   CHECK_MESSAGE(has(short_one.out, "the record is not whole"), short_one.out);

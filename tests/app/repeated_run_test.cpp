@@ -132,6 +132,29 @@ TEST_CASE("A record without inputs says in a sentence why it is not repeated") {
   CHECK_MESSAGE(has(none.err, "holds no inputs"), none.err);
 }
 
+TEST_CASE("A record whose inputs are of another version says so") {
+  const fs::path project = project_copy("repeat_version");
+  REQUIRE(run("run config/jiwiy/robot.json --plant ideal --duration 0.3" + on_threads, project).exit_code == 0);
+  std::string record = read(project / "run.mcap");
+  const std::string format("format\x01\0\0\0", 10);
+  const std::size_t at = record.find(format);
+  REQUIRE(at != std::string::npos);
+  record[at + format.size()] = '1';
+  write(project / "run.mcap", record);
+  const Outcome other = run("replay run.mcap", project);
+  CHECK(other.exit_code == 2);
+  CHECK_MESSAGE(has(other.err, "run.mcap: holds inputs that this kadans cannot read"), other.err);
+  CHECK(has(run("log cut run.mcap --inputs -o none.mcap", project).err, "of another version of kadans"));
+}
+
+TEST_CASE("Positions that pass zero are repeated bit for bit, with the sign of each zero") {
+  const fs::path project = project_copy("repeat_zeros");
+  // Its hips stand at zero: their encoders read 0.0 and -0.0 by turns.
+  REQUIRE(run("run config/tulip/robot.json --plant bullet --play stand --duration 4 --seed 2" + on_threads, project)
+              .exit_code == 0);
+  check_same(project, 4000);
+}
+
 TEST_CASE("A record that is cut with its inputs is repeated to where it was cut, also with fewer signals") {
   const fs::path project = project_copy("repeat_trimmed");
   REQUIRE(run("run config/tulip/robot.json --play squat --duration 2" + on_threads, project).exit_code == 0);

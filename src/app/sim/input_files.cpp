@@ -379,10 +379,13 @@ RunInputs read_front(const std::string& record) {
   if (!clock.empty() && clock != "virtual" && clock != clock_of_threads)
     refuse("was made by another version of kadans: it says that its clock is " + in_quotes(clock));
   const bool of_robot = clock == clock_of_threads || (clock.empty() && inputs.run.contains("robot"));
-  if (of_robot && !reader.metadata().contains(inputs_metadata))
+  const auto layout = reader.metadata().find(inputs_metadata);
+  if (of_robot && layout == reader.metadata().end())
     refuse(
         "holds no inputs of its ticks, so what went into the run cannot be had again: it is a flight record, was begun "
         "while its run went on, or was made with record.inputs false or by an older kadans");
+  if (of_robot && !InputLayout::of(layout->second))
+    refuse("holds inputs that this kadans cannot read: they were recorded by kadans " + inputs.fact("kadans"));
   if (inputs.empty())
     refuse("does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
            " or ends too early");

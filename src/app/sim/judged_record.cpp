@@ -59,7 +59,7 @@ class JudgedRun : public RunObserver {
     result.checks = checks_->results();
     result.duration_s = time_s_;
     result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-    result.realtime_factor = result.wall_s > 0 ? 1e-9 * static_cast<double>(run_.time_ns()) / result.wall_s : 0;
+    result.realtime_factor = result.wall_s > 0 ? result.duration_s / result.wall_s : 0;
     result.control_ticks = run_.ticks();
     result.behavior_ticks = run_.behavior_ticks();
     result.state_hash = run_.state_hash();
@@ -173,13 +173,17 @@ class ThenSimulation final : public JudgedRun {
     } catch (const std::runtime_error& failed) {
       error = failed.what();  // of the model
     }
-    return print(result(error), options_.json, false,
-                 "kadans replay " + shell_word(options_.record) + " --then-simulate " +
-                     shell_word(options_.then_simulate) + printed(" --at %g", options_.at_s),
-                 nullptr);
+    return print(result(error), options_.json, false, repeat(), nullptr);
   }
 
  private:
+  std::string repeat() const {
+    std::string command = "kadans replay " + shell_word(options_.record);
+    if (options_.allow_plugins) command += " --allow-plugins";
+    for (const std::string& file : options_.with) command += " --with " + shell_word(file);
+    return command + " --then-simulate " + shell_word(options_.then_simulate) + printed(" --at %g", options_.at_s);
+  }
+
   const ReplayOptions& options_;
   ScenarioConfig& scenario_;
 };

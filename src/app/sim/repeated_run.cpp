@@ -37,6 +37,8 @@ std::string command_text(const Command& command, const Catalog& catalog) {
       return command.index < catalog.setpoints.size() ? catalog.setpoints[command.index].name + value() : "?";
     case CommandKind::switch_set:
       return command.index < catalog.sets.size() ? "control set " + catalog.sets[command.index].name : "?";
+    case CommandKind::transaction:
+      return "transaction " + std::to_string(command.sequence);
     default:
       return "command " + std::to_string(static_cast<int>(command.kind)) + value();
   }
@@ -94,9 +96,7 @@ void RepeatedRun::go(const std::function<bool()>& stop, const std::vector<RunObs
 void RepeatedRun::show(const std::vector<RunObserver*>& observers) {
   ControlEngine& control = assembly_.control();
   const std::span<const double> row = control.row();
-  for (std::size_t id = 0; id < row.size(); ++id) {
-    if (hashed_[id]) hash_.add(row[id]);
-  }
+  add_hash(row);
   const double time_s = 1e-9 * static_cast<double>(taken_.time_ns);
   const RunMark mark{control.ticks(), taken_.time_ns, hash_.value()};
   for (RunObserver* observer : observers) {
@@ -104,6 +104,12 @@ void RepeatedRun::show(const std::vector<RunObserver*>& observers) {
     observer->between_ticks(mark);
   }
   take_faults(observers, taken_.time_ns);
+}
+
+void RepeatedRun::add_hash(std::span<const double> row) noexcept {
+  for (std::size_t id = 0; id < row.size(); ++id) {
+    if (hashed_[id]) hash_.add(row[id]);
+  }
 }
 
 void RepeatedRun::take_faults(const std::vector<RunObserver*>& observers, std::int64_t time_ns) {
@@ -150,10 +156,11 @@ void RepeatedRun::go_on_in(Assembly& model, const std::function<bool()>& stop,
     for (DownStorage* storage : hand_overs_.down) storage->let_through(std::numeric_limits<std::int64_t>::max());
     control.tick(now_ns, 1e-9 * static_cast<double>(period_ns), 0);
     ++ticks_;
+    add_hash(control.row());
     for (const auto& [id, same] : computed) row[id] = control.row()[same];
     for (RunObserver* observer : observers) {
       observer->tick(time_s, row);
-      observer->between_ticks({control.ticks(), passed_ns, 0});
+      observer->between_ticks({control.ticks(), passed_ns, hash_.value()});
     }
     take_faults(observers, now_ns);
     if (static_cast<std::int64_t>(control.ticks()) % every == 0) {
@@ -400,14 +407,16 @@ void RepeatedRun::sent(std::span<const Command> batch, bool) noexcept {
     return;
   }
   const std::vector<Command>& recorded = inputs[sent_++].commands;
-  for (std::size_t i = 0; i < std::min(batch.size(), recorded.size()); ++i) {
-    if (!same_command(batch[i], recorded[i]))
-      return part("the behaviors send " + command_text(batch[i], assembly_.catalog()) + ", recorded was " +
-                  command_text(recorded[i], assembly_.catalog()));
-  }
   if (batch.size() != recorded.size())
-    part("the behaviors send " + std::to_string(batch.size() - 1) + " commands, recorded were " +
-         std::to_string(recorded.size() - 1));
+    return part("the behaviors send " + std::to_string(batch.size() - 1) + " commands, the last " +
+                command_text(batch.back(), assembly_.catalog()) + ", recorded were " +
+                std::to_string(recorded.size() - 1));
+  for (std::size_t i = 1; i <= batch.size(); ++i) {  // their header last
+    const Command &now = batch[i % batch.size()], &then = recorded[i % batch.size()];
+    if (!same_command(now, then))
+      return part("the behaviors send " + command_text(now, assembly_.catalog()) + ", recorded was " +
+                  command_text(then, assembly_.catalog()));
+  }
 }
 
 double RepeatedRun::parameter(double newest) noexcept {

@@ -99,6 +99,7 @@ class RepeatedRun final : private BehaviorInputs {
   bool feed_commands(std::uint32_t waiting);
   bool feed_next();
   void show(const std::vector<RunObserver*>& observers);
+  void add_hash(std::span<const double> row) noexcept;
   void take_faults(const std::vector<RunObserver*>& observers, std::int64_t time_ns);
   bool leads() const noexcept { return behaviors_ == Behaviors::leading || behaviors_ == Behaviors::tested; }
   bool led() const noexcept { return leads() && !parting_.empty(); }

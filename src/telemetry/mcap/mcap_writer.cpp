@@ -1,6 +1,7 @@
 #include "mcap_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -92,8 +93,8 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
 
   Channel& to = channels_[channel - 1U];
   to.index.push_back({log_time_ns, records_.size()});
-  // At once: there are thousands a second.
-  std::byte* at = records_.grow(message_head + payload.size()).data();
+  std::array<std::byte, message_head> head{};  // at once: there are thousands a second
+  std::byte* at = head.data();
   const auto put = [&at](const auto& value) {
     std::memcpy(at, &value, sizeof value);
     at += sizeof value;
@@ -104,7 +105,8 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
   put(sequence);
   put(log_time_ns);
   put(log_time_ns);  // published when logged
-  std::ranges::copy(payload, at);
+  records_.put(head);
+  records_.put(payload);
   start_ns_ = messages_ == 0 ? log_time_ns : std::min(start_ns_, log_time_ns);
   end_ns_ = std::max(end_ns_, log_time_ns);
   ++to.messages;

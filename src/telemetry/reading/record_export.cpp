@@ -399,9 +399,10 @@ class Cutting {
     SignalTable table;
     for (const std::size_t place : chosen_[id]) table.add(topic.signals[place], &zero);
     const std::vector<SignalTopic> topics = signal_topics(table, rows_.precision());
-    if (topics.size() != 1)
-      throw InputError(
-          {.file = record_.file, .message = "signals of topic " + topic.name + " cannot be chosen singly"});
+    if (topics.size() != 1) {  // of an older record, where these shared a topic: it is kept whole
+      passage.channel = file_.add_channel(channel.topic, channel.encoding, schema(channel.schema), channel.metadata);
+      return passage;
+    }
     for (const SignalId signal : topics.front().signals) passage.places.push_back(chosen_[id][signal]);
     TextMap metadata = channel.metadata;
     metadata["signals"] = topics.front().description;
