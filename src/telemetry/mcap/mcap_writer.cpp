@@ -117,13 +117,12 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
 // Appends the chunk's records to the block, compressed. False: nothing was appended.
 bool McapWriter::pack() {
   if (zstd_ == nullptr) return false;
-  const std::size_t start = block_.size();
-  const auto room = block_.grow(ZSTD_compressBound(records_.size()));
-  const std::size_t size = ZSTD_compressCCtx(zstd_.get(), room.data(), room.size(), records_.bytes().data(),
+  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(records_.size())));
+  const std::size_t size = ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), records_.bytes().data(),
                                              records_.size(), settings_.compression_level);
-  const bool packed = ZSTD_isError(size) == 0;  // else out of memory
-  block_.shrink(start + (packed ? size : 0));
-  return packed;
+  if (ZSTD_isError(size) != 0) return false;  // out of memory
+  block_.put(std::span(packed_).first(size));
+  return true;
 }
 
 void McapWriter::put_chunk(Chunk& chunk) {

@@ -146,8 +146,9 @@ class McapWriter {
   std::vector<Channel> channels_;
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
 
-  ByteWriter records_;  // of the open chunk
-  ByteWriter block_;    // the bytes that go to the file in one piece
+  ByteWriter records_;             // of the open chunk
+  std::vector<std::byte> packed_;  // room for the open chunk, compressed
+  ByteWriter block_;               // the bytes that go to the file in one piece
   std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
   std::uint32_t chunk_number_ = 1;
 
