@@ -2,6 +2,7 @@
 #include "telemetry/record/input_stream.h"
 
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>
@@ -123,6 +124,23 @@ TEST_CASE(
   REQUIRE(messages.size() == 3);
   // Noise takes eight bytes a tick; an encoder, what is near to a signal, and the first that counts unevenly one.
   CHECK(messages.back().size() < 100 * (8 + 1 + 1) * (noisy + 1) + 24 * layout.words());
+}
+
+TEST_CASE("An encoder around zero takes a byte a tick, whichever zero it reads first") {
+  constexpr InputLayout one{.joints = 1};
+  constexpr double step = 9.587379924285257e-05;
+  RandomStream random(5, "zero");
+  InputEncoder encoder(one, {});
+  ByteWriter message;
+  for (std::uint64_t t = 0; t < 300; ++t) {
+    if (encoder.full()) encoder.encode(message);
+    std::vector<std::uint64_t> words(one.words());
+    const double count = t < 100 ? -0.0 : std::round(random.uniform(-1.5, 1.5));  // both zeros, and then their sides
+    words.back() = std::bit_cast<std::uint64_t>(random.next() % 2 == 0 ? count * step : (count + 0.0) * step);
+    REQUIRE(encoder.add(t, static_cast<std::int64_t>(t), words, {}));
+  }
+  encoder.encode(message);
+  CHECK(message.size() < 3 * (100 + 50) + 4 * one.words());
 }
 
 TEST_CASE("Damaged inputs are refused, or read as other values of the same types, and nothing else happens") {

@@ -281,13 +281,15 @@ std::size_t InputEncoder::near_bytes(const Column& column, Values values) noexce
 
 // The step is at most the smallest difference of two values. Its last bits follow from the largest value.
 bool InputEncoder::find_counts(Column& column, Values values) {
-  if (column.step > 0 && counted(values, column.step, counts_)) return true;
-  column.step = 0;
   sorted_.clear();
   for (const std::uint64_t bits : values) sorted_.push_back(std::bit_cast<double>(bits));
   if (!std::ranges::all_of(sorted_, [](double value) { return std::abs(value) < 1e9; })) return false;
   std::ranges::sort(sorted_);
   const double largest = std::max(std::abs(sorted_.front()), std::abs(sorted_.back()));
+  if (largest == 0) {  // the two zeros: any step will do
+    column.step = 1;
+    return counted(values, column.step, counts_);
+  }
   double least = largest;
   for (std::size_t i = 1; i < sorted_.size(); ++i) {
     const double apart = sorted_[i] - sorted_[i - 1];
@@ -368,6 +370,7 @@ void InputEncoder::encode_rest(Column& column, Values values, ByteWriter& messag
   Mode mode = change < xored ? Mode::change : Mode::xored;
   const std::size_t least = std::min(xored, change);
   if (std::min(bytes_in(all_xored), bytes_in(all_change)) > few && values.size() > 8) {
+    if (column.step > 0 && counted(values, column.step, counts_)) return put_counts(column, message);
     std::size_t near = near_bytes(column, values);
     if (near > least / 2 && column.for_near.over()) {
       find_near(column, values);
