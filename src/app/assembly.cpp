@@ -247,6 +247,10 @@ void Assembly::vary() {
   const RobotConfig& config = robot_.config;
   variant_ = plant_variant(scenario_, config);
   if (!scenario_.start_pose.name.empty()) start_in_pose();
+  if (!scenario_.placed.position_rad.empty()) {
+    variant_.plant.position_rad = scenario_.placed.position_rad;
+    variant_.plant.base.orientation = scenario_.placed.orientation;
+  }
   Problems problems(scenario_.file);
   Quantities quantities(variant_, control_system_->catalog, number_ > 0);
   for (const NumberEntry& entry : scenario_.set) quantities.set(entry, quantities_, problems);
@@ -440,8 +444,8 @@ void Assembly::filter(SnapshotFilter& filter) {
   make_behaviors();
 }
 
-void Assembly::read_foreign_signals_from(std::span<const double> row) {
-  for (std::size_t id = foreign_first_; id < foreign_end_; ++id)
+void Assembly::read_foreign_signals_from(std::span<const double> row, bool of_behaviors) {
+  for (std::size_t id = foreign_first_; id < (of_behaviors ? foreign_end_ : upkeep_first_); ++id)
     control_system_->catalog.signals.read_from(static_cast<SignalId>(id), &row[id]);
 }
 

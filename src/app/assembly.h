@@ -106,8 +106,10 @@ class Assembly {
   void record_to(RecordSink* sink) noexcept { control_->record_to(sink); }
 
   // For a run that repeats a record: the signals that no engine computes are read from this row, which must outlive the
-  // assembly. They are those of the plant, of a model's true state and of what plays.
-  void read_foreign_signals_from(std::span<const double> row);
+  // assembly. They are those of the plant, of a model's true state and, unless the behaviors' are their own, of what
+  // plays.
+  void read_foreign_signals_from(std::span<const double> row, bool of_behaviors);
+  const std::vector<SignalId>& unhashed() const noexcept { return unhashed_; }  // no part of a state hash
   std::size_t foreign_first() const noexcept { return foreign_first_; }
   std::size_t foreign_end() const noexcept { return foreign_end_; }
 

@@ -176,10 +176,10 @@ int run_reference(const CommandLine& line, const ReferenceOptions& options);
 // inputs changed. With the record's own files, only a change of the program or of its libraries can make a difference.
 struct ReplayOptions {
   std::string record;
-  bool from_record = false;  // use its files instead of those on the disk
-  bool allow_plugins = false;
-  bool json = false;
-  std::vector<std::string> with;  // files that take the place of the record's
+  bool from_record = false, allow_plugins = false, json = false;  // the first: its files, not those on the disk
+  std::vector<std::string> with;                                  // files that take the place of the record's
+  std::string then_simulate;  // a scenario in which a run on threads goes on; "": none
+  double at_s = 0;            // when
 };
 
 void add_replay(CLI::App& app, ReplayOptions& options);
@@ -392,7 +392,7 @@ struct LogOptions {
   std::string out;
   double tolerance = 0;
   bool json = false;
-  bool force = false;  // replaces an existing output file
+  bool force = false, inputs = false;  // replaces an existing output file; a cut can be repeated
 };
 void add_log(CLI::App& app, LogOptions& options);
 int run_log(const CLI::App& app, const LogOptions& options);

@@ -18,8 +18,9 @@ namespace {
 const std::string on_threads = " --threads-on-virtual-time --record run.mcap --flight 0 ";
 
 // Whether the record is repeated to its last tick.
-void check_same(const fs::path& project, std::uint64_t ticks_min, bool whole = true) {
-  const Outcome outcome = run("replay run.mcap --json", project);
+void check_same(const fs::path& project, std::uint64_t ticks_min, bool whole = true,
+                const std::string& record = "run.mcap") {
+  const Outcome outcome = run("replay " + record + " --json", project);
   REQUIRE_MESSAGE(!outcome.out.empty(), outcome.err);
   CHECK_MESSAGE(outcome.exit_code == 0, outcome.out);
   const Json json = Json::parse(outcome.out);
@@ -129,6 +130,69 @@ TEST_CASE("A record without inputs says in a sentence why it is not repeated") {
   const Outcome none = run("replay run.mcap", project);
   CHECK(none.exit_code == 2);
   CHECK_MESSAGE(has(none.err, "holds no inputs"), none.err);
+}
+
+TEST_CASE("A record whose inputs are of another version says so") {
+  const fs::path project = project_copy("repeat_version");
+  REQUIRE(run("run config/jiwiy/robot.json --plant ideal --duration 0.3" + on_threads, project).exit_code == 0);
+  std::string record = read(project / "run.mcap");
+  const std::string format("format\x01\0\0\0", 10);
+  const std::size_t at = record.find(format);
+  REQUIRE(at != std::string::npos);
+  record[at + format.size()] = '1';
+  write(project / "run.mcap", record);
+  const Outcome other = run("replay run.mcap", project);
+  CHECK(other.exit_code == 2);
+  CHECK_MESSAGE(has(other.err, "run.mcap: holds inputs that this kadans cannot read"), other.err);
+  CHECK(has(run("log cut run.mcap --inputs -o none.mcap", project).err, "of another version of kadans"));
+}
+
+TEST_CASE("Positions that pass zero are repeated bit for bit, with the sign of each zero") {
+  const fs::path project = project_copy("repeat_zeros");
+  // Its hips stand at zero: their encoders read 0.0 and -0.0 by turns.
+  REQUIRE(run("run config/tulip/robot.json --plant bullet --play stand --duration 4 --seed 2" + on_threads, project)
+              .exit_code == 0);
+  check_same(project, 4000);
+}
+
+TEST_CASE("A record that is cut with its inputs is repeated to where it was cut, also with fewer signals") {
+  const fs::path project = project_copy("repeat_trimmed");
+  REQUIRE(run("run config/tulip/robot.json --play squat --duration 2" + on_threads, project).exit_code == 0);
+  for (const char* signals : {"", " --signals 'joint.*' --signals actuation"}) {
+    CAPTURE(signals);
+    const Outcome cut = run("log cut run.mcap --to 1.234 --inputs -o cut.mcap --force" + std::string(signals), project);
+    REQUIRE_MESSAGE(cut.exit_code == 0, cut.err);
+    check_same(project, 1233, true, "cut.mcap");
+    CHECK(fs::file_size(project / "cut.mcap") < fs::file_size(project / "run.mcap") * 2 / 3);
+  }
+  CHECK(has(run("log cut run.mcap --from 1 --inputs -o late.mcap", project).err, "--from: does not go with --inputs"));
+  REQUIRE(run("log cut run.mcap --to 1 -o plain.mcap", project).exit_code == 0);
+  CHECK(has(run("replay plain.mcap", project).err, "holds no inputs"));
+  CHECK(has(run("log cut plain.mcap --inputs -o none.mcap", project).err, "has no inputs to be kept"));
+  CHECK_FALSE(fs::exists(project / "none.mcap"));
+}
+
+TEST_CASE("Private files are left out of a record, and who repeats it needs them as they were") {
+  const fs::path project = project_copy("repeat_private");
+  REQUIRE(edit(project / "config/head/robot.json", "{", "{ \"record\": { \"private\": [\"behaviors/head/wan*\"] },"));
+  REQUIRE(run("run config/head/robot.json --plant bullet --play wander --duration 1" + on_threads, project).exit_code ==
+          0);
+  const std::string record = read(project / "run.mcap");
+  CHECK(has(record, "inputs/config/head/robot.json.zst"));
+  CHECK_FALSE(has(record, "inputs/behaviors/head/wander.lua.zst"));
+  check_same(project, 1000);
+  REQUIRE(edit(project / "behaviors/head/wander.lua", "return", "-- another version\nreturn"));
+  const Outcome other = run("replay run.mcap", project);
+  CHECK(other.exit_code == 2);
+  CHECK_MESSAGE(has(other.err, "run.mcap: needs behaviors/head/wander.lua, a private file"), other.err);
+  CHECK(run("replay run.mcap --with behaviors/head/wander.lua", project).exit_code == 0);
+  fs::remove(project / "behaviors/head/wander.lua");
+  CHECK(has(run("replay run.mcap", project).err, "is not in the project"));
+  REQUIRE(edit(project / "config/head/robot.json", "wan*", "wonder*"));
+  const Outcome unknown = run("run config/head/robot.json --plant bullet --duration 1" + on_threads, project);
+  CHECK(unknown.exit_code == 2);
+  CHECK_MESSAGE(has(unknown.err, "robot.json:1:"), unknown.err);
+  CHECK(has(unknown.err, "is called 'behaviors/head/wonder*'"));
 }
 
 }  // namespace repeated_run_test

@@ -67,6 +67,18 @@ TEST_CASE("records of earlier versions are read, and run again with their own fi
   }
 }
 
+TEST_CASE("runs on threads that earlier versions recorded are repeated from their inputs") {
+  for (const std::string& kept : versions_kept()) {
+    CAPTURE(kept);
+    const fs::path folder = copy_of(kept);
+    if (!fs::exists(folder / "run.mcap")) continue;  // records of its time held none
+    const Outcome again = run("replay run.mcap", folder);
+    CHECK_MESSAGE((again.exit_code == 0 || again.exit_code == 1), again.err);
+    CHECK(has(again.out, "repeated from its inputs"));
+    if (again.exit_code == 1) CHECK(has(again.out + again.err, "program"));
+  }
+}
+
 TEST_CASE("what this version does not know in a robot's file is refused with its place") {
   const fs::path folder = copy_of("0.1.0");
   REQUIRE(edit(folder / "config/tulip/robot.json", "\"control_period_s\"", "\"control_periods_s\""));

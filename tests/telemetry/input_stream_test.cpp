@@ -2,11 +2,13 @@
 #include "telemetry/record/input_stream.h"
 
 #include <bit>
+#include <cmath>
 #include <limits>
 
 #include <doctest/doctest.h>
 
 #include "kadans/signal/random.h"
+#include "telemetry/record/run_inputs.h"
 
 namespace input_stream_test {
 
@@ -15,9 +17,10 @@ using namespace kadans;
 namespace {
 
 constexpr InputLayout layout{.joints = 2, .feet = 1, .channels = 1, .down = 2};
-constexpr std::size_t signals = 3;
+constexpr std::size_t signals = 3, kinds = 8;
 
-// Ticks of a run: words that stand still, count, are noise, signals or an encoder's positions.
+// Ticks of a run: words that stand still, count, are noise, signals, an encoder's positions, near to a signal of two
+// ticks ago, or count unevenly, all alike.
 struct Ticks final : SignalBits {
   std::vector<std::vector<std::uint64_t>> words;
   std::vector<std::vector<double>> rows;
@@ -25,21 +28,28 @@ struct Ticks final : SignalBits {
 
   Ticks(std::size_t count, std::uint64_t from) : first(from) {
     RandomStream random(7, "inputs");
-    std::int64_t place = -12'345;
+    std::int64_t place = -12;                       // it passes zero, from both sides
     constexpr double step = 9.587379924285257e-05;  // of an encoder
+    std::uint64_t uneven = 0;
     for (std::size_t t = 0; t < count; ++t) {
       std::vector<std::uint64_t>& tick = words.emplace_back(layout.words());
       std::vector<double>& row = rows.emplace_back(signals);
       for (double& value : row) value = random.uniform(-1, 1);
+      uneven += random.next() % 3;
       for (std::size_t w = 0; w < tick.size(); ++w) {
-        const std::size_t kind = w % 6;
+        const std::size_t kind = w % kinds;
         if (kind == 1) tick[w] = 1000 + 3 * t;
         if (kind == 2) tick[w] = random.next();
         if (kind == 3) tick[w] = std::bit_cast<std::uint64_t>(row[w % signals]);
         if (kind == 4) tick[w] = t < count / 2 ? 5 : std::numeric_limits<std::uint64_t>::max();
-        if (kind == 5)
-          tick[w] = std::bit_cast<std::uint64_t>(
-              static_cast<double>(place += 3 - 2 * static_cast<std::int64_t>(t % 4)) * step);
+        if (kind == 5) {
+          const std::int64_t change = 3 - 2 * static_cast<std::int64_t>(t % 4);
+          place += change;
+          const double value = static_cast<double>(place) * step;
+          tick[w] = std::bit_cast<std::uint64_t>(place == 0 && change > 0 ? -value : value);
+        }
+        if (kind == 6) tick[w] = std::bit_cast<std::uint64_t>(rows[t < 2 ? t : t - 2][w % signals]) + t % 5;
+        if (kind == 7) tick[w] = uneven + 1000 * w;
       }
     }
   }
@@ -68,6 +78,7 @@ std::vector<std::vector<std::byte>> messages_of(const Ticks& ticks) {
 }
 
 void check_same(const TickTaken& read, const std::vector<std::uint64_t>& words) {
+  CHECK(read.words == words);
   TickTaken expected;
   unpack(words, layout, expected);
   CHECK(std::bit_cast<std::uint64_t>(read.inputs.dt_s) == std::bit_cast<std::uint64_t>(expected.inputs.dt_s));
@@ -104,22 +115,41 @@ TEST_CASE("Inputs of ticks are read with the bits with which they were written, 
   }
 }
 
-TEST_CASE("Inputs that stand still, count or are signals take some bytes a message, an encoder one a tick") {
-  const Ticks ticks(100, 0);
+TEST_CASE(
+    "Inputs that stand still, count or are signals take some bytes a message, encoders and near ones one a tick") {
+  const Ticks ticks(300, 0);
   std::size_t noisy = 0;
-  for (std::size_t w = 0; w < layout.words(); ++w) noisy += w % 6 == 2 ? 1U : 0U;
+  for (std::size_t w = 0; w < layout.words(); ++w) noisy += w % kinds == 2 ? 1U : 0U;
   const std::vector<std::vector<std::byte>> messages = messages_of(ticks);
-  REQUIRE(messages.size() == 1);
-  // Noise takes eight bytes a tick; so does what changes once, in the message in which it does; an encoder takes one.
-  CHECK(messages.front().size() < 100 * (8 + 8 + 1) * (noisy + 1) + 24 * layout.words());
+  REQUIRE(messages.size() == 3);
+  // Noise takes eight bytes a tick; an encoder, what is near to a signal, and the first that counts unevenly one.
+  CHECK(messages.back().size() < 100 * (8 + 1 + 1) * (noisy + 1) + 24 * layout.words());
+}
+
+TEST_CASE("An encoder around zero takes a byte a tick, whichever zero it reads first") {
+  constexpr InputLayout one{.joints = 1};
+  constexpr double step = 9.587379924285257e-05;
+  RandomStream random(5, "zero");
+  InputEncoder encoder(one, {});
+  ByteWriter message;
+  for (std::uint64_t t = 0; t < 300; ++t) {
+    if (encoder.full()) encoder.encode(message);
+    std::vector<std::uint64_t> words(one.words());
+    const double count = t < 100 ? -0.0 : std::round(random.uniform(-1.5, 1.5));  // both zeros, and then their sides
+    words.back() = std::bit_cast<std::uint64_t>(random.next() % 2 == 0 ? count * step : (count + 0.0) * step);
+    REQUIRE(encoder.add(t, static_cast<std::int64_t>(t), words, {}));
+  }
+  encoder.encode(message);
+  CHECK(message.size() < 700);  // three messages of 100 ticks; one of doubles alone takes 800
 }
 
 TEST_CASE("Damaged inputs are refused, or read as other values of the same types, and nothing else happens") {
-  const Ticks ticks(100, 0);
-  const std::vector<std::byte> whole = messages_of(ticks).front();
+  const Ticks ticks(200, 0);
+  const std::vector<std::vector<std::byte>> messages = messages_of(ticks);
   RandomStream random(11, "damage");
   int refused = 0;
   for (int i = 0; i < 3000; ++i) {
+    const std::vector<std::byte>& whole = messages.at(static_cast<std::size_t>(i) % messages.size());
     std::vector<std::byte> damaged = whole;
     if (i % 3 == 0) damaged.resize(random.next() % whole.size());
     for (int k = 0; k < 1 + i % 4 && !damaged.empty(); ++k)
@@ -135,8 +165,8 @@ TEST_CASE("Damaged inputs are refused, or read as other values of the same types
     }
   }
   CHECK(refused > 1000);
-  CHECK_FALSE(InputLayout::of({{"format", "1"}, {"joints", "5000"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
-  CHECK_FALSE(InputLayout::of({{"format", "9"}, {"joints", "2"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
+  CHECK_FALSE(InputLayout::of({{"format", "2"}, {"joints", "5000"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
+  CHECK_FALSE(InputLayout::of({{"format", "1"}, {"joints", "2"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
 }
 
 TEST_CASE("What the behavior thread took is read in its order, damage and a missing event are noticed") {
@@ -177,6 +207,16 @@ TEST_CASE("What the behavior thread took is read in its order, damage and a miss
   CHECK(all[3].commands[1].value == 0.5);
   CHECK(all[4].number == 1);
   CHECK(all[5].kind == BehaviorInput::Kind::tick_ends);
+
+  RecordedInputs secretive("/project", {"behaviors/secret*"});
+  secretive.file_read("/project/behaviors/secret_walk.lua", "return 1");
+  ByteWriter secret;
+  secretive.take(secret);
+  std::vector<BehaviorInput> hashed;
+  REQUIRE(read_all(secret.bytes(), hashed));
+  CHECK(hashed.at(0).kind == BehaviorInput::Kind::private_file);
+  CHECK(hashed[0].path == "behaviors/secret_walk.lua");
+  CHECK(hashed[0].text == content_hash("return 1"));
 
   RandomStream random(13, "damage");
   for (int i = 0; i < 2000; ++i) {

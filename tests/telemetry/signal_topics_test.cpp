@@ -61,6 +61,21 @@ TEST_CASE("signal_topics makes names that ROS allows and keeps those apart that 
   CHECK(topics[1].definition == "float32 value  # [1] \nfloat32 late  # [1] \n");
 }
 
+TEST_CASE("signal_topics gives each control object a topic of its own") {
+  const auto topics = signal_topics(table_of({{"control.walk.phase", "", ""},
+                                              {"control.step.l_knee.error_rad", "rad", ""},
+                                              {"control.active", "", ""},
+                                              {"control.walk.foot.height_m", "m", ""}}),
+                                    Precision::full);
+  REQUIRE(topics.size() == 3);
+  CHECK(topics[0].topic == "/control/walk");
+  CHECK(topics[0].type == "kadans_msgs/msg/ControlWalk");
+  CHECK(topics[0].signals == std::vector<SignalId>{0, 3});
+  CHECK(topics[0].description == "control.walk.phase\t\t\ncontrol.walk.foot.height_m\tm\t\n");
+  CHECK(topics[1].topic == "/control/step");
+  CHECK(topics[2].topic == "/control");
+}
+
 TEST_CASE("signal_topics gives two nested types of one name a number each") {
   const auto topics = signal_topics(table_of({{"a.b_c.x", "", ""}, {"a.b.c.x", "", ""}}), Precision::full);
   CHECK(topics[0].definition.find("kadans_msgs/ABC b_c\n") != std::string::npos);

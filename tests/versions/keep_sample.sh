@@ -17,4 +17,6 @@ find "$folder" -name '*_test.lua' -delete
 cd "$folder"
 "$kadans" check config behaviors
 "$kadans" sim config/scenarios/squat.json --duration 0.1 --record squat.mcap --signals 'joint.*_knee.*, base.*' >/dev/null || [ $? -eq 1 ]
-ls -l squat.mcap
+"$kadans" run "$tree/config/jiwiy/robot.json" --plant ideal --play sine --duration 0.3 --threads-on-virtual-time --flight 0 \
+  --record run.mcap --signals 'joint.*' >/dev/null
+ls -l squat.mcap run.mcap

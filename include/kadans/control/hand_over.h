@@ -15,16 +15,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <deque>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "kadans/exchange/latest.h"
+#include "kadans/signal/members.h"
 
 namespace kadans {
 
@@ -133,10 +132,9 @@ class HandUp final : public UpStorage {
   }
   void unpin() noexcept override { pin_.reset(); }
   bool feed(std::span<const std::byte> bytes) noexcept override {
-    static_assert(std::is_trivially_copyable_v<Handed<T>>);
     if (bytes.size() != sizeof(Handed<T>)) return false;
-    Handed<T> value{};
-    std::memcpy(&value, bytes.data(), sizeof value);
+    Handed<T> value{};  // its number counts in the recorded run alone
+    take_members(static_cast<T&>(value), bytes.data());
     latest_.replace(value);
     return true;
   }

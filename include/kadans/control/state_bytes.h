@@ -107,7 +107,7 @@ class StateBytes {
     if (hash_ != nullptr) hash_->add(value);
     if (!ok()) return;
     if (to_ != nullptr) std::memcpy(to_ + at, &value, sizeof value);
-    if (from_ != nullptr) std::memcpy(&value, from_ + at, sizeof value);
+    if (from_ != nullptr) take_members(value, from_ + at);
   }
 
   Levels levels_;

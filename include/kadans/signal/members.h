@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 #include <utility>
 
 namespace kadans {
 
-inline constexpr std::size_t members_max = 12;
+inline constexpr std::size_t members_max = 16;
 
 namespace detail {
 
@@ -54,7 +55,30 @@ constexpr void with_members(T& of, Take take) {
   if constexpr (count == 10) { auto& [a, b, c, d, e, f, g, h, i, j] = of; take(a, b, c, d, e, f, g, h, i, j); }
   if constexpr (count == 11) { auto& [a, b, c, d, e, f, g, h, i, j, k] = of; take(a, b, c, d, e, f, g, h, i, j, k); }
   if constexpr (count == 12) { auto& [a, b, c, d, e, f, g, h, i, j, k, l] = of; take(a, b, c, d, e, f, g, h, i, j, k, l); }
+  if constexpr (count == 13) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = of; take(a, b, c, d, e, f, g, h, i, j, k, l, m); }
+  if constexpr (count == 14) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = of; take(a, b, c, d, e, f, g, h, i, j, k, l, m, n); }
+  if constexpr (count == 15) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = of; take(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o); }
+  if constexpr (count == 16) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = of; take(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p); }
   // clang-format on
+}
+
+// A value out of bytes from outside, which lie as they do in memory: each member by itself, so a bool is false or true
+// whatever its byte is. For what with_members takes, numbers, enumerations and ranges of these.
+template <typename T>
+void take_members(T& value, const std::byte* bytes) noexcept {
+  static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+  const auto of = [&value, bytes](const auto& part) {
+    return bytes + (reinterpret_cast<const std::byte*>(&part) - reinterpret_cast<const std::byte*>(&value));
+  };
+  if constexpr (std::is_same_v<T, bool>) {
+    value = *bytes != std::byte{0};
+  } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+    std::memcpy(&value, bytes, sizeof value);
+  } else if constexpr (requires { value.begin(); }) {
+    for (auto& one : value) take_members(one, of(one));
+  } else {
+    with_members(value, [&of](auto&... members) { (take_members(members, of(members)), ...); });
+  }
 }
 
 }  // namespace kadans

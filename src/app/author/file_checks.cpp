@@ -12,6 +12,7 @@
 
 #include "app/commands.h"
 #include "app/sim/played_behaviors.h"
+#include "app/sim/repeated_run.h"
 #include "behavior_stage.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
@@ -202,7 +203,9 @@ std::string FileChecks::told_robot(const RobotConfig& robot, const std::string& 
 }
 
 std::string FileChecks::check_scenario(const fs::path& file) {
-  ScenarioConfig scenario = read_scenario_config(file);
+  ScenarioConfig scenario = read_tested_scenario(file);
+  if (!scenario.record.empty())
+    return "scenario: repeats a record, " + std::to_string(count_record_checks(scenario)) + " checks";
   scenario.plugins = gate_;
   RunLog log;
   const Assembly assembly(scenario, scenario.seed, log);
@@ -296,7 +299,7 @@ JsonKind kind_of(const JsonValue& json) {
   if (has("tune")) return JsonKind::tuning;
   if (has("scenarios")) return JsonKind::sweep;
   if (has("urdf") || has("control")) return JsonKind::robot;
-  return has("robot") || has("duration_s") || has("checks") ? JsonKind::scenario : JsonKind::other;
+  return has("robot") || has("record") || has("duration_s") || has("checks") ? JsonKind::scenario : JsonKind::other;
 }
 
 std::optional<JsonKind> kind_in(const std::filesystem::path& file) {

@@ -131,9 +131,8 @@ void repeat(RunChannel& channel, const DebugSubject& subject) {
       subject.launch.file, scenario, *subject.unpacked, subject.inputs.fact("root"),
       options.behaviors == "process" ? RepeatedRun::Behaviors::none : RepeatedRun::Behaviors::compared);
   DebuggedRun run(channel, repeated.assembly(), repeated.log(), nullptr);
-  repeated.show_to(run);
   run.begin(description(repeated.assembly(), subject));
-  repeated.go([] { return false; });
+  repeated.go([] { return false; }, {&run});
   std::string parts = repeated.parting();
   if (repeated.comparison().parted()) parts = "in tick " + std::to_string(repeated.comparison().tick());
   const std::string text = repeated.same() ? "repeats the record" : "parts from the record " + parts;

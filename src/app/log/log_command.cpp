@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
+#include "kadans/signal/input_error.h"
 #include "log_verbs.h"
 #include "signal/durable_file.h"
 #include "signal/number_text.h"
@@ -18,7 +19,10 @@
 namespace kadans {
 
 int log_cut(const LogOptions& options) {
-  const RecordCut cut{.span = span_of(options), .signals = options.signals};
+  const RecordCut cut{.span = span_of(options), .signals = options.signals, .inputs = options.inputs};
+  if (options.inputs && options.from_s)
+    throw InputError(InputProblem{
+        .file = "--from", .message = "does not go with --inputs: a run is repeated from its record's beginning"});
   require_free(options);
   const RecordOutline record = outline_of(options.file);
   require_overlap(record, cut.span);
@@ -189,6 +193,7 @@ void add_making(CLI::App& log, LogOptions& options) {
   cut->add_option("--signals", options.signals, std::string(signals_help) + "; once or more (default: all)")
       ->type_name("SIGNAL")
       ->allow_extra_args(false);
+  cut->add_flag("--inputs", options.inputs, "Keep what went into the run, so that `kadans replay` repeats it");
   add_out(*cut, options, "The new record", "FILE");
   cut->get_option("--out")->required();
 }

@@ -1,4 +1,5 @@
 // Stands for a plant in a run that repeats a record: it has its signals, and its sensors are those of the record.
+// Nothing hears its actuation, unless the run goes on in a model.
 #pragma once
 
 #include <memory>
@@ -18,7 +19,7 @@ class FedPlant final : public Plant {
     const auto newest = record_.sensors.read();
     copy_used(*newest, sensors);
   }
-  void write(const ActuationFrame&) noexcept override {}
+  void write(const ActuationFrame& actuation) noexcept override { record_.actuation.publish(actuation); }
 
  private:
   std::unique_ptr<Plant> plant_;  // never open

@@ -290,7 +290,9 @@ class WallClockRun {
   // What a repetition of this run needs.
   void record_inputs(RecordPlan& plan) {
     RunInputs inputs = inputs_of(options_, scenario_, assembly_);
-    taken_.emplace(project_root(scenario_.file).string());
+    std::vector<std::string> private_files;
+    for (const PlacedName& pattern : assembly_.robot().record.private_files) private_files.push_back(pattern.name);
+    taken_.emplace(project_root(scenario_.file).string(), std::move(private_files));
     for (const InputFile& file : inputs.files) {
       if (file.text) taken_->knows(file.path, *file.text);
     }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <system_error>
@@ -22,6 +23,7 @@
 #include "kadans/signal/machine_name.h"
 #include "signal/byte_order.h"
 #include "signal/input_file.h"
+#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 #include "telemetry/mcap/mcap_reader.h"
 #include "telemetry/record/input_stream.h"
@@ -111,6 +113,17 @@ std::optional<std::string> read_all(const fs::path& file) {
   }
 }
 
+// The path of a file from the root of its project.
+fs::path name_in_project(const std::string& file) {
+  const fs::path whole = fs::absolute(file).lexically_normal();
+  const fs::path name = whole.lexically_relative(project_root(whole));
+  std::error_code error;
+  if (!fs::is_regular_file(whole, error)) throw InputError({.file = file, .message = "there is no such file"});
+  if (name.empty() || *name.begin() == "..")
+    throw InputError({.file = file, .message = "lies in no project, so it has no place in the record"});
+  return name;
+}
+
 // The project around the working directory.
 fs::path project_here() { return project_root(fs::current_path() / "x"); }
 
@@ -131,14 +144,39 @@ std::vector<fs::path> meshes(const RobotModel& model) {
   return files;
 }
 
+// A file that ought to be private must not go out because of a slip in its
+// pattern, so one that no file of the project has is refused.
+void refuse_unknown_private(const RobotConfig& robot) {
+  const Folders folders(robot.file);
+  Problems problems(robot.file);
+  for (const PlacedName& pattern : robot.record.private_files) {
+    bool found = false;
+    for (const char* folder : {"config", "models", "behaviors"}) {
+      std::error_code none;
+      for (fs::recursive_directory_iterator entry(folders.root / folder, none), end; !found && entry != end;
+           entry.increment(none))
+        found = matches(pattern.name, folders.name(entry->path()));
+    }
+    if (!found)
+      problems.add(pattern.place, "record.private: no file in config, models or behaviors of this project is called " +
+                                      in_quotes(pattern.name));
+  }
+  problems.throw_if_any();
+}
+
 class Gathering {
  public:
-  explicit Gathering(const fs::path& scenario) : folders_(scenario) {}
+  Gathering(const fs::path& scenario, const Assembly& assembly) : folders_(scenario) {
+    know_private(assembly.robot());
+    for (const auto& other : assembly.others()) know_private(other->robot());
+  }
 
   void add(const fs::path& file) {
     std::string text = read_all(file).value_or("");
-    std::string hash = content_hash(text);
-    put({folders_.name(file), std::move(hash), std::move(text)});
+    std::string hash = content_hash(text), name = folders_.name(file);
+    const bool left_out =
+        std::ranges::any_of(private_, [&](const std::string& pattern) { return matches(pattern, name); });
+    put({std::move(name), std::move(hash), left_out ? std::nullopt : std::optional(std::move(text)), left_out});
   }
   void add_hash(const fs::path& file) {
     put({folders_.name(file), content_hash(read_all(file).value_or("")), std::nullopt});
@@ -156,7 +194,13 @@ class Gathering {
     const std::string name = file.path;
     files_.insert_or_assign(name, std::move(file));
   }
+  void know_private(const RobotConfig& robot) {
+    refuse_unknown_private(robot);
+    for (const PlacedName& pattern : robot.record.private_files) private_.push_back(pattern.name);
+  }
+
   Folders folders_;
+  std::vector<std::string> private_;
   std::map<std::string, InputFile> files_;
 };
 
@@ -178,7 +222,7 @@ void add_robot(const Assembly& assembly, Gathering& files) {
 }  // namespace
 
 std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly) {
-  Gathering files(scenario.file);
+  Gathering files(scenario.file, assembly);
   for (const fs::path& file : files_of(scenario.file)) files.add(file);
   if (!scenario.joystick.recording.empty()) files.add(scenario.joystick.recording);
   add_robot(assembly, files);
@@ -214,7 +258,7 @@ RunInputs inputs_of(const RunOptions& options, const ScenarioConfig& scenario, c
   if (!options.joystick.empty()) inputs.run["joystick"] = options.joystick;
   if (options.read_only) inputs.run["read_only"] = "yes";
   if (options.virtual_time) inputs.run["virtual_time"] = "yes";
-  Gathering files(scenario.file);
+  Gathering files(scenario.file, assembly);
   add_robot(assembly, files);
   if (assembly.own_host() == nullptr) {  // they play in another process, which has read them
     BehaviorLog silence;
@@ -335,10 +379,13 @@ RunInputs read_front(const std::string& record) {
   if (!clock.empty() && clock != "virtual" && clock != clock_of_threads)
     refuse("was made by another version of kadans: it says that its clock is " + in_quotes(clock));
   const bool of_robot = clock == clock_of_threads || (clock.empty() && inputs.run.contains("robot"));
-  if (of_robot && !reader.metadata().contains(inputs_metadata))
+  const auto layout = reader.metadata().find(inputs_metadata);
+  if (of_robot && layout == reader.metadata().end())
     refuse(
         "holds no inputs of its ticks, so what went into the run cannot be had again: it is a flight record, was begun "
         "while its run went on, or was made with record.inputs false or by an older kadans");
+  if (of_robot && !InputLayout::of(layout->second))
+    refuse("holds inputs that this kadans cannot read: they were recorded by kadans " + inputs.fact("kadans"));
   if (inputs.empty())
     refuse("does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
            " or ends too early");
@@ -352,7 +399,8 @@ PluginGate plugins_beside(const fs::path& scenario, bool any_plugins) {
           .remedy = "its project is not the one around the working directory; --allow-plugins loads what lies there"};
 }
 
-UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins)
+UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins,
+                               const std::vector<std::string>& with)
     : owner_(getpid()) {
   std::string pattern = (fs::temp_directory_path() / "kadans-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr)
@@ -365,14 +413,18 @@ UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& rec
                   "in the place that the record knows"};
   try {
     for (const char* name : {"config", "models", "behaviors", beside}) fs::create_directories(folder_ / name);
+    std::set<fs::path> given;
+    for (const std::string& file : with) given.insert(name_in_project(file));
     for (const InputFile& file : recorded.files) {
-      const bool plugin = !file.text && !file.hash.empty();
+      const bool plugin = !file.text && !file.hash.empty() && !file.left_out;
       if (plugin) link_plugin(file, record, any_plugins);
-      if (!plugin && !fs::path(file.path).is_absolute()) unpack(file);
+      if (plugin || fs::path(file.path).is_absolute() || given.contains(file.path)) continue;
+      file.left_out ? fetch(file, record) : unpack(file);
     }
+    for (const std::string& file : with) put_in_place(file);
     const std::string name = recorded.fact("scenario_input");
     const auto scenario = std::ranges::find(recorded.files, name, &InputFile::path);
-    if (scenario == recorded.files.end() || !scenario->text || fs::path(name).is_absolute())
+    if (scenario == recorded.files.end() || !(scenario->text || scenario->left_out) || fs::path(name).is_absolute())
       throw InputError({.file = record, .message = "does not hold its scenario"});
     scenario_ = folder_ / name;
   } catch (const fs::filesystem_error& error) {  // a name is too long, or a file stands in the place of a folder
@@ -448,15 +500,24 @@ void UnpackedInputs::replace(const InputFile& file) const {
   }
 }
 
+void UnpackedInputs::fetch(const InputFile& file, const std::string& record) const {
+  const std::optional<std::string> here = read_all(project_here() / file.path);
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(
+        {.file = record, .message = "needs " + file.path + ", a private file that it does not hold, " + why});
+  };
+  if (!here) refuse("and it is not in the project around the working directory");
+  if (content_hash(*here) != file.hash)
+    refuse("and the one in this project is another: its hash is " + content_hash(*here) + ", recorded was " +
+           file.hash);
+  replace({file.path, file.hash, here});
+}
+
 void UnpackedInputs::put_in_place(const std::string& file) const {
-  const fs::path whole = fs::absolute(file).lexically_normal();
-  const fs::path name = whole.lexically_relative(project_root(whole));
+  const fs::path name = name_in_project(file);
   std::error_code error;
-  if (!fs::is_regular_file(whole, error)) throw InputError({.file = file, .message = "there is no such file"});
-  if (name.empty() || *name.begin() == "..")
-    throw InputError({.file = file, .message = "lies in no project, so it has no place in the record"});
   fs::remove(folder_ / name, error);
-  replace({name.generic_string(), "", read_input_file(whole, input_max_bytes)});
+  replace({name.generic_string(), "", read_input_file(fs::absolute(file), input_max_bytes)});
 }
 
 void UnpackedInputs::unpack(const InputFile& file) const {

@@ -13,7 +13,8 @@
 namespace kadans {
 
 // The files of a run, sorted by path. Scenario, robot, URDF, and behaviors with their modules have their text. Plug-ins
-// have only a hash. Meshes have only a name, because nothing is computed from them.
+// have only a hash, and so have files that the robot's record.private names. Meshes have only a name, because nothing
+// is computed from them. Throws InputError for a pattern of record.private that no file of the project has.
 std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly);
 
 // All inputs of the run that `choices` asks for, for its record.
@@ -58,9 +59,11 @@ std::filesystem::path find_scenario(const RunInputs& recorded, const std::filesy
 // `any_plugins` is true.
 class UnpackedInputs {
  public:
-  // Throws InputError when the record lacks its scenario, when a file cannot be written, or when a plug-in is not here
-  // or differs.
-  UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins);
+  // `with`: files of a project here that take the place of the record's, also of a plug-in. Throws InputError when the
+  // record lacks its scenario, when a file cannot be written, or when a plug-in or a private file is not here or
+  // differs.
+  UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins,
+                 const std::vector<std::string>& with = {});
   ~UnpackedInputs();
   UnpackedInputs(const UnpackedInputs&) = delete;
   UnpackedInputs& operator=(const UnpackedInputs&) = delete;
@@ -71,9 +74,9 @@ class UnpackedInputs {
   // Another text of a file, or one that came later. Throws InputError when the path leads out of the folder, or when a
   // plug-in stands there.
   void replace(const InputFile& file) const;
-  // A file of a project here takes the place of the record's, also of a plug-in. Throws InputError when it is not
-  // there.
-  void put_in_place(const std::string& file) const;
+  // A private file of the record: from the project around the working directory. Throws InputError when it is not there
+  // or differs.
+  void fetch(const InputFile& file, const std::string& record) const;
 
   const std::filesystem::path& root() const noexcept { return folder_; }
   const std::filesystem::path& scenario() const noexcept { return scenario_; }
@@ -82,6 +85,7 @@ class UnpackedInputs {
  private:
   void remove() const noexcept;
   void unpack(const InputFile& file) const;
+  void put_in_place(const std::string& file) const;
   void link_plugin(const InputFile& file, const std::string& record, bool any_plugins);
 
   std::filesystem::path folder_, scenario_;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <sstream>
 
+#include "app/run/behavior_process.h"
 #include "kadans/signal/input_error.h"
 #include "script/host/play_list.h"
 #include "signal/number_text.h"
@@ -15,15 +16,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t rows_max = 20'000;  // that wait for the inputs of their ticks
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<std::string> names_in(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line.substr(0, line.find('\t')));
-  return lines;
-}
 
 bool same_command(const Command& a, const Command& b) noexcept {
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
@@ -44,6 +37,8 @@ std::string command_text(const Command& command, const Catalog& catalog) {
       return command.index < catalog.setpoints.size() ? catalog.setpoints[command.index].name + value() : "?";
     case CommandKind::switch_set:
       return command.index < catalog.sets.size() ? "control set " + catalog.sets[command.index].name : "?";
+    case CommandKind::transaction:
+      return "transaction " + std::to_string(command.sequence);
     default:
       return "command " + std::to_string(static_cast<int>(command.kind)) + value();
   }
@@ -51,156 +46,13 @@ std::string command_text(const Command& command, const Catalog& catalog) {
 
 }  // namespace
 
-RecordFiles::RecordFiles(const std::string& record) : file_(record), reader_(std::make_unique<McapReader>(record)) {}
-
-bool RecordFiles::go_on() {
-  namespace fs = std::filesystem;
-  const auto facts = reader_->metadata().find("goes_on");
-  if (!reader_->complete() || facts == reader_->metadata().end() || !facts->second.contains("file")) return false;
-  const fs::path name = facts->second.at("file"), next = fs::path(file_).parent_path() / name;
-  std::error_code none;
-  if (name.empty() || name != name.filename() || !fs::is_regular_file(next, none)) return false;
-  if (!read_.insert(fs::path(file_).filename().string()).second || read_.contains(name.string())) return false;
-  try {
-    reader_ = std::make_unique<McapReader>(next.string());
-  } catch (const InputError&) {  // no record
-    return false;
-  }
-  file_ = next.string();
-  return true;
-}
-
-TopicReader::TopicReader(const std::string& record, std::vector<std::string> topics)
-    : files_(record), topics_(std::move(topics)) {}
-
-bool TopicReader::next(McapMessage& message) {
-  do {
-    while (files_.reader().next(message)) {
-      const std::string& topic = files_.reader().channels().at(message.channel).topic;
-      if (std::ranges::find(topics_, topic) != topics_.end()) return true;
-    }
-  } while (files_.go_on());
-  return false;
-}
-
-TickReader::TickReader(const std::string& record) : files_(record) {}
-
-bool TickReader::stop(const std::string& why) {
-  if (problem_.empty()) problem_ = why.starts_with(files_.file()) ? why : files_.file() + ": " + why;
-  return false;
-}
-
-bool TickReader::next(TickTaken& taken) {
-  while (ticks_.empty()) {
-    if (!problem_.empty() || !read()) return false;
-  }
-  taken = std::move(ticks_.front());
-  ticks_.pop_front();
-  if (next_tick_ && taken.tick != *next_tick_)
-    return stop("the inputs of " + std::to_string(taken.tick - *next_tick_) + " ticks are missing from tick " +
-                std::to_string(*next_tick_) + " on");
-  next_tick_ = taken.tick + 1;
-  row_ = rows_[taken.tick - first_];
-  for (; first_ < taken.tick; ++first_) rows_.pop_front();
-  return true;
-}
-
-double TickReader::signal(std::uint32_t number) const { return row_[number]; }
-
-bool TickReader::read() {
-  McapMessage message;
-  if (!files_.reader().next(message)) {
-    if (!files_.reader().complete()) return stop(files_.reader().problem());
-    layout_.reset();
-    topics_.clear();
-    return files_.go_on();
-  }
-  if (!layout_ && !learn()) return false;
-  if (files_.reader().channels().at(message.channel).topic == inputs_topic) return take_inputs(message);
-  take_row(message);
-  if (rows_.size() > rows_max) return stop("it has rows without the inputs of their ticks");
-  return true;
-}
-
-bool TickReader::learn() {
-  const TextMap* const found =
-      files_.reader().metadata().contains(inputs_metadata) ? &files_.reader().metadata().at(inputs_metadata) : nullptr;
-  if (found == nullptr) return stop("it holds no inputs of its ticks");
-  const std::vector<std::string> before = std::move(names_);
-  names_.clear();
-  layout_ = InputLayout::of(*found);
-  const auto names = found->find("names");
-  if (names != found->end()) names_ = names_in(names->second);
-  for (std::uint32_t i = 0; i < names_.size(); ++i) numbers_[names_[i]] = i;
-  if (!before.empty() && before != names_) return stop("it is no part of the same run");
-  if (!layout_) return stop("its inputs are of another version of kadans");
-  decoder_ = std::make_unique<InputDecoder>(*layout_);
-  return true;
-}
-
-void TickReader::take_row(const McapMessage& message) {
-  const auto [known, added] = topics_.try_emplace(message.channel);
-  std::vector<std::uint32_t>& numbers = known->second;
-  if (added) {
-    const TextMap& facts = files_.reader().channels().at(message.channel).metadata;
-    const auto description = facts.find("signals");
-    if (description == facts.end()) return;
-    for (const std::string& name : names_in(description->second)) {
-      const auto number = numbers_.find(name);
-      numbers.push_back(number == numbers_.end() ? std::numeric_limits<std::uint32_t>::max() : number->second);
-    }
-  }
-  if (numbers.empty()) return;
-  values_.resize(numbers.size());
-  if (!read_cdr(message.payload, values_, Precision::full) && !read_cdr(message.payload, values_, Precision::single))
-    return;
-  if (!reach(message.sequence)) return;
-  for (std::size_t row = message.sequence - first_; row < rows_.size(); ++row) {
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      if (numbers[i] < names_.size()) rows_[row][numbers[i]] = values_[i];
-    }
-  }
-}
-
-// There are rows up to this tick: one without messages is as the one before it.
-bool TickReader::reach(std::uint64_t tick) {
-  if (rows_.empty()) {
-    first_ = tick;
-    rows_.emplace_back(names_.size(), not_known);
-  }
-  if (tick < first_ || tick - first_ > rows_max) return false;
-  while (first_ + rows_.size() <= tick) rows_.push_back(rows_.back());
-  return true;
-}
-
-bool TickReader::take_inputs(const McapMessage& message) {
-  ByteReader head(message.payload);
-  const auto first = head.take<std::uint64_t>();
-  const auto count = head.take<std::uint32_t>();
-  const bool reached =
-      head.ok() && count > 0 && count <= InputEncoder::ticks_max && reach(first + count - 1) && first >= first_;
-  if (reached && decoder_->decode(message.payload, *this, ticks_)) return true;
-  ticks_.clear();
-  return stop(printed("its inputs are damaged from %.3f s on", 1e-9 * static_cast<double>(message.time_ns)));
-}
-
-std::optional<std::uint64_t> TickReader::bits(std::uint64_t tick, std::uint32_t signal) const {
-  if (tick < first_ || tick - first_ >= rows_.size() || signal >= names_.size()) return std::nullopt;
-  return std::bit_cast<std::uint64_t>(rows_[tick - first_][signal]);
-}
-
-bool BehaviorInputReader::next(BehaviorInput& input) {
-  while (at_ == message_.size()) {
-    McapMessage message;
-    if (damaged_ || !reader_.next(message)) return false;
-    message_.assign(message.payload.begin(), message.payload.end());
-    at_ = 0;
-  }
-  const std::span<const std::byte> all = message_;
-  ByteReader bytes(all.subspan(at_));
-  damaged_ = !take_behavior_input(bytes, expected_, input);
-  at_ = damaged_ ? message_.size() : message_.size() - bytes.left();
-  return !damaged_;
+UnpackedRun::UnpackedRun(const RunInputs& inputs, const std::string& record, bool any_plugins,
+                         const std::vector<std::string>& with)
+    : files(inputs, record, any_plugins, with), options(options_of(inputs, record)) {
+  options.robot = files.scenario().string();
+  scenario = live_scenario(options);
+  scenario.plugins = files.plugins();
+  scenario.repeats = true;
 }
 
 RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const UnpackedInputs& unpacked,
@@ -218,21 +70,104 @@ RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenar
       commands_read_(record),
       behaviors_read_(record),
       events_read_(record, {"/transitions", "/active", "/events"}) {
-  assembly_.read_foreign_signals_from(foreign_);
+  assembly_.read_foreign_signals_from(foreign_, behaviors != Behaviors::tested);
+  hashed_.assign(assembly_.catalog().signals.size(), true);
+  for (const SignalId id : assembly_.unhashed()) hashed_[id] = false;
+  for (std::size_t id = assembly_.foreign_first(); id < assembly_.foreign_end(); ++id) hashed_[id] = false;
   comparison_ = std::make_unique<RecordComparison>(compared_.reader(), assembly_.catalog().signals);
   for (DownStorage* storage : hand_overs_.down) storage->hold();
   engine_.take_inputs_by(this, hand_overs_.up);
   assembly_.host().take_inputs_by(this);
 }
 
-void RepeatedRun::go(const std::function<bool()>& stop) {
+void RepeatedRun::go(const std::function<bool()>& stop, const std::vector<RunObserver*>& observers) {
   while (!stop() && ticks_read_.next(taken_)) {
     if (ticks_ == 0 && taken_.tick != 0)
       throw InputError({.file = compared_.file(),
                         .message = "begins in tick " + std::to_string(taken_.tick) +
                                    " of its run: only a record from the first tick on can be repeated"});
     repeat_behaviors(taken_.tick);
-    if (!repeat_tick(taken_) || comparison_->parted()) return;
+    if (!repeat_tick(taken_)) return;
+    show(observers);
+    if (comparison_->parted() && behaviors_ != Behaviors::tested && observers.empty()) return;
+  }
+}
+
+void RepeatedRun::show(const std::vector<RunObserver*>& observers) {
+  ControlEngine& control = assembly_.control();
+  const std::span<const double> row = control.row();
+  add_hash(row);
+  const double time_s = 1e-9 * static_cast<double>(taken_.time_ns);
+  const RunMark mark{control.ticks(), taken_.time_ns, hash_.value()};
+  for (RunObserver* observer : observers) {
+    observer->tick(time_s, row);
+    observer->between_ticks(mark);
+  }
+  take_faults(observers, taken_.time_ns);
+}
+
+void RepeatedRun::add_hash(std::span<const double> row) noexcept {
+  for (std::size_t id = 0; id < row.size(); ++id) {
+    if (hashed_[id]) hash_.add(row[id]);
+  }
+}
+
+void RepeatedRun::take_faults(const std::vector<RunObserver*>& observers, std::int64_t time_ns) {
+  for (Fault fault; assembly_.control().safety().log().try_pop(fault);) {
+    for (RunObserver* observer : observers) observer->fault(fault);
+    faults_.push_back({fault, told(fault, assembly_.robot().model, time_ns, "")});
+  }
+}
+
+void RepeatedRun::go_on_in(Assembly& model, const std::function<bool()>& stop,
+                           const std::vector<RunObserver*>& observers) {
+  ControlEngine& control = assembly_.control();
+  const std::int64_t period_ns = assembly_.robot().engine.control_period_ns(), from_ns = taken_.time_ns;
+  const std::int64_t every = assembly_.robot().engine.behavior_divisor();
+  const SignalTable &shown = model.catalog().signals, &own = assembly_.catalog().signals;
+  std::vector<double> row(shown.size());
+  std::vector<std::pair<SignalId, SignalId>> computed, true_ones;  // of the model, of the engines
+  for (SignalId id = 0; id < shown.size(); ++id) {
+    const std::optional<SignalId> same = own.find(shown.info(id).name);
+    if (same) (shown.info(id).name.starts_with("plant.") ? true_ones : computed).emplace_back(id, *same);
+  }
+  next_behaviors_.reset();
+  while (!led() && fed_ < sent_before_ && feed_next()) {  // what was commanded, and has not arrived yet
+  }
+  WorldRobot& robot = model.world()->robot(0);
+  SensorFrame sensors;
+  for (std::int64_t passed_ns = period_ns; !stop(); passed_ns += period_ns) {
+    const std::int64_t now_ns = from_ns + passed_ns;
+    {
+      const auto actuation = link_.actuation.read();
+      robot.write(*actuation);
+    }
+    model.world()->step(period_ns);
+    robot.read(sensors);
+    sensors.time_ns = now_ns;
+    for (JointSample& joint : sensors.joints) joint.time_ns = 0;
+    sensors.imu.time_ns = 0;
+    link_.sensors.publish(sensors);
+    link_.truth.publish(robot.truth());
+    const double time_s = 1e-9 * static_cast<double>(passed_ns - period_ns);
+    if (model.truth() != nullptr) model.truth()->update(time_s, row);
+    shown.gather(row);
+    for (const auto& [id, same] : true_ones) foreign_[same] = row[id];
+    for (DownStorage* storage : hand_overs_.down) storage->let_through(std::numeric_limits<std::int64_t>::max());
+    control.tick(now_ns, 1e-9 * static_cast<double>(period_ns), 0);
+    ++ticks_;
+    add_hash(control.row());
+    for (const auto& [id, same] : computed) row[id] = control.row()[same];
+    for (RunObserver* observer : observers) {
+      observer->tick(time_s, row);
+      observer->between_ticks({control.ticks(), passed_ns, hash_.value()});
+    }
+    take_faults(observers, now_ns);
+    if (static_cast<std::int64_t>(control.ticks()) % every == 0) {
+      control.exchange().heartbeat.publish(now_ns);
+      engine_.tick(now_ns);
+      ++behavior_ticks_;
+    }
   }
 }
 
@@ -246,7 +181,7 @@ bool RepeatedRun::repeat_tick(const TickTaken& taken) {
       if (number != numbers.end()) foreign_signals_.emplace_back(static_cast<SignalId>(id), number->second);
     }
   }
-  for (const auto& [id, number] : foreign_signals_) foreign_[id] = ticks_read_.signal(number);
+  for (const auto& [id, number] : foreign_signals_) foreign_[id] = ticks_read_.row()[number];
   feed(taken);
   if (!feed_commands(taken.inputs.commands)) return false;
   ControlEngine& control = assembly_.control();
@@ -258,18 +193,7 @@ bool RepeatedRun::repeat_tick(const TickTaken& taken) {
       part("a control object found value " + std::to_string(hand_overs_.down[i]->taken()) + " of its high level, not " +
            std::to_string(taken.down[i]));
   }
-  if (observer_ != nullptr) show(taken);
-  for (Fault fault; control.safety().log().try_pop(fault);) {
-    if (observer_ != nullptr) observer_->fault(fault);
-  }
   return true;
-}
-
-void RepeatedRun::show(const TickTaken& taken) {
-  const std::span<const double> row = assembly_.control().row();
-  rows_.add(row);
-  observer_->tick(1e-9 * static_cast<double>(taken.time_ns), row);
-  observer_->between_ticks({ticks_, taken.time_ns, rows_.value()});
 }
 
 // With the file in which the tick lies.
@@ -321,7 +245,7 @@ bool RepeatedRun::feed_next() {
 
 // All that began before this control tick.
 void RepeatedRun::repeat_behaviors(std::uint64_t until_tick) {
-  while (parting_.empty() || behaviors_ == Behaviors::leading) {
+  while (parting_.empty() || leads()) {
     if (!next_behaviors_ && (behaviors_end_ || !read_behavior_tick())) return;
     if (next_behaviors_->snapshot > until_tick) return;
     repeat_behavior_tick();
@@ -389,8 +313,10 @@ void RepeatedRun::repeat_behavior_tick() {
 
 void RepeatedRun::write_files() {
   for (const BehaviorInput& input : next_behaviors_->inputs) {
-    const bool below = !std::filesystem::path(input.path).is_absolute();  // others are those of this machine
-    if (input.kind == BehaviorInput::Kind::file && below) unpacked_.replace({input.path, "", input.text});
+    if (std::filesystem::path(input.path).is_absolute()) continue;  // those of this machine
+    if (input.kind == BehaviorInput::Kind::file) unpacked_.replace({input.path, "", input.text});
+    if (input.kind == BehaviorInput::Kind::private_file)
+      unpacked_.fetch({input.path, input.text, std::nullopt, true}, compared_.file());
   }
 }
 
@@ -481,14 +407,16 @@ void RepeatedRun::sent(std::span<const Command> batch, bool) noexcept {
     return;
   }
   const std::vector<Command>& recorded = inputs[sent_++].commands;
-  for (std::size_t i = 0; i < std::min(batch.size(), recorded.size()); ++i) {
-    if (!same_command(batch[i], recorded[i]))
-      return part("the behaviors send " + command_text(batch[i], assembly_.catalog()) + ", recorded was " +
-                  command_text(recorded[i], assembly_.catalog()));
-  }
   if (batch.size() != recorded.size())
-    part("the behaviors send " + std::to_string(batch.size() - 1) + " commands, recorded were " +
-         std::to_string(recorded.size() - 1));
+    return part("the behaviors send " + std::to_string(batch.size() - 1) + " commands, the last " +
+                command_text(batch.back(), assembly_.catalog()) + ", recorded were " +
+                std::to_string(recorded.size() - 1));
+  for (std::size_t i = 1; i <= batch.size(); ++i) {  // their header last
+    const Command &now = batch[i % batch.size()], &then = recorded[i % batch.size()];
+    if (!same_command(now, then))
+      return part("the behaviors send " + command_text(now, assembly_.catalog()) + ", recorded was " +
+                  command_text(then, assembly_.catalog()));
+  }
 }
 
 double RepeatedRun::parameter(double newest) noexcept {

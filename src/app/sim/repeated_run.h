@@ -5,113 +5,51 @@
 // The record is read by several readers at once, because the threads ran beside each other: what the behavior thread
 // took lies in the file before or after the ticks that it saw. A control tick gets the commands that were recorded. The
 // behaviors that are repeated send theirs, which are compared with these.
+//
+// A test of a record (a scenario that names one) is the same run to its end, whatever differs from the record: its
+// checks judge what this program does with what the robot saw then.
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "app/assembly.h"
+#include "app/commands.h"
 #include "input_files.h"
 #include "kadans/signal/state_hash.h"
-#include "telemetry/mcap/mcap_reader.h"
+#include "telemetry/reading/input_reader.h"
 #include "telemetry/reading/record_comparison.h"
 #include "telemetry/record/event_log.h"
-#include "telemetry/record/input_stream.h"
 
 namespace kadans {
-
-// A record, and the files in which it went on.
-class RecordFiles {
- public:
-  explicit RecordFiles(const std::string& record);
-
-  McapReader& reader() noexcept { return *reader_; }
-  const McapReader& reader() const noexcept { return *reader_; }
-  const std::string& file() const noexcept { return file_; }
-  // After the last message of a file: to the next one. False: there is none.
-  [[nodiscard]] bool go_on();
-
- private:
-  std::string file_;
-  std::unique_ptr<McapReader> reader_;
-  std::set<std::string> read_;  // names of the files before
-};
-
-// The messages of some topics of a record, in the order of its files.
-class TopicReader {
- public:
-  TopicReader(const std::string& record, std::vector<std::string> topics);
-  // False at the end, or where the record is damaged.
-  [[nodiscard]] bool next(McapMessage& message);
-
- private:
-  RecordFiles files_;
-  std::vector<std::string> topics_;
-};
-
-// The ticks of a record with their inputs and the recorded signals.
-class TickReader final : private SignalBits {
- public:
-  explicit TickReader(const std::string& record);
-
-  // False at the end; then problem() says why it ends there, "": it is the proper end.
-  [[nodiscard]] bool next(TickTaken& taken);
-  // Of the tick that next() gave; NaN where the record has none.
-  double signal(std::uint32_t number) const;
-  const std::vector<std::string>& signals() const noexcept { return names_; }  // by number
-  const std::string& problem() const noexcept { return problem_; }
-
- private:
-  std::optional<std::uint64_t> bits(std::uint64_t tick, std::uint32_t signal) const override;
-  bool read();
-  bool learn();
-  void take_row(const McapMessage& message);
-  bool take_inputs(const McapMessage& message);
-  bool reach(std::uint64_t tick);
-  bool stop(const std::string& why);
-
-  RecordFiles files_;
-  std::optional<InputLayout> layout_;
-  std::unique_ptr<InputDecoder> decoder_;
-  std::vector<std::string> names_;
-  std::map<std::string, std::uint32_t> numbers_;
-  std::map<std::uint16_t, std::vector<std::uint32_t>> topics_;  // numbers of the signals in its messages
-  std::vector<double> values_;                                  // of one message
-  std::uint64_t first_ = 0;                                     // tick of rows_.front()
-  std::deque<std::vector<double>> rows_;
-  std::deque<TickTaken> ticks_;
-  std::optional<std::uint64_t> next_tick_;
-  std::vector<double> row_;
-  std::string problem_;
-};
-
-// What the behavior thread took, event by event.
-class BehaviorInputReader {
- public:
-  explicit BehaviorInputReader(const std::string& record) : reader_(record, {behavior_inputs_topic}) {}
-  [[nodiscard]] bool next(BehaviorInput& input);
-  bool damaged() const noexcept { return damaged_; }
-
- private:
-  TopicReader reader_;
-  std::vector<std::byte> message_;
-  std::size_t at_ = 0;
-  std::uint32_t expected_ = 0;
-  bool damaged_ = false;
-};
 
 // What the behavior thread took up to the end of one of its ticks.
 struct TakenByBehaviors {
   std::vector<BehaviorInput> inputs;
   std::uint64_t snapshot = 0;
+};
+
+// Repeats the record that the scenario names, and judges it by the scenario's checks; returns the program's exit code.
+int run_record_test(const SimOptions& options, const ScenarioConfig& test);
+// Repeats a record up to a time, and goes on in the world of a scenario, which judges it; returns the exit code.
+int run_then_simulation(const ReplayOptions& options);
+// Makes all ready for a test, and says how many checks there are. Throws InputError.
+std::size_t count_record_checks(const ScenarioConfig& test);
+
+// The run of a record on threads, with its files unpacked.
+struct UnpackedRun {
+  // `with`: files of a project here that take the place of the record's. Throws InputError.
+  UnpackedRun(const RunInputs& inputs, const std::string& record, bool any_plugins,
+              const std::vector<std::string>& with);
+
+  UnpackedInputs files;
+  RunOptions options;
+  ScenarioConfig scenario;
 };
 
 class RepeatedRun final : private BehaviorInputs {
@@ -120,19 +58,20 @@ class RepeatedRun final : private BehaviorInputs {
   enum class Behaviors : std::uint8_t {
     none,      // the high levels of control objects; commands are taken from the record
     compared,  // the behaviors, whose commands are compared with those of the record
-    leading    // the behaviors, and from where they first command otherwise that counts: a run with other files
+    leading,   // the behaviors, and from where they first command otherwise that counts: a run with other files
+    tested     // the same; what signals do does not end the run, and those of behaviors are their own
   };
   // `unpacked` holds the scenario's files, and gets those that were read later; `recorded_root` was their folder in the
   // recorded run.
   RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const UnpackedInputs& unpacked,
               std::string recorded_root, Behaviors behaviors);
 
-  // `stop` is asked between ticks.
-  void go(const std::function<bool()>& stop);
-  // Before go(): it hears of ticks and faults, with the hash of the rows of all signals.
-  void show_to(RunObserver& observer) noexcept { observer_ = &observer; }
-  Assembly& assembly() noexcept { return assembly_; }
-  RunLog& log() noexcept { return log_; }
+  // `stop` is asked between ticks. Each tick is shown to `observers`; with some, a signal that differs ends nothing.
+  void go(const std::function<bool()>& stop, const std::vector<RunObserver*>& observers = {});
+  // After go(): the engines go on, with a model of the robot in place of the record. `model` was made for a scenario of
+  // this robot; only its world is used. The observers see its signals, as these engines compute them, and its time,
+  // which starts at 0.
+  void go_on_in(Assembly& model, const std::function<bool()>& stop, const std::vector<RunObserver*>& observers);
 
   const RecordComparison& comparison() const noexcept { return *comparison_; }
   bool same() const;
@@ -145,6 +84,13 @@ class RepeatedRun final : private BehaviorInputs {
   std::uint64_t behavior_ticks() const noexcept { return behavior_ticks_; }
   std::uint64_t commands() const noexcept { return commands_; }
   std::uint64_t events() const noexcept { return events_; }
+  // Over all computed signals of all ticks.
+  std::uint64_t state_hash() const noexcept { return hash_.value(); }
+  const std::vector<RunFault>& faults() const noexcept { return faults_; }
+  Assembly& assembly() noexcept { return assembly_; }
+  RunLog& log() noexcept { return log_; }
+  const RunLog& log() const noexcept { return log_; }
+  std::int64_t time_ns() const noexcept { return taken_.time_ns; }  // of the last tick
 
  private:
   bool repeat_tick(const TickTaken& taken);
@@ -152,8 +98,11 @@ class RepeatedRun final : private BehaviorInputs {
   void feed(const TickTaken& taken);
   bool feed_commands(std::uint32_t waiting);
   bool feed_next();
-  void show(const TickTaken& taken);
-  bool led() const noexcept { return behaviors_ == Behaviors::leading && !parting_.empty(); }
+  void show(const std::vector<RunObserver*>& observers);
+  void add_hash(std::span<const double> row) noexcept;
+  void take_faults(const std::vector<RunObserver*>& observers, std::int64_t time_ns);
+  bool leads() const noexcept { return behaviors_ == Behaviors::leading || behaviors_ == Behaviors::tested; }
+  bool led() const noexcept { return leads() && !parting_.empty(); }
   void repeat_behaviors(std::uint64_t until_tick);
   bool read_behavior_tick();
   void repeat_behavior_tick();
@@ -197,8 +146,9 @@ class RepeatedRun final : private BehaviorInputs {
   JoystickState joystick_{};
   std::uint64_t ticks_ = 0, behavior_ticks_ = 0, commands_ = 0, events_ = 0;
   std::string parting_;
-  RunObserver* observer_ = nullptr;
-  StateHash rows_;  // for the observer
+  StateHash hash_;
+  std::vector<bool> hashed_;  // signals
+  std::vector<RunFault> faults_;
 };
 
 }  // namespace kadans

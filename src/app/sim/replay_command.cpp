@@ -7,6 +7,7 @@
 
 #include "app/assembly.h"
 #include "app/commands.h"
+#include "app/option_checks.h"
 #include "app/run/behavior_process.h"
 #include "app/run/observers.h"
 #include "app/terminal.h"
@@ -216,6 +217,16 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
       ->add_option("--with", options.with,
                    "Of a run on threads: files of this project that take the place of the record's")
       ->type_name("FILE");
+  CLI::Option* then =
+      replay
+          ->add_option("--then-simulate", options.then_simulate,
+                       "Of a run on threads: from --at on, its engines go on in this scenario's world, with its checks")
+          ->type_name("SCENARIO");
+  CLI::Option* at = replay->add_option("--at", options.at_s, "Second of the record from which that is simulated")
+                        ->type_name("S")
+                        ->check(number_within(0.001, scenario_duration_max_s))
+                        ->needs(then);
+  then->needs(at);
   replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
@@ -242,17 +253,11 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
 
 // A run on threads: its files come out of the record.
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
-  const UnpackedInputs unpacked(inputs, options.record, options.allow_plugins);
-  for (const std::string& file : options.with) unpacked.put_in_place(file);
-  RunOptions run = options_of(inputs, options.record);
-  run.robot = unpacked.scenario().string();
-  ScenarioConfig scenario = live_scenario(run);
-  scenario.plugins = unpacked.plugins();
-  scenario.repeats = true;
-  RepeatedRun repeated(options.record, scenario, unpacked, inputs.fact("root"),
-                       !options.with.empty()        ? RepeatedRun::Behaviors::leading
-                       : run.behaviors == "process" ? RepeatedRun::Behaviors::none
-                                                    : RepeatedRun::Behaviors::compared);
+  const UnpackedRun run(inputs, options.record, options.allow_plugins, options.with);
+  RepeatedRun repeated(options.record, run.scenario, run.files, inputs.fact("root"),
+                       !options.with.empty()                ? RepeatedRun::Behaviors::leading
+                       : run.options.behaviors == "process" ? RepeatedRun::Behaviors::none
+                                                            : RepeatedRun::Behaviors::compared);
   catch_interrupts();
   repeated.go(interrupted);
   if (interrupted()) return exit_interrupted;
@@ -271,6 +276,7 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
 
 int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
+  if (!options.then_simulate.empty()) return run_then_simulation(options);
   if (inputs.fact("clock") == clock_of_threads) return repeat_run(options, inputs);
   if (!options.with.empty())
     throw InputError(

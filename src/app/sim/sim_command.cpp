@@ -7,6 +7,7 @@
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "input_files.h"
+#include "repeated_run.h"
 #include "sim_run.h"
 
 namespace kadans {
@@ -61,6 +62,26 @@ void refuse_wrong_mixtures(const SimOptions& options) {
   if (options.ros2.wanted()) refuse_option("--ros2", "does not go with --from");
   if (!options.branches.empty() && !(options.set.empty() && options.play.empty() && options.push.empty()))
     refuse_option("--branch", "says itself what to set, play and push");
+}
+
+// What a repeated record does not take.
+void refuse_simulation(const SimOptions& options) {
+  const auto refuse_option = [&](bool given, const char* option) {
+    if (given)
+      throw InputError(
+          {.file = option, .message = "is for simulations: " + options.scenario + " repeats a record as it was"});
+  };
+  refuse_option(options.seed.has_value(), "--seed");
+  refuse_option(!options.play.empty(), "--play");
+  refuse_option(!options.set.empty(), "--set");
+  refuse_option(!options.metrics.empty(), "--metrics");
+  refuse_option(!options.record.empty(), "--record");
+  refuse_option(options.realtime, "--realtime");
+  refuse_option(!options.checkpoints.empty(), "--checkpoint");
+  refuse_option(options.report.wanted(), "--report");
+  refuse_option(options.ctl.wanted && !options.ctl.folder.empty(), "--ctl");
+  refuse_option(options.live.wanted(), "--live");
+  refuse_option(options.ros2.wanted(), "--ros2");
 }
 
 }  // namespace
@@ -120,6 +141,10 @@ int run_sim(const SimOptions& options) {
   refuse_wrong_mixtures(options);
   if (!options.from.empty()) return go_on(options);
   require_kind(options.scenario, JsonKind::scenario);
+  if (const ScenarioConfig test = read_tested_scenario(options.scenario); !test.record.empty()) {
+    refuse_simulation(options);
+    return run_record_test(options, test);
+  }
   SimRun sim(options, options);
   catch_interrupts();
   return sim.run();

@@ -145,6 +145,7 @@ void refuse_faulty_runs(const std::vector<PlannedRun>& runs) {
   std::vector<InputProblem> problems;
   for (const PlannedRun& run : runs) {
     if (!seen.insert(run.scenario.file).second) continue;
+    if (!run.scenario.record.empty()) continue;  // it has its own behaviors
     const ScenarioConfig scenario = read_scenario_config(run.scenario.file);
     const Catalog* const catalog = robots[scenario.robot].catalog(scenario.robot);
     if (catalog == nullptr) continue;
@@ -177,6 +178,7 @@ void print_plan(const std::vector<PlannedRun>& runs, bool json) {
 namespace {
 
 std::string repeat_command(const PlannedRun& run) {
+  if (!run.scenario.record.empty()) return "kadans sim " + shell_word(run.scenario.file.string());
   return "kadans sim " + shell_word(run.scenario.file.string()) + " --seed " + std::to_string(run.seed);
 }
 
@@ -192,10 +194,14 @@ class Suite final : public JobWatcher {
   int run(const FailedRuns& failed_runs) {
     std::vector<Job> jobs;
     for (const PlannedRun& run : runs_) {
-      jobs.push_back({{fs::read_symlink("/proc/self/exe").string(), "sim", run.scenario.file.string(), "--seed",
-                       std::to_string(run.seed), "--json", "--no-record"},
+      jobs.push_back({{fs::read_symlink("/proc/self/exe").string(), "sim", run.scenario.file.string(), "--json"},
                       run.scenario.wall_limit_s});
-      if (options_.report.wanted()) add_report(jobs.back());
+      const bool simulated = run.scenario.record.empty();
+      if (simulated) {
+        const std::vector<std::string> more{"--no-record", "--seed", std::to_string(run.seed)};
+        jobs.back().arguments.insert(jobs.back().arguments.end(), more.begin(), more.end());
+      }
+      if (simulated && options_.report.wanted()) add_report(jobs.back());
       if (golden_ != nullptr) jobs.back().arguments.insert(jobs.back().arguments.end(), {"--hash-every", "1"});
     }
     run_jobs(jobs, options_.jobs, *this);
@@ -297,6 +303,7 @@ namespace {
 std::vector<fs::path> robots_of(const std::vector<FoundScenario>& scenarios) {
   std::set<fs::path> robots;
   for (const FoundScenario& found : scenarios) {
+    if (!found.record.empty()) continue;
     const ScenarioConfig scenario = read_scenario_config(found.file);
     robots.insert(scenario.robot);
     for (const ScenarioConfig& other : scenario.robots) robots.insert(other.robot);

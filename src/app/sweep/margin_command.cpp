@@ -261,6 +261,7 @@ std::vector<ScenarioConfig> scenarios_of(const MarginOptions& options) {
   std::vector<ScenarioConfig> own;
   std::string other;
   for (const FoundScenario& found : find_scenarios(folder, options.scenarios)) {
+    if (!found.record.empty()) continue;
     ScenarioConfig scenario = read_scenario_config(found.file);
     if (!fs::equivalent(scenario.robot, options.robot)) {
       other = found.name + " is of " + scenario.robot;

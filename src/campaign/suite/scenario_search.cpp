@@ -13,10 +13,11 @@ namespace {
 namespace fs = std::filesystem;
 
 FoundScenario read_scenario(const fs::path& file) {
-  const ScenarioConfig config = read_scenario_config(file);
+  const ScenarioConfig config = read_tested_scenario(file);
   return {.file = file,
           .name = config.name,
           .doc = config.doc,
+          .record = config.record,
           .tags = config.tags,
           .seed = config.seed,
           .repeat = config.repeat,
@@ -27,7 +28,8 @@ bool looks_like_scenario(const fs::path& file) {
   if (file.extension() != ".json") return false;
   const std::string text = read_input_file(file);
   return text.find("scenario.schema.json") != std::string::npos ||
-         (text.find("\"duration_s\"") != std::string::npos && text.find("\"robot\"") != std::string::npos &&
+         (((text.find("\"duration_s\"") != std::string::npos && text.find("\"robot\"") != std::string::npos) ||
+           (text.find("\"record\"") != std::string::npos && text.find("\"checks\"") != std::string::npos)) &&
           text.find("\"$schema\"") == std::string::npos);
 }
 

@@ -11,6 +11,7 @@ namespace kadans {
 struct FoundScenario {
   std::filesystem::path file;
   std::string name, doc;
+  std::string record;  // that it repeats; "": it is simulated
   std::vector<std::string> tags;
   std::uint64_t seed = 1;
   std::uint32_t repeat = 1;

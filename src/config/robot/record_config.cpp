@@ -64,6 +64,9 @@ void record_fields(Fields& f, RecordConfig& record) {
   f.boolean("single_precision", record.single_precision, "records hold 32-bit numbers: half the size, 7 digits");
   f.boolean("inputs", record.inputs,
             "records of `kadans run` hold all that went into the run, so that `kadans replay` repeats it");
+  f.strings("private", record.private_files, {0, 100},
+            "files whose content records leave out, as patterns over paths from the project root, such as "
+            "behaviors/tulip/secret_*; who runs the record again needs them");
   f.number("flight_s", record.flight_s, {0, 600, "s"},
            "time that `kadans run` keeps in memory and writes when a fault latches; 0: none");
   f.number("flight_MB", record.flight_MB, {1, 1000, "MB"},

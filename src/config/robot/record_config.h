@@ -27,7 +27,9 @@ struct SignalChoice {
 struct RecordConfig {
   SignalChoice signals;
   bool single_precision = false;
-  bool inputs = true;    // records of runs on threads hold what repeats them
+  bool inputs = true;  // records of runs on threads hold what repeats them
+  std::vector<PlacedName>
+      private_files;     // patterns over paths from the project's root: records leave their content out
   double flight_s = 30;  // time span that the flight recorder keeps; 0: no flight recorder
   double flight_MB = 8;  // memory for that span, compressed
   double file_MB = 100;  // at which a record that nobody named goes on in a new file; 0: never

@@ -312,19 +312,46 @@ void sight_fields(Fields& f, ScenarioSight& sight, const WorldConfig& world, Pro
     problems.add_unknown(sight.ball.place, "object", sight.ball.name, names);
 }
 
+// A record that is repeated says itself what its run was.
+void record_test_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+  std::vector<PlacedName> with;
+  f.string("record", scenario.record,
+           "a record of `kadans run` that is repeated in place of a simulation, from this file's folder");
+  f.strings("with", with, {0, 100},
+            "with a record: files of this project that take the place of the record's, from the project root");
+  if (!f.reading()) return;
+  if (!f.has("record")) {
+    if (f.has("with")) problems.add(f.place("with"), "with: only a scenario that repeats a record has one");
+    return;
+  }
+  for (const char* const key : {"robot", "plant", "seed", "repeat", "start_pose", "set", "randomise", "behaviors",
+                                "events", "pushes", "faults", "robots", "world", "bus", "joystick", "sight"}) {
+    if (f.has(key)) problems.add(f.place(key), std::string(key) + ": comes with the record, which is repeated");
+  }
+  const std::filesystem::path file = std::filesystem::absolute(scenario.file).parent_path() / scenario.record;
+  if (!std::filesystem::is_regular_file(file))
+    problems.add(f.place("record"), "record: there is no file " + in_quotes(file.lexically_normal().string()));
+  scenario.record = file.lexically_normal().string();
+  for (const PlacedName& name : with)
+    scenario.with.push_back(resolve_file(name.name, name.place, "file", problems).string());
+  if (!f.has("duration_s")) scenario.duration_s = scenario_duration_max_s;
+}
+
 void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
   f.string("based_on", base, "another scenario; this file says only what is different");
   f.string("name", scenario.name, "the scenario's name", Need::required);
   f.string("doc", scenario.doc, "what it shows, one or two sentences");
-  f.string("robot", scenario.robot, "the robot's configuration, from the project root", Need::required);
+  record_test_fields(f, scenario, problems);
+  const Need need = f.reading() && !f.has("record") ? Need::required : Need::optional;  // either these two or a record
+  f.string("robot", scenario.robot, "the robot's configuration, from the project root; not with a record", need);
   if (!scenario.robot.empty()) {
     scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", problems).string();
   }
   plant_fields(f, scenario, problems);
-  f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"}, "duration of the simulation",
-           Need::required);
+  f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"},
+           "duration of the simulation; of a record, how much of it is repeated (default: all)", need);
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
             "seed of all random numbers of the run");
   suite_fields(f, scenario, problems);
@@ -363,15 +390,23 @@ ScenarioConfig read_scenario_config_text(const std::string& text, const std::str
   ScenarioConfig scenario;
   scenario.file = file;
   const BasedJson json = parse_based_json(text, file);
-  if (!json.bases.empty()) (void)read_scenario_config(json.bases.front());
+  if (!json.bases.empty()) (void)read_tested_scenario(json.bases.front());
   Problems problems(file);
   read_fields(json.value, problems, [&](Fields& f) { scenario_fields(f, scenario, problems); });
   problems.throw_if_any();
   return scenario;
 }
 
-ScenarioConfig read_scenario_config(const std::filesystem::path& file) {
+ScenarioConfig read_tested_scenario(const std::filesystem::path& file) {
   return read_scenario_config_text(read_input_file(file), file.string());
+}
+
+ScenarioConfig read_scenario_config(const std::filesystem::path& file) {
+  ScenarioConfig scenario = read_tested_scenario(file);
+  if (!scenario.record.empty())
+    throw InputError({.file = file.string(),
+                      .message = "repeats a record, so it cannot be simulated: kadans test and kadans sim repeat it"});
+  return scenario;
 }
 
 FieldInfo describe_scenario_config() {

@@ -159,9 +159,11 @@ struct ScenarioConfig {
   std::string file;
   std::string name;
   std::string doc;
-  std::string robot;             // path of the robot's configuration, resolved
-  std::string plant = "bullet";  // name of a plant type (plant_type.h); a file may name only a model
-  TextPlace plant_place;         // in a file that names one
+  std::string record;             // repeated in place of a simulation, resolved; "": the scenario is simulated
+  std::vector<std::string> with;  // with a record: files of the project that take the place of the record's, resolved
+  std::string robot;              // path of the robot's configuration, resolved
+  std::string plant = "bullet";   // name of a plant type (plant_type.h); a file may name only a model
+  TextPlace plant_place;          // in a file that names one
   ScenarioBus bus;
   std::string imu;   // not in the file: the device of the IMU beside it; "": the one in the robot's configuration
   std::string peer;  // not in the file: address of a plant that is no model; "": the one in the robot's configuration
@@ -169,9 +171,14 @@ struct ScenarioConfig {
   double duration_s = 0;
   std::uint64_t seed = 1;
   std::vector<std::string> tags;
-  std::uint32_t repeat = 1;      // runs of it in `kadans test`, each with the next seed
-  double wall_limit_s = 60;      // a run that takes longer is stopped
-  PlacedName start_pose;         // "": the robot's own
+  std::uint32_t repeat = 1;  // runs of it in `kadans test`, each with the next seed
+  double wall_limit_s = 60;  // a run that takes longer is stopped
+  PlacedName start_pose;     // "": the robot's own
+  // Not in the file: where the robot starts, when it goes on from what was estimated; else no joints.
+  struct {
+    Quat orientation{1, 0, 0, 0};
+    std::vector<double> position_rad;
+  } placed{};
   std::vector<NumberEntry> set;  // values of quantities, by patterns over their names
   std::vector<Variation> randomise;
   std::vector<NumberEntry> set_last;  // not in the file: values that the command line sets, after all random draws
@@ -199,8 +206,9 @@ PlayFolders folders_of(const ScenarioConfig& scenario);
 // Throws InputError with all mistakes. The files that the scenario names exist, but they are not read yet. Signals are
 // not checked here: code that has the signal table does so with refuse_unknown(file, {check.signal,
 // check.signal_place}, "signal", ...). When the robot names plug-ins, an unknown plant is not refused here: the code
-// that loads the plug-ins checks it.
+// that loads the plug-ins checks it. A scenario that repeats a record is refused: read_tested_scenario takes it, too.
 ScenarioConfig read_scenario_config(const std::filesystem::path& file);
+ScenarioConfig read_tested_scenario(const std::filesystem::path& file);
 ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file);
 
 // The fields of the file, for the schema.

@@ -1,7 +1,9 @@
 #include "mcap_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstring>
 #include <system_error>
 
 #include <fcntl.h>
@@ -90,15 +92,21 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
   put_definitions(channel);
 
   Channel& to = channels_[channel - 1U];
-  to.index.emplace_back(log_time_ns, records_.size());
-  {
-    const McapRecord record(records_, McapOpcode::message);
-    records_.put(channel);
-    records_.put(sequence);
-    records_.put(log_time_ns);
-    records_.put(log_time_ns);  // published when logged
-    records_.put(payload);
-  }
+  to.index.push_back({log_time_ns, records_.size()});
+  std::array<std::byte, message_head> head{};  // at once: there are thousands a second
+  std::byte* at = head.data();
+  const auto put = [&at](const auto& value) {
+    std::memcpy(at, &value, sizeof value);
+    at += sizeof value;
+  };
+  put(McapOpcode::message);
+  put(static_cast<std::uint64_t>(message_head - mcap_record_head + payload.size()));
+  put(channel);
+  put(sequence);
+  put(log_time_ns);
+  put(log_time_ns);  // published when logged
+  records_.put(head);
+  records_.put(payload);
   start_ns_ = messages_ == 0 ? log_time_ns : std::min(start_ns_, log_time_ns);
   end_ns_ = std::max(end_ns_, log_time_ns);
   ++to.messages;
@@ -109,13 +117,12 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
 // Appends the chunk's records to the block, compressed. False: nothing was appended.
 bool McapWriter::pack() {
   if (zstd_ == nullptr) return false;
-  const std::size_t start = block_.size();
-  const auto room = block_.grow(ZSTD_compressBound(records_.size()));
-  const std::size_t size = ZSTD_compressCCtx(zstd_.get(), room.data(), room.size(), records_.bytes().data(),
+  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(records_.size())));
+  const std::size_t size = ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), records_.bytes().data(),
                                              records_.size(), settings_.compression_level);
-  const bool packed = ZSTD_isError(size) == 0;  // else out of memory
-  block_.shrink(start + (packed ? size : 0));
-  return packed;
+  if (ZSTD_isError(size) != 0) return false;  // out of memory
+  block_.put(std::span(packed_).first(size));
+  return true;
 }
 
 void McapWriter::put_chunk(Chunk& chunk) {
@@ -156,11 +163,9 @@ void McapWriter::put_message_indexes(Chunk& chunk) {
     chunk.indexes.emplace_back(channel, chunk.offset + block_.size());
     const McapRecord record(block_, McapOpcode::message_index);
     block_.put(channel);
-    block_.put(static_cast<std::uint32_t>(channels_[i].index.size() * 2 * sizeof(std::uint64_t)));
-    for (const auto& [time_ns, offset] : channels_[i].index) {
-      block_.put(time_ns);
-      block_.put(offset);
-    }
+    const std::span<const std::byte> index = std::as_bytes(std::span(channels_[i].index));
+    block_.put(static_cast<std::uint32_t>(index.size()));
+    block_.put(index);
     channels_[i].index.clear();
   }
   chunk.index_length = block_.size() - chunk.length;

@@ -61,7 +61,7 @@ class RecordFile {
 struct McapSettings {
   std::int64_t chunk_period_ns = 500'000'000;  // of log time
   std::size_t chunk_bytes = 1U << 20U;         // before compression
-  int compression_level = 1;                   // of zstd, 1..19; 0: not compressed
+  int compression_level = -1;                  // of zstd, -7..19, less is faster; 0: not compressed
 };
 
 class McapWriter {
@@ -97,13 +97,16 @@ class McapWriter {
     std::string name, encoding, text;
     std::uint32_t chunk = 0;  // number of the last chunk that carries it
   };
+  struct Indexed {  // as it stands in the file
+    std::uint64_t time_ns = 0, offset = 0;
+  };
   struct Channel {
     std::string topic, encoding;
     std::uint16_t schema = 0;
     TextMap metadata;
     std::uint32_t chunk = 0;
     std::uint64_t messages = 0;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index;  // of the open chunk: log time, offset
+    std::vector<Indexed> index;  // of the open chunk
   };
   struct Chunk {  // the summary's data about the chunk that is being written
     std::uint64_t start_ns = 0, end_ns = 0, offset = 0, length = 0, index_length = 0, packed = 0, unpacked = 0;
@@ -143,8 +146,9 @@ class McapWriter {
   std::vector<Channel> channels_;
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
 
-  ByteWriter records_;  // of the open chunk
-  ByteWriter block_;    // the bytes that go to the file in one piece
+  ByteWriter records_;             // of the open chunk
+  std::vector<std::byte> packed_;  // room for the open chunk, compressed
+  ByteWriter block_;               // the bytes that go to the file in one piece
   std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
   std::uint32_t chunk_number_ = 1;
 

@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <optional>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "config/json/foreign_json.h"
+#include "input_reader.h"
 #include "kadans/signal/input_error.h"
 #include "signal/nearest_name.h"
 #include "signal/number_text.h"
@@ -235,6 +239,84 @@ bool is_event(const RecordTopic& topic) {
   return topic.schema == "foxglove.Log" || topic.schema == "kadans.Transition" || topic.schema == "kadans.Fault";
 }
 
+// The inputs of a record's ticks up to a time, stored anew for a file with other signals.
+class CutInputs {
+ public:
+  // `exact`: the signals of which the new file has each tick with all bits.
+  CutInputs(const RecordOutline& record, std::int64_t to_ns, const std::set<std::string>& exact, McapWriter& file)
+      : to_ns_(std::min(to_ns, record.last_ns)), file_(file), ticks_(record.file), behaviors_(record.file) {
+    more_ = ticks_.next(tick_);
+    if (!more_)
+      throw InputError({.file = record.file,
+                        .message = "has no inputs to be kept: " +
+                                   (ticks_.problem().empty() ? "it holds no tick" : ticks_.problem())});
+    if (tick_.tick != 0)
+      throw InputError({.file = record.file,
+                        .message = "begins in tick " + std::to_string(tick_.tick) +
+                                   " of its run: only inputs from the first tick on can be repeated"});
+    std::vector<bool> known;
+    TextMap facts = ticks_.layout().facts();
+    for (const std::string& name : ticks_.signals()) {
+      known.push_back(exact.contains(name));
+      facts["names"] += name + '\n';
+    }
+    encoder_ = std::make_unique<InputEncoder>(ticks_.layout(), std::move(known));
+    const std::uint16_t schema = file_.add_schema("kadans.Inputs", "", "");
+    written_ = file_.add_metadata(inputs_metadata, facts);
+    inputs_channel_ = file_.add_channel(inputs_topic, "", schema);
+    behaviors_channel_ = file_.add_channel(behavior_inputs_topic, "", schema);
+  }
+
+  // Those of all ticks before this time, whose rows have been written. False: the file failed.
+  bool until(std::int64_t time_ns) {
+    for (; more_ && tick_.time_ns < time_ns && tick_.time_ns <= to_ns_; more_ = ticks_.next(tick_)) {
+      if (encoder_->full()) put();
+      if (!encoder_->add(tick_.tick, tick_.time_ns, tick_.words, ticks_.row())) break;
+      last_tick_ = tick_.tick;
+    }
+    return written_;
+  }
+  bool finish() {
+    (void)until(std::numeric_limits<std::int64_t>::max());
+    if (encoder_->ticks() > 0) put();
+    return written_;
+  }
+
+ private:
+  void put() {
+    message_.clear();
+    encoder_->encode(message_);
+    written_ = file_.write(inputs_channel_, 0, encoder_->time_ns(), message_.bytes()) && written_;
+    put_behaviors();
+  }
+
+  // What came before the first tick of the behaviors that saw a later control tick.
+  void put_behaviors() {
+    message_.clear();
+    while (waits_ || behaviors_.next(event_)) {
+      waits_ = event_.kind == BehaviorInput::Kind::tick_begins && event_.snapshot > last_tick_ + 1;
+      if (waits_) break;
+      message_.put(behaviors_.bytes());
+    }
+    if (message_.size() > 0)
+      written_ = file_.write(behaviors_channel_, 0, encoder_->time_ns(), message_.bytes()) && written_;
+  }
+
+  std::int64_t to_ns_;
+  McapWriter& file_;
+  TickReader ticks_;
+  BehaviorInputReader behaviors_;
+  std::unique_ptr<InputEncoder> encoder_;
+  std::uint16_t inputs_channel_ = 0, behaviors_channel_ = 0;
+  ByteWriter message_;
+  TickTaken tick_;
+  BehaviorInput event_;
+  std::uint64_t last_tick_ = 0;
+  bool more_ = false, waits_ = false, written_ = true;
+};
+
+bool is_input(const RecordTopic& topic) { return topic.name == inputs_topic || topic.name == behavior_inputs_topic; }
+
 class Cutting {
  public:
   Cutting(const RecordOutline& record, const RecordCut& cut) : record_(record), cut_(cut), rows_(record.file) {
@@ -248,8 +330,10 @@ class Cutting {
   CutRecord write(const std::string& to) {
     check(file_.open(to));
     put_facts();
+    if (cut_.inputs) inputs_ = std::make_unique<CutInputs>(record_, cut_.span.to_ns, exact_signals(), file_);
     while (rows_.next()) pass();
     if (result_.messages == 0) refuse_empty();
+    if (inputs_) check(inputs_->finish());
     check(file_.close());
     result_.file_bytes = file_.file_bytes();
     return result_;
@@ -265,7 +349,11 @@ class Cutting {
   }
 
   void put_facts() {
-    for (const auto& [name, facts] : record_.metadata) check(file_.add_metadata(name, facts));
+    // Not: of inputs, which are stored anew; of a next file, of the whole record's end.
+    const std::set<std::string> left_out{inputs_metadata, "goes_on", "recorder"};
+    for (const auto& [name, facts] : record_.metadata) {
+      if (!left_out.contains(name)) check(file_.add_metadata(name, facts));
+    }
     std::string from, to;
     append_seconds(from, std::max(cut_.span.from_ns, record_.first_ns));
     append_seconds(to, std::min(cut_.span.to_ns, record_.last_ns));
@@ -273,6 +361,18 @@ class Cutting {
         "cut", {{"from_s", from}, {"to_s", to}, {"signals", std::to_string(result_.signals)}, {"of", record_.file}}));
     for (const McapAttachment& attachment : record_.attachments)
       check(file_.attach(attachment.name, attachment.media_type, attachment.time_ns, attachment.data));
+  }
+
+  // Signals that the new file has in each tick, with all bits.
+  std::set<std::string> exact_signals() const {
+    std::set<std::string> names;
+    for (const TopicOutline& topic : record_.topics) {
+      if (!topic.exact) continue;
+      const auto chosen = chosen_.find(topic.channel);
+      if (chosen == chosen_.end()) continue;
+      for (const std::size_t place : chosen->second) names.insert(topic.topic.signals[place].name);
+    }
+    return names;
   }
 
   Passage* passage() {
@@ -286,6 +386,7 @@ class Cutting {
   std::optional<Passage> make_passage(std::uint16_t id) {
     const McapChannel& channel = rows_.reader().channels().at(id);
     const RecordTopic& topic = rows_.topic();
+    if (is_input(topic)) return std::nullopt;
     Passage passage;
     passage.rows = !topic.signals.empty();
     passage.event = is_event(topic);
@@ -298,9 +399,10 @@ class Cutting {
     SignalTable table;
     for (const std::size_t place : chosen_[id]) table.add(topic.signals[place], &zero);
     const std::vector<SignalTopic> topics = signal_topics(table, rows_.precision());
-    if (topics.size() != 1)
-      throw InputError(
-          {.file = record_.file, .message = "signals of topic " + topic.name + " cannot be chosen singly"});
+    if (topics.size() != 1) {  // of an older record, where these shared a topic: it is kept whole
+      passage.channel = file_.add_channel(channel.topic, channel.encoding, schema(channel.schema), channel.metadata);
+      return passage;
+    }
     for (const SignalId signal : topics.front().signals) passage.places.push_back(chosen_[id][signal]);
     TextMap metadata = channel.metadata;
     metadata["signals"] = topics.front().description;
@@ -330,6 +432,7 @@ class Cutting {
       return;
     }
     if (result_.messages == 0) begin(rows_.time_ns());
+    if (inputs_ && way->rows) check(inputs_->until(rows_.time_ns()));
     put(*way, rows_.tick(), rows_.time_ns(), kept_of(*way));
   }
 
@@ -359,6 +462,7 @@ class Cutting {
   const RecordCut& cut_;
   RecordRows rows_;
   McapWriter file_;
+  std::unique_ptr<CutInputs> inputs_;
   std::map<std::uint16_t, std::vector<std::size_t>> chosen_;
   std::map<std::uint16_t, std::optional<Passage>> passages_;
   std::map<std::uint16_t, std::uint16_t> schemas_;

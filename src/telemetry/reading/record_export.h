@@ -78,15 +78,21 @@ class CsvLines {
 // signals it holds the last row before the span with that row's own time, because a signal that stands still may have
 // no row for a while. For descriptions (topics with neither rows nor events: URDF, parameters) it holds the last
 // message, at the time at which the span begins.
+//
+// The inputs of a run on threads (telemetry/record/input_stream.h) are left out, or with `inputs` they are kept, so
+// that the new record can be repeated: then the span starts with the record. They are stored anew, because they refer
+// to the signals that are there.
 struct RecordCut {
   TimeSpan span;
   std::vector<std::string> signals;  // patterns for choose_signals; empty: all signals
+  bool inputs = false;
 };
 struct CutRecord {
   std::uint64_t messages = 0, file_bytes = 0;
   std::size_t signals = 0;
 };
-// Replaces the file `to`. Throws InputError when the span holds no message, or when the file cannot be written.
+// Replaces the file `to`. Throws InputError when the span holds no message, when the inputs are not there, or when the
+// file cannot be written.
 CutRecord cut_record(const RecordOutline& record, const RecordCut& cut, const std::string& to);
 
 }  // namespace kadans

@@ -208,7 +208,12 @@ RecordOutline outline_of(const std::string& path) {
   std::map<std::uint16_t, TopicOutline> topics;
   while (rows.next()) {
     const auto [topic, added] = topics.try_emplace(rows.channel());
-    if (added) topic->second = {.topic = rows.topic(), .channel = rows.channel()};
+    if (added) {
+      topic->second = {.topic = rows.topic(), .channel = rows.channel()};
+      const TextMap& facts = rows.reader().channels().at(rows.channel()).metadata;
+      const auto every = facts.find("every_ticks");
+      topic->second.exact = every != facts.end() && every->second == "1" && rows.precision() == Precision::full;
+    }
     add_message(rows, outline, topic->second);
   }
   if (topics.empty()) {

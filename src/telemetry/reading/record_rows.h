@@ -78,6 +78,7 @@ struct TopicOutline {
   std::uint64_t messages = 0, bytes = 0;  // bytes of the messages, before compression
   std::int64_t first_ns = 0, last_ns = 0;
   std::uint64_t hash = 0;  // over all messages of a topic that holds neither rows nor events
+  bool exact = false;      // its rows hold each tick with all bits
 
   double rate_hz() const noexcept;  // 0: fewer than two messages, or all at one time
 };

@@ -6,7 +6,10 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <limits>
 
+#include "run_inputs.h"
+#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -31,7 +34,7 @@ std::size_t rest_words(const InputLayout& layout) noexcept {
   return supply_words + layout.channels * words_of<ChannelSample>;
 }
 
-enum class Mode : std::uint8_t { steady, signal, xored, change, counts };
+enum class Mode : std::uint8_t { steady, signal, xored, change, counts, near, alike };
 
 std::uint64_t next_of(std::uint64_t before, std::uint64_t last) noexcept { return last + (last - before); }
 
@@ -40,6 +43,8 @@ std::size_t bytes_in(std::uint64_t value) noexcept { return (static_cast<std::si
 // So that small numbers of both signs have few bytes.
 std::uint64_t zigzag(std::uint64_t difference) noexcept { return (difference << 1U) ^ (0 - (difference >> 63U)); }
 std::uint64_t unzigzag(std::uint64_t value) noexcept { return (value >> 1U) ^ (0 - (value & 1U)); }
+
+constexpr std::size_t bytes_of_bits(std::size_t bits) noexcept { return (bits + 7) / 8; }
 
 std::optional<std::uint32_t> count_in(const TextMap& facts, const char* name, std::uint32_t max) {
   const auto found = facts.find(name);
@@ -67,13 +72,19 @@ void make_sound(TickTaken& taken) noexcept {
   sound(taken.joystick.connected, 1);
 }
 
-// Whether all values are whole multiples of one step, bit for bit, and counts_ which.
+// Multiples of a step by numbers that differ for the two zeros: -2 steps are -3, one is -2, -0.0 is -1, 0.0 is 0.
+double multiple(std::int64_t number, double step) noexcept {
+  return number < 0 ? -(static_cast<double>(-(number + 1)) * step) : static_cast<double>(number) * step;
+}
+
+// Whether all values are multiples of one step, bit for bit, and counts_ which.
 bool counted(std::span<const std::uint64_t> values, double step, std::vector<std::int64_t>& counts) {
   counts.clear();
   for (const std::uint64_t bits : values) {
-    const double value = std::bit_cast<double>(bits), count = std::round(value / step);
-    if (!(std::abs(count) < 1e9) || std::bit_cast<std::uint64_t>(count * step) != bits) return false;
-    counts.push_back(static_cast<std::int64_t>(count));
+    const double count = std::round(std::bit_cast<double>(bits) / step);
+    if (!(std::abs(count) < 1e9)) return false;
+    counts.push_back(static_cast<std::int64_t>(count) - (std::signbit(count) ? 1 : 0));
+    if (std::bit_cast<std::uint64_t>(multiple(counts.back(), step)) != bits) return false;
   }
   return true;
 }
@@ -102,8 +113,8 @@ std::optional<InputLayout> InputLayout::of(const TextMap& facts) {
   const auto format = facts.find("format");
   const auto joints = count_in(facts, "joints", max_joints), feet = count_in(facts, "feet", max_feet),
              channels = count_in(facts, "channels", max_channels), down = count_in(facts, "down", down_max);
-  if (format == facts.end() || format->second != inputs_format || !joints || !feet || !channels || !down)
-    return std::nullopt;
+  const bool known = format != facts.end() && format->second == inputs_format;
+  if (!known || !joints || !feet || !channels || !down) return std::nullopt;
   return InputLayout{*joints, *feet, *channels, *down};
 }
 
@@ -152,13 +163,21 @@ std::span<const std::span<const double>> InputPieces::gather() noexcept {
 InputEncoder::InputEncoder(const InputLayout& layout, std::vector<bool> exact)
     : exact_(std::move(exact)), columns_(1 + layout.words()) {
   values_.reserve(ticks_max * columns_.size());
-  rows_.reserve(ticks_max * exact_.size());
+  rows_.reserve((lag_max + ticks_max) * exact_.size());
 }
 
 bool InputEncoder::add(std::uint64_t tick, std::int64_t time_ns, std::span<const std::uint64_t> words,
                        std::span<const double> row) {
-  if (full() || (ticks_ > 0 && tick != first_tick_ + ticks_)) return false;
-  if (ticks_++ == 0) first_tick_ = tick;
+  if (full() || (ticks_ > 0 && tick != next_tick_)) return false;
+  if (ticks_ == 0) {
+    first_tick_ = tick;
+    if (tick != next_tick_) {
+      past_ = 0;
+      rows_.clear();
+    }
+  }
+  ++ticks_;
+  next_tick_ = tick + 1;
   last_time_ns_ = time_ns;
   values_.push_back(static_cast<std::uint64_t>(time_ns));
   values_.insert(values_.end(), words.begin(), words.end());
@@ -170,16 +189,22 @@ void InputEncoder::encode(ByteWriter& message) {
   message.put(first_tick_);
   message.put(static_cast<std::uint32_t>(ticks_));
   column_.resize(ticks_);
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
+  for (std::uint32_t c = 0; c < columns_.size(); ++c) {
     for (std::size_t t = 0; t < ticks_; ++t) column_[t] = values_[t * columns_.size() + c];
-    encode(columns_[c], column_, message);
+    encode(c, column_, message);
   }
+  const std::size_t kept = std::min(past_ + ticks_, lag_max);
+  rows_.erase(rows_.begin(), rows_.end() - static_cast<std::ptrdiff_t>(kept * exact_.size()));
+  past_ = kept;
   ticks_ = 0;
   values_.clear();
-  rows_.clear();
 }
 
-bool InputEncoder::steady(const Column& column, std::span<const std::uint64_t> values) const noexcept {
+std::uint64_t InputEncoder::signal_bits(std::uint32_t signal, std::size_t tick, std::size_t lag) const noexcept {
+  return std::bit_cast<std::uint64_t>(rows_[(past_ + tick - lag) * exact_.size() + signal]);
+}
+
+bool InputEncoder::steady(const Column& column, Values values) const noexcept {
   std::uint64_t before = column.before, last = column.last;
   for (const std::uint64_t value : values) {
     if (value != next_of(before, last)) return false;
@@ -189,29 +214,82 @@ bool InputEncoder::steady(const Column& column, std::span<const std::uint64_t> v
   return true;
 }
 
-bool InputEncoder::as_signal(std::uint32_t signal, std::span<const std::uint64_t> values) const noexcept {
+bool InputEncoder::as_signal(std::uint32_t signal, Values values) const noexcept {
   for (std::size_t t = 0; t < values.size(); ++t) {
-    if (std::bit_cast<std::uint64_t>(rows_[t * exact_.size() + signal]) != values[t]) return false;
+    if (signal_bits(signal, t, 0) != values[t]) return false;
   }
   return true;
 }
 
-std::uint32_t InputEncoder::find_signal(std::span<const std::uint64_t> values) const noexcept {
+std::uint32_t InputEncoder::find_signal(Values values) const noexcept {
   for (std::uint32_t signal = 0; signal < exact_.size(); ++signal) {
     if (exact_[signal] && as_signal(signal, values)) return signal;
   }
   return none;
 }
 
+bool InputEncoder::grows_as(std::uint32_t column, Values values, std::uint64_t began) const noexcept {
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    if (values[t] - began != values_[t * columns_.size() + column] - columns_[column].began) return false;
+  }
+  return true;
+}
+
+// Among the columns before it.
+std::uint32_t InputEncoder::find_alike(std::uint32_t column, Values values) const noexcept {
+  for (std::uint32_t other = 0; other < column; ++other) {
+    if (grows_as(other, values, columns_[column].began)) return other;
+  }
+  return none;
+}
+
+// The signal that is the nearest in some ticks of the message, with one lag or that of a tick more.
+void InputEncoder::find_near(Column& column, Values values) const noexcept {
+  constexpr std::size_t looks = 5;
+  std::size_t best = std::numeric_limits<std::size_t>::max();
+  for (std::uint32_t signal = 0; signal < exact_.size(); ++signal) {
+    for (std::size_t lag = 0; exact_[signal] && lag < std::min(lag_max, past_); ++lag) {
+      std::size_t bits = 0;
+      for (std::size_t look = 0; look < looks && bits < best; ++look) {
+        const std::size_t t = (values.size() - 1) * look / (looks - 1);
+        const std::uint64_t one = zigzag(values[t] - signal_bits(signal, t, lag)),
+                            more = zigzag(values[t] - signal_bits(signal, t, lag + 1));
+        bits += static_cast<std::size_t>(std::bit_width(std::min(one, more)));
+      }
+      if (bits >= best) continue;
+      best = bits;
+      column.near = signal;
+      column.lag = lag;
+    }
+  }
+}
+
+// Makes rest_, and in counts_ where the lag is a tick more; how many bytes count.
+std::size_t InputEncoder::near_bytes(const Column& column, Values values) noexcept {
+  if (column.near == none || column.lag >= past_) return std::numeric_limits<std::size_t>::max();
+  counts_.resize(values.size());
+  std::size_t bytes = 0;
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    const std::uint64_t one = zigzag(values[t] - signal_bits(column.near, t, column.lag)),
+                        more = zigzag(values[t] - signal_bits(column.near, t, column.lag + 1));
+    counts_[t] = more < one ? 1 : 0;
+    rest_[t] = std::min(one, more);
+    bytes += bytes_in(rest_[t]);
+  }
+  return bytes;
+}
+
 // The step is at most the smallest difference of two values. Its last bits follow from the largest value.
-bool InputEncoder::find_counts(Column& column, std::span<const std::uint64_t> values) {
-  if (column.step > 0 && counted(values, column.step, counts_)) return true;
-  column.step = 0;
+bool InputEncoder::find_counts(Column& column, Values values) {
   sorted_.clear();
   for (const std::uint64_t bits : values) sorted_.push_back(std::bit_cast<double>(bits));
   if (!std::ranges::all_of(sorted_, [](double value) { return std::abs(value) < 1e9; })) return false;
   std::ranges::sort(sorted_);
   const double largest = std::max(std::abs(sorted_.front()), std::abs(sorted_.back()));
+  if (largest == 0) {  // the two zeros: any step will do
+    column.step = 1;
+    return counted(values, column.step, counts_);
+  }
   double least = largest;
   for (std::size_t i = 1; i < sorted_.size(); ++i) {
     const double apart = sorted_[i] - sorted_[i - 1];
@@ -246,44 +324,91 @@ void InputEncoder::put_counts(const Column& column, ByteWriter& message) {
   }
 }
 
-void InputEncoder::encode(Column& column, std::span<const std::uint64_t> values, ByteWriter& message) {
-  Mode mode = Mode::steady;
-  if (!steady(column, values)) {
-    if (column.signal == none || !as_signal(column.signal, values)) column.signal = find_signal(values);
-    mode = column.signal == none ? Mode::xored : Mode::signal;
+void InputEncoder::encode(std::uint32_t c, Values values, ByteWriter& message) {
+  Column& column = columns_[c];
+  column.began = column.last;
+  if (!encode_known(c, values, message)) encode_rest(column, values, message);
+  column.before = values.size() > 1 ? values[values.size() - 2] : column.last;
+  column.last = values.back();
+}
+
+// What follows from something else.
+bool InputEncoder::encode_known(std::uint32_t c, Values values, ByteWriter& message) {
+  Column& column = columns_[c];
+  if (steady(column, values)) {
+    message.put(static_cast<std::uint8_t>(Mode::steady));
+    return true;
   }
+  if (column.signal == none || !as_signal(column.signal, values)) column.signal = find_signal(values);
+  if (column.signal != none) {
+    message.put(static_cast<std::uint8_t>(Mode::signal));
+    message.put(column.signal);
+    return true;
+  }
+  if (column.alike == none || !grows_as(column.alike, values, column.began)) column.alike = find_alike(c, values);
+  if (column.alike == none) return false;
+  message.put(static_cast<std::uint8_t>(Mode::alike));
+  message.put(column.alike);
+  return true;
+}
+
+// The way with the fewest bytes.
+void InputEncoder::encode_rest(Column& column, Values values, ByteWriter& message) {
+  constexpr std::size_t few = 3;  // bytes a tick
   std::size_t xored = 0, change = 0;
-  std::uint64_t before = column.before, last = column.last;
+  std::uint64_t before = column.before, last = column.last, all_xored = 0, all_change = 0;
   for (const std::uint64_t value : values) {
-    xored = std::max(xored, bytes_in(value ^ last));
-    change = std::max(change, bytes_in(zigzag(value - next_of(before, last))));
+    const std::uint64_t changed = zigzag(value - next_of(before, last));
+    all_xored |= value ^ last;
+    all_change |= changed;
+    xored += bytes_in(value ^ last);
+    change += bytes_in(changed);
     before = last;
     last = value;
   }
-  if (mode == Mode::xored && change < xored) mode = Mode::change;
-  if (mode == Mode::xored && xored > 3 && values.size() > 8 && find_counts(column, values)) {
-    put_counts(column, message);
-    column.before = before;
-    column.last = last;
-    return;
-  }
-  message.put(static_cast<std::uint8_t>(mode));
-  if (mode == Mode::signal) message.put(column.signal);
-  if (mode == Mode::xored || mode == Mode::change) {
-    const std::size_t planes = mode == Mode::xored ? xored : change;
-    message.put(static_cast<std::uint8_t>(planes));
-    const std::span<std::byte> bytes = message.grow(planes * values.size());
-    before = column.before;
-    last = column.last;
-    for (std::size_t t = 0; t < values.size(); ++t) {
-      const std::uint64_t rest = mode == Mode::xored ? values[t] ^ last : zigzag(values[t] - next_of(before, last));
-      for (std::size_t p = 0; p < planes; ++p) bytes[p * values.size() + t] = static_cast<std::byte>(rest >> (8 * p));
-      before = last;
-      last = values[t];
+  rest_.resize(values.size());
+  Mode mode = change < xored ? Mode::change : Mode::xored;
+  const std::size_t least = std::min(xored, change);
+  if (std::min(bytes_in(all_xored), bytes_in(all_change)) > few && values.size() > 8) {
+    if (column.step > 0 && counted(values, column.step, counts_)) return put_counts(column, message);
+    std::size_t near = near_bytes(column, values);
+    if (near > least / 2 && column.for_near.over()) {
+      find_near(column, values);
+      near = near_bytes(column, values);
+      (void)column.for_near.note(near <= least / 2);
     }
+    const bool tries = near > few * values.size() && column.for_counts.over();
+    if (tries && column.for_counts.note(find_counts(column, values))) return put_counts(column, message);
+    if (near < least) mode = Mode::near;
+    if (mode == Mode::near) (void)near_bytes(column, values);  // makes rest_ and counts_ once more
   }
-  column.before = before;
-  column.last = last;
+  before = column.before;
+  last = column.last;
+  std::uint64_t all = 0;
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    if (mode == Mode::xored) rest_[t] = values[t] ^ last;
+    if (mode == Mode::change) rest_[t] = zigzag(values[t] - next_of(before, last));
+    all |= rest_[t];
+    before = last;
+    last = values[t];
+  }
+  const std::size_t planes = bytes_in(all);
+  message.put(static_cast<std::uint8_t>(mode));
+  if (mode == Mode::near) {
+    message.put(column.near);
+    message.put(static_cast<std::uint8_t>(column.lag));
+    const bool varies = std::ranges::find(counts_, 1) != counts_.end();
+    message.put(static_cast<std::uint8_t>(varies));
+    const std::span<std::byte> bits = message.grow(varies ? bytes_of_bits(values.size()) : 0);
+    for (std::size_t t = 0; varies && t < values.size(); ++t)
+      bits[t / 8] |= static_cast<std::byte>(static_cast<unsigned>(counts_[t]) << (t % 8));
+  }
+  message.put(static_cast<std::uint8_t>(planes));
+  const std::span<std::byte> bytes = message.grow(planes * values.size());
+  for (std::size_t p = 0; p < planes; ++p) {
+    for (std::size_t t = 0; t < values.size(); ++t)
+      bytes[p * values.size() + t] = static_cast<std::byte>(rest_[t] >> (8 * p));
+  }
 }
 
 bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& signals, std::deque<TickTaken>& ticks) {
@@ -292,17 +417,25 @@ bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& 
   const auto count = reader.take<std::uint32_t>();
   if (!reader.ok() || count == 0 || count > InputEncoder::ticks_max) return false;
   std::vector<std::uint64_t> values(count * columns_.size());
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
+  for (std::uint32_t c = 0; c < columns_.size(); ++c) {
     Column& column = columns_[c];
-    const auto mode = reader.take<std::uint8_t>();
-    if (!reader.ok() || mode > static_cast<std::uint8_t>(Mode::counts)) return false;
-    const bool packed = mode >= static_cast<std::uint8_t>(Mode::xored);
-    const bool counts = mode == static_cast<std::uint8_t>(Mode::counts);
+    column.began = column.last;
+    const auto number = reader.take<std::uint8_t>();
+    if (!reader.ok() || number > static_cast<std::uint8_t>(Mode::alike)) return false;
+    const Mode mode = static_cast<Mode>(number);
+    const bool counts = mode == Mode::counts;
     const double step = counts ? reader.take<double>() : 0;
-    std::uint64_t number = counts ? static_cast<std::uint64_t>(reader.take<std::int64_t>()) : 0;
-    const std::uint32_t signal = mode == static_cast<std::uint8_t>(Mode::signal) ? reader.take<std::uint32_t>() : 0;
+    std::uint64_t counted = counts ? static_cast<std::uint64_t>(reader.take<std::int64_t>()) : 0;
+    const bool other = mode == Mode::signal || mode == Mode::near || mode == Mode::alike;
+    const std::uint32_t from = other ? reader.take<std::uint32_t>() : 0;  // signal or column
+    const std::uint64_t lag = mode == Mode::near ? reader.take<std::uint8_t>() : 0;
+    const bool varies = mode == Mode::near && reader.take<std::uint8_t>() != 0;
+    const std::span<const std::byte> more = reader.take_bytes(varies ? bytes_of_bits(count) : 0);
+    const bool packed = mode != Mode::steady && mode != Mode::signal && mode != Mode::alike;
     const std::size_t planes = packed ? reader.take<std::uint8_t>() : 0;
-    if (planes > 8) return false;
+    const std::uint64_t lag_most = lag + (varies ? 1 : 0);
+    if (!reader.ok() || planes > 8 || lag_most > first_tick || lag_most > InputEncoder::lag_max) return false;
+    if (mode == Mode::alike && from >= c) return false;
     const std::size_t stored = counts ? count - 1 : count;  // the first count stands before the others
     const std::span<const std::byte> bytes = reader.take_bytes(planes * stored);
     if (!reader.ok()) return false;
@@ -312,17 +445,20 @@ bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& 
       for (std::size_t p = 0; p < planes && stored > 0; ++p)
         rest |= std::to_integer<std::uint64_t>(bytes[p * stored + at]) << (8 * p);
       std::uint64_t value = next_of(column.before, column.last);
-      if (mode == static_cast<std::uint8_t>(Mode::signal)) {
-        const std::optional<std::uint64_t> bits = signals.bits(first_tick + t, signal);
+      if (mode == Mode::signal || mode == Mode::near) {
+        const bool later = varies && (std::to_integer<unsigned>(more[t / 8]) >> (t % 8) & 1U) != 0;
+        const std::optional<std::uint64_t> bits = signals.bits(first_tick + t - lag - (later ? 1 : 0), from);
         if (!bits) return false;
-        value = *bits;
-      } else if (mode == static_cast<std::uint8_t>(Mode::xored)) {
+        value = *bits + unzigzag(rest);
+      } else if (mode == Mode::xored) {
         value = column.last ^ rest;
-      } else if (mode == static_cast<std::uint8_t>(Mode::change)) {
+      } else if (mode == Mode::change) {
         value += unzigzag(rest);
+      } else if (mode == Mode::alike) {
+        value = column.began + (values[t * columns_.size() + from] - columns_[from].began);
       } else if (counts) {
-        if (t > 0) number += unzigzag(rest);
-        value = std::bit_cast<std::uint64_t>(static_cast<double>(static_cast<std::int64_t>(number)) * step);
+        if (t > 0) counted += unzigzag(rest);
+        value = std::bit_cast<std::uint64_t>(multiple(static_cast<std::int64_t>(counted), step));
       }
       column.before = column.last;
       column.last = values[t * columns_.size() + c] = value;
@@ -333,7 +469,9 @@ bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& 
     TickTaken& taken = ticks.emplace_back();
     taken.tick = first_tick + t;
     taken.time_ns = static_cast<std::int64_t>(values[t * columns_.size()]);
-    unpack(std::span(values).subspan(t * columns_.size() + 1, layout_.words()), layout_, taken);
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(t * columns_.size() + 1);
+    taken.words.assign(first, first + static_cast<std::ptrdiff_t>(layout_.words()));
+    unpack(taken.words, layout_, taken);
   }
   return true;
 }
@@ -344,7 +482,8 @@ constexpr std::size_t event_head = 2 * sizeof(std::uint32_t);  // bytes behind t
 
 }  // namespace
 
-RecordedInputs::RecordedInputs(std::string root) : root_(std::move(root)), ring_(std::make_unique<Bytes>()) {
+RecordedInputs::RecordedInputs(std::string root, std::vector<std::string> private_files)
+    : root_(std::move(root)), private_files_(std::move(private_files)), ring_(std::make_unique<Bytes>()) {
   event_.reserve(std::size_t{64} << 10U);
 }
 
@@ -411,9 +550,11 @@ void RecordedInputs::file_read(const std::string& path, std::string_view text) {
   const auto [known, added] = hash_of_.try_emplace(name, hash);
   if (!added && known->second == hash) return;
   known->second = hash;
-  begin(BehaviorInput::Kind::file);
+  const bool left_out =
+      std::ranges::any_of(private_files_, [&](const std::string& pattern) { return matches(pattern, name); });
+  begin(left_out ? BehaviorInput::Kind::private_file : BehaviorInput::Kind::file);
   event_.put_string(name);
-  event_.put_string(text);
+  event_.put_string(left_out ? content_hash(text) : text);
   push();
 }
 
@@ -471,6 +612,7 @@ bool take_behavior_input(ByteReader& message, std::uint32_t& expected, BehaviorI
       input.number = bytes.take<std::uint32_t>();
       break;
     case BehaviorInput::Kind::file:
+    case BehaviorInput::Kind::private_file:
       input.path = bytes.take_string();
       input.text = bytes.take_string();
       break;

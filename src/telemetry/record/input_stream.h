@@ -8,7 +8,10 @@
 //   signal    the same bits as a recorded signal of the tick: they are not held twice
 //   xor       the bits that differ from those of the tick before, byte by byte, the lowest bytes of all ticks first
 //   change    how its growth changed, in the same way
-//   counts    a number that an encoder counts: multiples of a step, and how their number changes
+//   counts    what an encoder counts: multiples of a step, both zeros among them, and how their number changes
+//   near      how far it is from a signal of the tick, or of one of the ticks before: a drive tells the effort that it
+//             was asked for
+//   alike     grows as a word before it does: all readings of a frame are counted alike
 //
 // So a message is read after the rows of its ticks, and after the messages before it. Channel /inputs/behaviors: a
 // message holds events one after the other, each with a number, so that one that is missing is noticed.
@@ -16,6 +19,7 @@
 // Everything that is read is from outside: a length must fit the bytes, a number its range.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -39,7 +43,7 @@ namespace kadans {
 inline constexpr const char* inputs_topic = "/inputs";
 inline constexpr const char* behavior_inputs_topic = "/inputs/behaviors";
 inline constexpr const char* inputs_metadata = "tick_inputs";  // the layout, and all signals by their numbers
-inline constexpr const char* inputs_format = "1";
+inline constexpr const char* inputs_format = "2";
 
 // How many of each there are in a run.
 struct InputLayout {
@@ -62,6 +66,7 @@ struct TickTaken {
   SeenBall ball;
   std::vector<std::int64_t> down;  // which values low levels found
   SensorFrame sensors;
+  std::vector<std::uint64_t> words;  // all of it, as it is stored
 };
 void unpack(std::span<const std::uint64_t> words, const InputLayout& layout, TickTaken& taken);
 
@@ -85,6 +90,7 @@ class InputPieces {
 class InputEncoder {
  public:
   static constexpr std::size_t ticks_max = 100;  // of a message
+  static constexpr std::size_t lag_max = 3;      // ticks between a signal and what is near to it
 
   // `exact`: for each signal whether every tick of it is recorded with all its bits.
   InputEncoder(const InputLayout& layout, std::vector<bool> exact);
@@ -100,28 +106,52 @@ class InputEncoder {
 
  private:
   static constexpr std::uint32_t none = 0xffffffff;
-  struct Column {
-    std::uint64_t before = 0, last = 0;
-    std::uint32_t signal = none;
-    double step = 0;  // of what it counts; 0: none was found
+  // What is tried in vain is tried again after 1, 2, 4 .. 32 messages.
+  struct Patience {
+    std::uint32_t wait = 0, next = 1;
+    bool over() noexcept { return wait == 0 || --wait == 0; }
+    bool note(bool found) noexcept {
+      wait = found ? 0 : next;
+      next = found ? 1 : std::min(2 * next, 32U);
+      return found;
+    }
   };
-  bool find_counts(Column& column, std::span<const std::uint64_t> values);
+  struct Column {
+    std::uint64_t before = 0, last = 0, began = 0;  // `began`: the last one before the message
+    std::uint32_t signal = none;                    // the same bits
+    std::uint32_t alike = none;                     // column
+    std::uint32_t near = none;                      // signal
+    std::size_t lag = 0;                            // the same
+    double step = 0;                                // of what it counts; 0: none was found
+    Patience for_near, for_counts;
+  };
+  using Values = std::span<const std::uint64_t>;
+
+  std::uint64_t signal_bits(std::uint32_t signal, std::size_t tick, std::size_t lag) const noexcept;
+  bool find_counts(Column& column, Values values);
   void put_counts(const Column& column, ByteWriter& message);
-  bool steady(const Column& column, std::span<const std::uint64_t> values) const noexcept;
-  bool as_signal(std::uint32_t signal, std::span<const std::uint64_t> values) const noexcept;
-  std::uint32_t find_signal(std::span<const std::uint64_t> values) const noexcept;
-  void encode(Column& column, std::span<const std::uint64_t> values, ByteWriter& message);
+  bool steady(const Column& column, Values values) const noexcept;
+  bool as_signal(std::uint32_t signal, Values values) const noexcept;
+  std::uint32_t find_signal(Values values) const noexcept;
+  bool grows_as(std::uint32_t column, Values values, std::uint64_t began) const noexcept;
+  std::uint32_t find_alike(std::uint32_t column, Values values) const noexcept;
+  void find_near(Column& column, Values values) const noexcept;
+  std::size_t near_bytes(const Column& column, Values values) noexcept;
+  void encode(std::uint32_t c, Values values, ByteWriter& message);
+  bool encode_known(std::uint32_t c, Values values, ByteWriter& message);
+  void encode_rest(Column& column, Values values, ByteWriter& message);
 
   std::vector<bool> exact_;
   std::vector<Column> columns_;  // the time, then the words
   std::size_t ticks_ = 0;
-  std::uint64_t first_tick_ = 0;
+  std::uint64_t first_tick_ = 0, next_tick_ = 0;
   std::int64_t last_time_ns_ = 0;
-  std::vector<std::uint64_t> values_;  // tick by tick
-  std::vector<double> rows_;           // the same
-  std::vector<std::uint64_t> column_;  // of one encoding
-  std::vector<double> sorted_;         // the same
-  std::vector<std::int64_t> counts_;   // the same
+  std::size_t past_ = 0;                      // ticks before the message whose rows are known
+  std::vector<std::uint64_t> values_;         // tick by tick
+  std::vector<double> rows_;                  // the same, behind those of the past
+  std::vector<std::uint64_t> column_, rest_;  // of one encoding
+  std::vector<double> sorted_;                // the same
+  std::vector<std::int64_t> counts_;          // the same
 };
 
 // The bits of a signal in a tick, of the record that is read; nullopt: the record does not have them.
@@ -140,7 +170,7 @@ class InputDecoder {
 
  private:
   struct Column {
-    std::uint64_t before = 0, last = 0;
+    std::uint64_t before = 0, last = 0, began = 0;
   };
   InputLayout layout_;
   std::vector<Column> columns_;
@@ -148,8 +178,18 @@ class InputDecoder {
 
 // An event of the behavior thread.
 struct BehaviorInput {
-  enum class Kind : std::uint8_t { tick_begins, tick_ends, sent, newer, parameter, time_over, file, asked };
-  static constexpr Kind last_kind = Kind::asked;
+  enum class Kind : std::uint8_t {
+    tick_begins,
+    tick_ends,
+    sent,
+    newer,
+    parameter,
+    time_over,
+    file,
+    asked,
+    private_file  // its text is the hash of its content
+  };
+  static constexpr Kind last_kind = Kind::private_file;
 
   Kind kind = Kind::tick_begins;
   std::uint64_t snapshot = 0;       // tick_begins: 1 + the control tick whose snapshot it sees; 0: there was none yet
@@ -158,7 +198,7 @@ struct BehaviorInput {
   std::vector<Command> commands{};  // sent, behind their header
   std::uint32_t number = 0;         // newer: of the storage; time_over: of the look at the clock
   double value = 0;                 // parameter
-  std::string path{}, text{};       // file
+  std::string path{}, text{};       // file, private_file
   BehaviorInputs::Asked how{};      // asked
   std::vector<std::byte> bytes{};   // newer, asked
 };
@@ -169,7 +209,8 @@ struct BehaviorInput {
 // record, which says so.
 class RecordedInputs final : public BehaviorInputs {
  public:
-  explicit RecordedInputs(std::string root);  // of the project: paths of files start there
+  // Paths of files start at the project's root. Of files that these patterns name only the hash is recorded.
+  explicit RecordedInputs(std::string root, std::vector<std::string> private_files = {});
 
   // Before the loop: a file whose text the record has already.
   void knows(const std::string& path, std::string_view text) { hash_of_[path] = std::hash<std::string_view>()(text); }
@@ -194,6 +235,7 @@ class RecordedInputs final : public BehaviorInputs {
   void push() noexcept;
 
   std::string root_;
+  std::vector<std::string> private_files_;
   std::unordered_map<std::string, std::size_t> hash_of_;
   ByteWriter event_;
   std::uint32_t number_ = 0;

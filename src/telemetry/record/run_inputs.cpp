@@ -62,14 +62,16 @@ std::string content_hash(std::string_view text) {
 }
 
 bool write_inputs(McapWriter& file, const RunInputs& inputs) {
-  TextMap hashes;
+  TextMap hashes, left_out;
   bool written = file.add_metadata("run", inputs.run) && file.add_metadata("program", inputs.program);
   for (const InputFile& input : inputs.files) {
     hashes[input.path] = input.hash;
+    if (input.left_out) left_out[input.path] = "yes";
     if (!input.text) continue;
     const std::string name = std::string(prefix) + input.path + std::string(suffix);
     written = written && file.attach(name, "application/zstd", 0, packed(*input.text));
   }
+  if (!left_out.empty()) written = written && file.add_metadata("private", left_out);
   return written && file.add_metadata("inputs", hashes);
 }
 
@@ -81,11 +83,12 @@ RunInputs read_inputs(const McapReader& file, const std::string& path) {
   };
   inputs.run = known("run");
   inputs.program = known("program");
+  const TextMap left_out = known("private");
   std::size_t left_bytes = texts_max_bytes;
   for (auto& [name, hash] : known("inputs")) {
     if (inputs.files.size() == inputs_max) refuse(path, "it has more than " + std::to_string(inputs_max) + " inputs");
     if (!right_path(name)) refuse(path, "its input " + in_quotes(name) + " is no path inside a project");
-    inputs.files.push_back({name, hash, std::nullopt});
+    inputs.files.push_back({name, hash, std::nullopt, left_out.contains(name)});
   }
   for (const McapAttachment& attachment : file.attachments()) {
     const std::string& name = attachment.name;

@@ -3,8 +3,8 @@
 //
 // In the record they are: metadata "run" and "program"; metadata "inputs" with the hash of every file by its path; each
 // text file as a compressed attachment "inputs/PATH.zst", which any tool can extract. A file that is too large or no
-// text (a plug-in, a mesh) is stored as its hash alone. All inputs stand before the first message, so a record that is
-// cut short still has them.
+// text (a plug-in, a mesh) is stored as its hash alone, and so is one that is private, which metadata "private" names.
+// All inputs stand before the first message, so a record that is cut short still has them.
 #pragma once
 
 #include <optional>
@@ -22,6 +22,7 @@ struct InputFile {
   std::string path;  // from the project's root; "beside/x" from the scenario's folder; absolute elsewhere
   std::string hash;  // of its content, 16 hexadecimal digits
   std::optional<std::string> text;
+  bool left_out = false;  // it is private: whoever runs the record again has to have it
 };
 
 struct RunInputs {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::array<std::byte, cdr_head_bytes> cdr_beginning{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
 constexpr SignalId no_signal = 0xffffffff;
+constexpr std::string_view objects = "control.";
 
 bool is_small(char c) noexcept { return c >= 'a' && c <= 'z'; }
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
@@ -54,6 +55,14 @@ Part& add_part(std::vector<Part>& to, std::string_view name, SignalId signal) {
   return to.back();
 }
 
+// Where the part of a name ends that is its topic: the first part. A control object has a topic of its own, because all
+// of it stands still while it is not active, and what stands still is not written.
+std::size_t topic_end(std::string_view name) {
+  const std::size_t first = name.find('.');
+  const std::size_t second = name.starts_with(objects) ? name.find('.', objects.size()) : std::string_view::npos;
+  return second == std::string_view::npos ? first : second;
+}
+
 // Of the signals with that rate.
 std::vector<Part> tree_of(const SignalTable& table, std::span<const std::uint32_t> every_ticks, std::uint32_t rate) {
   std::vector<Part> topics;
@@ -61,7 +70,7 @@ std::vector<Part> tree_of(const SignalTable& table, std::span<const std::uint32_
     if (!every_ticks.empty() && every_ticks[id] != rate) continue;
     std::string_view rest = table.info(id).name;
     std::vector<Part>* level = &topics;
-    for (std::size_t dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {
+    for (std::size_t dot = topic_end(rest); dot != std::string_view::npos; dot = rest.find('.')) {
       level = &add_part(*level, rest.substr(0, dot), no_signal).parts;
       rest.remove_prefix(dot + 1);
     }
@@ -105,6 +114,7 @@ class Definition {
   void add(const Part& root) {
     const std::string type = unique_type(type_name(root.field));
     topic_.topic = "/" + root.field;
+    if (root.name.starts_with(objects)) topic_.topic[objects.size()] = '/';
     topic_.type = "kadans_msgs/msg/" + type;
     topic_.definition = body(root, type);
     for (const std::string& nested : nested_) {

@@ -2,6 +2,7 @@
 // for each signal.
 //
 //   joint.l_knee.effort_Nm  ->  topic /joint, type kadans_msgs/msg/Joint, field l_knee.effort_nm
+//   control.walk.phase_rad  ->  topic /control/walk, type kadans_msgs/msg/ControlWalk, one for each control object
 //
 // Each middle part of a name is a nested message type. All fields have the same number type, so a message is the CDR
 // header followed by the numbers in the order of the schema; `signals` says which signal is where. ROS 2 allows only

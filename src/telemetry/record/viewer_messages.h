@@ -60,6 +60,7 @@ class ViewerMessages {
   struct Robot {
     ViewerSubjects subjects;
     std::string frames;  // what its frames begin with
+    std::string named;   // its frames in the message of its base
     std::vector<Joint> joints;
     std::vector<Foot> feet;
     Base base;
@@ -72,12 +73,13 @@ class ViewerMessages {
 
   void add(const SignalTable& signals, const ViewerSubjects& subjects);
   void write_joint_states(const Robot& robot, std::int64_t time_ns, std::span<const double> row, ByteWriter& to);
-  void write_bases(std::int64_t time_ns, std::span<const double> row, ByteWriter& to) const;
+  void write_bases(std::int64_t time_ns, std::span<const double> row, ByteWriter& to);
 
   std::vector<Robot> robots_;
   std::vector<ViewerChannel> channels_;
   std::vector<Content> contents_;  // of the channels
   std::vector<double> values_;
+  std::string text_;
 };
 
 // The URDF for viewers, which is one message at the start. `robot`: as in ViewerSubjects.

@@ -1,0 +1,102 @@
+// Reads the inputs of a run out of its record (telemetry/record/input_stream.h), also through the files in which the
+// record went on: tick by tick with the recorded signals, and event by event of the behavior thread.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "telemetry/mcap/mcap_reader.h"
+#include "telemetry/record/input_stream.h"
+
+namespace kadans {
+
+// A record, and the files in which it went on.
+class RecordFiles {
+ public:
+  explicit RecordFiles(const std::string& record);
+
+  McapReader& reader() noexcept { return *reader_; }
+  const McapReader& reader() const noexcept { return *reader_; }
+  const std::string& file() const noexcept { return file_; }
+  // After the last message of a file: to the next one. False: there is none.
+  [[nodiscard]] bool go_on();
+
+ private:
+  std::string file_;
+  std::unique_ptr<McapReader> reader_;
+  std::set<std::string> read_;  // names of the files before
+};
+
+// The messages of some topics of a record, in the order of its files.
+class TopicReader {
+ public:
+  TopicReader(const std::string& record, std::vector<std::string> topics);
+  // False at the end, or where the record is damaged.
+  [[nodiscard]] bool next(McapMessage& message);
+
+ private:
+  RecordFiles files_;
+  std::vector<std::string> topics_;
+};
+
+// The ticks of a record with their inputs and the recorded signals.
+class TickReader final : private SignalBits {
+ public:
+  explicit TickReader(const std::string& record);
+
+  // False at the end; then problem() says why it ends there, "": it is the proper end.
+  [[nodiscard]] bool next(TickTaken& taken);
+  // Of the tick that next() gave: all signals by number, NaN where the record has none; its inputs as they are stored.
+  std::span<const double> row() const noexcept { return row_; }
+  const InputLayout& layout() const noexcept { return *layout_; }
+  const std::vector<std::string>& signals() const noexcept { return names_; }  // by number
+  const std::string& problem() const noexcept { return problem_; }
+
+ private:
+  std::optional<std::uint64_t> bits(std::uint64_t tick, std::uint32_t signal) const override;
+  bool read();
+  bool learn();
+  void take_row(const McapMessage& message);
+  bool take_inputs(const McapMessage& message);
+  bool reach(std::uint64_t tick);
+  bool stop(const std::string& why);
+
+  RecordFiles files_;
+  std::optional<InputLayout> layout_;
+  std::unique_ptr<InputDecoder> decoder_;
+  std::vector<std::string> names_;
+  std::map<std::string, std::uint32_t> numbers_;
+  std::map<std::uint16_t, std::vector<std::uint32_t>> topics_;  // numbers of the signals in its messages
+  std::vector<double> values_;                                  // of one message
+  std::uint64_t first_ = 0;                                     // tick of rows_.front()
+  std::deque<std::vector<double>> rows_;
+  std::deque<TickTaken> ticks_;
+  std::optional<std::uint64_t> next_tick_;
+  std::vector<double> row_;
+  std::string problem_;
+};
+
+// What the behavior thread took, event by event.
+class BehaviorInputReader {
+ public:
+  explicit BehaviorInputReader(const std::string& record) : reader_(record, {behavior_inputs_topic}) {}
+  [[nodiscard]] bool next(BehaviorInput& input);
+  std::span<const std::byte> bytes() const noexcept;  // of the event that next() gave, as it is stored
+  bool damaged() const noexcept { return damaged_; }
+
+ private:
+  TopicReader reader_;
+  std::vector<std::byte> message_;
+  std::size_t began_ = 0, at_ = 0;
+  std::uint32_t expected_ = 0;
+  bool damaged_ = false;
+};
+
+}  // namespace kadans
