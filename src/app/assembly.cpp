@@ -107,6 +107,7 @@ PlantVariant plant_variant(const ScenarioConfig& scenario, const RobotConfig& ro
   variant.plant.world = world_for(scenario.world, robot.model, scenario.file);
   variant.sees = !scenario.sight.ball.name.empty();
   variant.sight = scenario.sight.settings;
+  variant.perception = scenario.perception;
   return variant;
 }
 
@@ -151,6 +152,7 @@ Assembly::Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, Ru
   try {
     vary();
     robot_.config.engine.sight = variant_.sees;
+    take_supervisor();
   } catch (const std::invalid_argument& error) {
     throw InputError({.file = robot_.config.file, .message = error.what()});
   }
@@ -173,6 +175,10 @@ void Assembly::begin_others() {
     for (const QuantityValue& theirs : others_.back()->quantities_)
       quantities_.push_back({robot.name + "." + theirs.name, theirs.value});
   }
+  if (link_ != nullptr) return;
+  network_ = std::make_unique<SimulatedNetwork>(scenario_.network, 1 + others_.size(), seed_);
+  message_channel_ = &network_->port(0);
+  for (const auto& other : others_) other->message_channel_ = &network_->port(other->number_);
 }
 
 void Assembly::complete() {
@@ -208,7 +214,11 @@ void Assembly::complete() {
   if (outside_ == nullptr) host_ = make_script_host(scenario_, robot_.config, catalog, seed_, told);
   upkeep_first_ = catalog.signals.size();
   if (outside_ != nullptr) outside_->attach(catalog, safe_posture_of(robot_.config.safe));
-  if (host_) host_->declare_signals(catalog.signals);
+  if (host_) {
+    host_->declare_signals(catalog.signals);
+    states_.assign(host_->signal_states().begin(), host_->signal_states().end());
+  }
+  if (supervising_.given) make_supervisor(told);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
   foreign_end_ = catalog.signals.size();
   for (std::size_t i = 0; i < upkeep_count_; ++i) unhashed_.push_back(static_cast<SignalId>(upkeep_first_ + i));
@@ -221,10 +231,75 @@ void Assembly::complete() {
     if (catalog.signals.info(id).name.starts_with("odometry.")) unhashed_.push_back(id);
   }
   if (host_) faulty_host_ = make_faulty_host(scenario_, *host_);
+  if (supervisor_ && !scenario_.repeats)  // what is repeated was told what decided
+    supervised_ = std::make_unique<SupervisedHost>(supervising_, played(), *host_, *supervisor_link_, told);
   disturbances_ = std::make_unique<Disturbances>(scenario_, robot_.config.model);
   make_joystick_player();
   make_sight();
+  make_perception();
   make_behaviors();
+}
+
+void Assembly::take_supervisor() {
+  supervising_ = scenario_.supervisor.given ? scenario_.supervisor : robot_.config.supervisor;
+  Catalog& catalog = control_system_->catalog;
+  catalog.seen = supervising_.seen;
+  if (scenario_.undecided) supervising_.decisions.clear();
+  const auto ball = std::ranges::find(catalog.seen, "ball", &SeenInfo::name);
+  if (variant_.sees && ball != catalog.seen.end())
+    refuse(scenario_.file, scenario_.sight.ball.place,
+           "sight shows s.seen.ball, which the supervisor's world has already: take perception");
+  if (supervising_.given && outside_ != nullptr)
+    throw InputError(
+        {.file = robot_.config.file,
+         .message = "supervisor: it decides over behaviors of its own process: run with --behaviors thread"});
+}
+
+// Of a run: the sockets that the configuration names. What is repeated was told what they said.
+void Assembly::open_sockets() {
+  if (link_ == nullptr || scenario_.repeats) return;
+  try {
+    const MessagesConfig& messages = supervising_.messages;
+    if (!messages.name.empty()) messages_ = std::make_unique<Datagrams>(messages.listen, messages.to);
+    if (!supervising_.perception.empty())
+      perceived_ = std::make_unique<Datagrams>(supervising_.perception, std::vector<std::string>());
+  } catch (const InputError& error) {
+    throw InputError({.file = robot_.config.file, .message = std::string("supervisor: ") + error.what()});
+  }
+  message_channel_ = messages_.get();
+}
+
+// In lockstep it shares the behaviors' thread and log; a log is of one thread.
+void Assembly::make_supervisor(BehaviorLog& told) {
+  ScriptLimits limits;
+  if (scenario_.on_wall_clock) {
+    limits.tick_wall_ns = std::llround(0.5e9 / supervising_.rate_Hz);
+    limits.load_wall_ns = 20 * limits.tick_wall_ns;
+  }
+  open_sockets();
+  const bool named = !supervising_.messages.name.empty();
+  // A number that another start has not: of a run the time, of a simulation always the same.
+  const auto boot = link_ == nullptr ? 1U : static_cast<std::uint32_t>(WallClock().now_ns() / 1'000'000);
+  supervisor_link_ = std::make_unique<SupervisorLink>();
+  supervisor_log_.add(supervisor_link_->lines);
+  supervisor_ = std::make_unique<Supervisor>(Supervisor::Settings{.config = supervising_,
+                                                                  .root = project_root(scenario_.file),
+                                                                  .folders = folders_of(scenario_),
+                                                                  .seed = seed_,
+                                                                  .limits = limits,
+                                                                  .messages = named ? message_channel_ : nullptr,
+                                                                  .perception = perceived_.get(),
+                                                                  .boot = boot},
+                                             control_system_->catalog, *supervisor_link_, exchange_->seen,
+                                             link_ != nullptr ? supervisor_log_ : told);
+  supervisor_->declare_signals(control_system_->catalog.signals, states_);
+}
+
+void Assembly::make_perception() {
+  for (const ScenarioPerception& one : variant_.perception) {
+    perception_.push_back(std::make_unique<SimulatedPerception>(one, control_system_->catalog.seen,
+                                                                variant_.plant.world.objects, seed_, scenario_.file));
+  }
 }
 
 void Assembly::show_others() {
@@ -427,20 +502,25 @@ BehaviorHost& Assembly::played() noexcept {
 }
 
 void Assembly::make_behaviors() {
-  BehaviorHost* host = filtered_ ? filtered_.get() : &played();
+  BehaviorHost* host = filtered_ ? filtered_.get() : supervised_ ? supervised_.get() : &played();
   lockstep_.reset();
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host);
   if (shared_ == nullptr || linked_ || number_ > 0) return;
   lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *world(), *control_, *behaviors_);
   try {
     for (const auto& other : others_) lockstep_->add(other->robot_.config.engine, *other->control_, *other->behaviors_);
+    if (supervisor_) lockstep_->supervise(*behaviors_, *supervisor_);
+    for (const auto& other : others_) {
+      if (other->supervisor_) lockstep_->supervise(*other->behaviors_, *other->supervisor_);
+    }
   } catch (const std::invalid_argument& error) {
     refuse(scenario_.file, scenario_.robots.front().plant_place, std::string("robots: ") + error.what());
   }
 }
 
 void Assembly::filter(SnapshotFilter& filter) {
-  filtered_ = std::make_unique<FilteredHost>(played(), filter);
+  BehaviorHost& host = supervised_ ? static_cast<BehaviorHost&>(*supervised_) : played();
+  filtered_ = std::make_unique<FilteredHost>(host, filter);
   make_behaviors();
 }
 
@@ -461,9 +541,11 @@ RunParts Assembly::parts_in(Lockstep& lockstep) {
                  .disturbances = disturbances_.get(),
                  .joystick = joystick_.get(),
                  .sight = sight_.get(),
+                 .observed = supervisor_.get(),
                  .unhashed = unhashed_,
                  .name = number_ == 0 ? "" : scenario_.name,
                  .faulty = number_ == 0 ? nullptr : faulty_.get()};
+  for (const auto& one : perception_) parts.perception.push_back(one.get());
   for (const auto& other : others_) parts.others.push_back(other->parts_in(lockstep));
   return parts;
 }

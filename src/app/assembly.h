@@ -22,6 +22,10 @@
 #include "script/host/script_host.h"
 #include "script/process/process_host.h"
 #include "snapshot_filter.h"
+#include "supervisor/decide/supervised_host.h"
+#include "supervisor/decide/supervisor.h"
+#include "supervisor/messages/datagrams.h"
+#include "supervisor/messages/simulated_network.h"
 
 namespace kadans {
 
@@ -81,13 +85,14 @@ class Assembly {
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
   const ScriptHost& host() const noexcept { return *host_; }  // only when behaviors do not play outside
   ScriptHost& host() noexcept { return *host_; }
-  std::span<const SignalState> signal_states() const noexcept {
-    return host_ ? host_->signal_states() : std::span<const SignalState>();
-  }
-  const ScriptHost* own_host() const noexcept { return host_.get(); }  // nullptr when they play outside
+  std::span<const SignalState> signal_states() const noexcept { return states_; }  // of behaviors and decisions
+  const ScriptHost* own_host() const noexcept { return host_.get(); }              // nullptr when they play outside
   OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
   // Call before the run: from now on saved files are reloaded. Throws std::runtime_error when files cannot be watched.
-  void watch_behaviors() { host_->watch(); }
+  void watch_behaviors() {
+    host_->watch();
+    if (supervisor_) supervisor_->watch();
+  }
   RunParts parts() { return parts_in(*lockstep_); }
   const ScenarioConfig& scenario() const noexcept { return scenario_; }
   const WorldSettings& world_settings() const noexcept { return variant_.plant.world; }  // of this run
@@ -112,6 +117,13 @@ class Assembly {
   const std::vector<SignalId>& unhashed() const noexcept { return unhashed_; }  // no part of a state hash
   std::size_t foreign_first() const noexcept { return foreign_first_; }
   std::size_t foreign_end() const noexcept { return foreign_end_; }
+
+  // What decides what is played; nullptr: nothing does. In a run on threads it is ticked by its own.
+  Supervisor* supervisor() noexcept { return supervisor_.get(); }
+  const Supervisor* supervisor() const noexcept { return supervisor_.get(); }
+  void stop_deciding() noexcept {
+    if (supervised_) supervised_->leave();
+  }
 
   // Call before the first step: the behaviors then see the snapshot as the filter changes it. The filter must outlive
   // this object.
@@ -139,6 +151,10 @@ class Assembly {
   const TruthSource* truth_source() noexcept;
   void make_joystick_player();
   void make_sight();
+  void make_perception();
+  void take_supervisor();
+  void open_sockets();
+  void make_supervisor(BehaviorLog& told);
   void make_behaviors();
   BehaviorHost& played() noexcept;
 
@@ -168,9 +184,18 @@ class Assembly {
   std::unique_ptr<EngineExchange> exchange_;
   std::unique_ptr<TruthSignals> truth_;
   std::unique_ptr<ScriptHost> host_;
+  std::vector<SignalState> states_;
   std::size_t foreign_first_ = 0, foreign_end_ = 0;
   std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the signals about the interpreter's own needs
   std::vector<SignalId> unhashed_;
+  SupervisorConfig supervising_;               // the scenario's or the robot's
+  std::unique_ptr<SimulatedNetwork> network_;  // of all robots, the first robot's; in lockstep
+  std::unique_ptr<MessageChannel> messages_, perceived_;
+  MessageChannel* message_channel_ = nullptr;
+  std::unique_ptr<SupervisorLink> supervisor_link_;
+  BehaviorLog supervisor_log_;
+  std::unique_ptr<Supervisor> supervisor_;
+  std::unique_ptr<SupervisedHost> supervised_;
   std::unique_ptr<ControlEngine> control_;
   std::unique_ptr<FaultyHost> faulty_host_;
   std::unique_ptr<FilteredHost> filtered_;
@@ -179,6 +204,7 @@ class Assembly {
   std::unique_ptr<Disturbances> disturbances_;
   std::unique_ptr<JoystickSource> joystick_;
   std::unique_ptr<SimulatedSight> sight_;
+  std::vector<std::unique_ptr<SimulatedPerception>> perception_;
 };
 
 }  // namespace kadans

@@ -160,6 +160,7 @@ std::unique_ptr<ControlSystem> make_control_system(const Robot& robot) {
   catalog.behavior_values = config.behavior_values;
   for (const EstimateFoot& foot : config.estimate.feet) catalog.feet.push_back({foot.name, foot.link});
   catalog.sensors = config.plant.channels;
+  catalog.seen = config.supervisor.seen;
   for (const ObjectConfig& object : config.objects) {
     const auto index = static_cast<std::uint32_t>(system->objects.size());
     system->objects.push_back(make_object(robot, object, catalog.drives));

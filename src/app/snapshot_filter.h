@@ -21,6 +21,7 @@ class FilteredHost final : public BehaviorHost {
     filter_.change(seen_);
     host_.tick(seen_, commands);
   }
+  void before_tick(const Snapshot& snapshot) noexcept override { host_.before_tick(snapshot); }
   void prepare(const Snapshot& newest) noexcept override { host_.prepare(newest); }
 
  private:

@@ -17,6 +17,7 @@ void BehaviorEngine::pin(std::int64_t seen_ns) {
 
 void BehaviorEngine::tick(std::int64_t time_ns) {
   const auto snapshot = exchange_.snapshot.read(0);
+  if (host_ != nullptr) host_->before_tick(*snapshot);
   if (inputs_ != nullptr) {
     inputs_->tick_begins(*snapshot, time_ns);
     pin(snapshot->time_ns);

@@ -27,6 +27,18 @@ void Lockstep::silence_behaviors(const BehaviorEngine& behaviors, bool silent) n
   }
 }
 
+void Lockstep::supervise(const BehaviorEngine& behaviors, Supervising& supervisor) noexcept {
+  for (Engines& robot : robots_) {
+    if (robot.behaviors == &behaviors) robot.supervisor = &supervisor;
+  }
+}
+
+void Lockstep::silence_supervisor(const BehaviorEngine& behaviors, bool silent) noexcept {
+  for (Engines& robot : robots_) {
+    if (robot.behaviors == &behaviors) robot.supervisor_silent = silent;
+  }
+}
+
 void Lockstep::pass_period() {
   world_.step(control_period_ns_);
   clock_.advance(control_period_ns_);
@@ -45,6 +57,12 @@ void Lockstep::step() {
     if (now_ns < robot.behaviors_due_ns) continue;
     if (!robot.behaviors_silent) robot.behaviors->tick(now_ns);
     robot.behaviors_due_ns = (now_ns / robot.behavior_period_ns + 1) * robot.behavior_period_ns;
+  }
+  for (Engines& robot : robots_) {
+    if (robot.supervisor == nullptr || now_ns < robot.supervisor_due_ns) continue;
+    if (!robot.supervisor_silent) robot.supervisor->tick(now_ns);
+    const std::int64_t period_ns = robot.supervisor->period_ns();
+    robot.supervisor_due_ns = (now_ns / period_ns + 1) * period_ns;
   }
   pass_period();
 }

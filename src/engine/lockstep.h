@@ -1,6 +1,6 @@
 // Virtual time on one thread: the world's time leads, everything else follows in a fixed order, so that the same seed
 // gives the same run bit for bit. One step is one control period: the control ticks of all robots, their behavior ticks
-// when they are due, then the world.
+// when they are due, their supervisors when they are due, then the world.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include "engine/tick/control_engine.h"
 #include "engine/tick/tick_statistics.h"
 #include "kadans/plant/world.h"
+#include "supervising.h"
 
 namespace kadans {
 
@@ -25,13 +26,18 @@ class Lockstep {
   // first.
   void add(const EngineSettings& settings, ControlEngine& control, BehaviorEngine& behaviors);
 
+  // Before the first step: what decides over these behaviors. Keeps a reference.
+  void supervise(const BehaviorEngine& behaviors, Supervising& supervisor) noexcept;
+
   // Throws what the world's step throws.
   void step();
 
   // Faults for tests and scenarios. miss: skips this number of control ticks of all robots before the next one.
   // silence_behaviors: no tick of these behaviors comes until it is called with false.
   void miss(std::uint32_t control_ticks) noexcept { missed_ = control_ticks; }
+  // silence_supervisor: the same of what decides over them.
   void silence_behaviors(const BehaviorEngine& behaviors, bool silent) noexcept;
+  void silence_supervisor(const BehaviorEngine& behaviors, bool silent) noexcept;
 
   std::int64_t time_ns() const noexcept { return clock_.now_ns(); }
   std::int64_t control_period_ns() const noexcept { return control_period_ns_; }
@@ -45,6 +51,9 @@ class Lockstep {
     std::int64_t behavior_period_ns;
     std::int64_t behaviors_due_ns = 0;
     bool behaviors_silent = false;
+    Supervising* supervisor = nullptr;
+    std::int64_t supervisor_due_ns = 0;
+    bool supervisor_silent = false;
   };
 
   void pass_period();

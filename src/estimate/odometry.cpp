@@ -10,10 +10,12 @@ void Odometry::update(const Way& way, bool all, const std::array<double, 2>& hea
                       double dt_s, OdometryStatus& status) noexcept {
   lifted_s_ = way.feet > 0 ? 0 : lifted_s_ + dt_s;
   learn_drift(way, all, base.angular_velocity_rad_s, dt_s);
-  const bool stands = lifted_s_ < lifted_s && base.posture == Posture::upright;
+  const bool stands = lifted_s_ < lifted_s && base.posture == Posture::upright, was_valid = state_.valid;
   if (resets_) {
     resets_ = false;
-    state_ = {.resets = state_.resets + 1, .valid = stands};
+    go(way, base.yaw_rad);
+    begin_path();
+    state_ = {.resets = state_.resets + 1, .valid = stands, .breaks = state_.breaks};
     zero_rad_ = base.yaw_rad;
     zero_x_ = heading[0];
     zero_y_ = heading[1];
@@ -21,7 +23,27 @@ void Odometry::update(const Way& way, bool all, const std::array<double, 2>& hea
     state_.valid = state_.valid && stands;
     go(way, base.yaw_rad);
   }
+  if (state_.valid != was_valid) ++state_.breaks;
+  go_along_path();
   status = state_;
+}
+
+// What was counted so far lies behind: the path goes on from there.
+void Odometry::begin_path() noexcept {
+  go_along_path();
+  path_ = {state_.path_x_m, state_.path_y_m, state_.path_heading_rad};
+  path_direction_ = sine_cosine(state_.path_heading_rad);
+}
+
+void Odometry::go_along_path() noexcept {
+  const auto& [sin, cos] = path_direction_;
+  state_.path_x_m = path_[0] + cos * state_.x_m - sin * state_.y_m;
+  state_.path_y_m = path_[1] + sin * state_.x_m + cos * state_.y_m;
+  const double rad = path_[2] + state_.heading_rad;
+  const double turn_rad = rad > std::numbers::pi    ? 2 * std::numbers::pi
+                          : rad < -std::numbers::pi ? -2 * std::numbers::pi
+                                                    : 0;
+  state_.path_heading_rad = rad - turn_rad;
 }
 
 // The world drifts on by this tick's share, and so does the direction of 0 in it.

@@ -12,12 +12,15 @@
 // It falls short where feet slip, and it knows nothing of the way of a robot that flies or lies: then it is not valid
 // until the next reset, although it goes on counting what feet say. A hop of lifted_s is allowed, and counts as no way.
 //
+// The path is the same way without the resets: the world model keeps the places of things along it.
+//
 // One owner, the control thread.
 #pragma once
 
 #include <array>
 
 #include "kadans/signal/status.h"
+#include "signal/sine_cosine.h"
 
 namespace kadans {
 
@@ -52,9 +55,13 @@ class Odometry {
  private:
   void learn_drift(const Way& way, bool all, const Vec3& rate_rad_s, double dt_s) noexcept;
   void go(const Way& way, double yaw_rad) noexcept;
+  void begin_path() noexcept;
+  void go_along_path() noexcept;
 
   OdometryStatus state_{.valid = true};
-  double zero_rad_ = 0, zero_x_ = 1, zero_y_ = 0;  // where a heading of 0 is in the world that drifts
+  double zero_rad_ = 0, zero_x_ = 1, zero_y_ = 0;      // where a heading of 0 is in the world that drifts
+  std::array<double, 3> path_{};                       // x_m, y_m, heading_rad of the path at the last reset
+  SineCosine path_direction_{.sine = 0, .cosine = 1};  // of that heading
   double lifted_s_ = 0;
   double drift_rad_s_ = 0, quiet_s_ = 0, learnt_s_ = 0;
   bool resets_ = false;

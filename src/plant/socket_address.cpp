@@ -71,7 +71,13 @@ int open_at(const std::string& text, int flags, Attach attach) {
 }  // namespace
 
 int listening_socket(const std::string& place) { return open_at(place, AI_PASSIVE, bind); }
-int connected_socket(const std::string& place) { return open_at(place, 0, connect); }
+int connected_socket(const std::string& place) {
+  return open_at(place, 0, [](int descriptor, const sockaddr* address, socklen_t size) {
+    const int yes = 1;  // the address of all machines of a network is a place, too
+    (void)setsockopt(descriptor, SOL_SOCKET, SO_BROADCAST, &yes, sizeof yes);
+    return connect(descriptor, address, size);
+  });
+}
 
 bool PeerAddress::operator==(const PeerAddress& other) const noexcept {
   return size == other.size && std::memcmp(&address, &other.address, size) == 0;

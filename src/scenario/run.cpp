@@ -126,6 +126,7 @@ void RunParts::begin_step() const {
   if (disturbances != nullptr) disturbances->apply(lockstep, behaviors, world, robot);
   if (joystick != nullptr) control.exchange().joystick.publish(joystick->at(lockstep.time_ns()));
   if (sight != nullptr) control.exchange().ball.publish(sight->at(lockstep.time_ns(), robot.truth()));
+  for (SimulatedPerception* one : perception) one->look(lockstep.time_ns(), robot.truth(), *observed);
   for (const RunParts& other : others) other.begin_step();
 }
 

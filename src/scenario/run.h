@@ -14,6 +14,7 @@
 #include "scenario/disturb/planned_faults.h"
 #include "scenario/judge/checks.h"
 #include "scenario/judge/truth_signals.h"
+#include "simulated_perception.h"
 #include "simulated_sight.h"
 
 namespace kadans {
@@ -63,6 +64,8 @@ struct RunParts {
   Disturbances* disturbances = nullptr;
   JoystickSource* joystick = nullptr;
   SimulatedSight* sight = nullptr;
+  std::vector<SimulatedPerception*> perception{};
+  ObservationSink* observed = nullptr;  // who takes what perception says
   // Signals that are no part of the state hash, rising: the interpreter's own needs (memory, instructions, pauses),
   // because memory depends on the machine; and odometry, which follows from what is in the hash.
   std::vector<SignalId> unhashed{};

@@ -128,6 +128,10 @@ const char* name(Posture posture) noexcept {
                               static_cast<std::size_t>(posture));
 }
 
+const char* name(SeenSource source) noexcept {
+  return named<seen_sources>({"none", "scenario", "perception", "message", "record"}, static_cast<std::size_t>(source));
+}
+
 const char* name(SafetyLevel level) noexcept {
   return named<safety_levels>({"normal", "limited", "hold", "damp", "off"}, static_cast<std::size_t>(level));
 }

@@ -13,6 +13,7 @@ using enum StatusField::Type;
 using Place = StatusReference;
 
 const char* level_name(std::size_t value) { return name(static_cast<SafetyLevel>(value)); }
+const char* source_name(std::size_t value) { return name(static_cast<SeenSource>(value)); }
 const char* posture_name(std::size_t value) { return name(static_cast<Posture>(value)); }
 
 template <std::size_t axis>
@@ -35,6 +36,15 @@ Place channel_at(Snapshot& s, std::size_t) {
 template <std::size_t... channel>
 constexpr auto channel_places(std::index_sequence<channel...>) {
   return std::array{&channel_at<channel>...};
+}
+
+template <std::size_t field>
+Place seen_field_at(Snapshot& s, std::size_t i) {
+  return s.seen.entries[i].fields[field];
+}
+template <std::size_t... field>
+constexpr auto seen_places(std::index_sequence<field...>) {
+  return std::array{&seen_field_at<field>...};
 }
 
 constexpr StatusField fields[] = {
@@ -118,6 +128,15 @@ constexpr StatusField fields[] = {
     {ball, number, "confidence", "", "How certain it was, 0..1; 0 until it is seen",
      [](Snapshot& s, std::size_t) -> Place { return s.ball.confidence; }},
 
+    {seen, number, "age_s", "s", "Time since the observation; NaN while nothing is known",
+     [](Snapshot& s, std::size_t i) -> Place { return s.seen.entries[i].age_s; }},
+    {seen, number, "confidence", "", "How certain it is, 0..1; 0 while nothing is known",
+     [](Snapshot& s, std::size_t i) -> Place { return s.seen.entries[i].confidence; }},
+    {seen, flag, "carried", "", "Whether the odometry tells the whole way since the observation",
+     [](Snapshot& s, std::size_t i) -> Place { return s.seen.entries[i].carried; }},
+    {seen, choice, "source", "", "Who told it",
+     [](Snapshot& s, std::size_t i) -> Place { return s.seen.entries[i].source; }, nullptr, source_name, seen_sources},
+
     {root, number, "time_s", "s", "Time on the engine's clock", nullptr},
     {root, number, "tick", "", "Number of the control engine's tick",
      [](Snapshot& s, std::size_t) -> Place { return s.tick; }},
@@ -152,12 +171,21 @@ void StatusReference::declare(SignalTable& table, Signal signal) const {
 
 std::span<const StatusField> status_fields() noexcept { return fields; }
 
-std::vector<StatusField> status_fields(const std::vector<SensorChannel>& channels) {
+std::vector<StatusField> status_fields(const std::vector<SensorChannel>& channels,
+                                       const std::vector<SeenInfo>& entries) {
   static constexpr auto places = channel_places(std::make_index_sequence<max_channels>{});
+  static constexpr auto seen_at = seen_places(std::make_index_sequence<max_seen_fields>{});
   std::vector<StatusField> all(std::begin(fields), std::end(fields));
   for (std::size_t i = 0; i < channels.size() && i < max_channels; ++i) {
     const SensorChannel& one = channels[i];
     all.push_back({sensors, number, one.name.c_str(), one.unit.c_str(), one.doc.c_str(), places[i]});
+  }
+  for (std::size_t i = 0; i < entries.size() && i < max_seen; ++i) {
+    for (std::size_t f = 0; f < entries[i].fields.size() && f < max_seen_fields; ++f) {
+      const SeenField& one = entries[i].fields[f];
+      all.push_back({seen, number, one.name.c_str(), one.unit.c_str(), one.doc.c_str(), seen_at[f]});
+      all.back().only = i;
+    }
   }
   return all;
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "kadans/signal/seen_info.h"
 #include "kadans/signal/sensor_channel.h"
 #include "kadans/signal/signal.h"
 #include "kadans/signal/status.h"
@@ -42,7 +43,20 @@ class StatusReference {
 };
 
 struct StatusField {
-  enum class Part : std::uint8_t { root, joint, base, rate, foot, support, odometry, safety, joystick, ball, sensors };
+  enum class Part : std::uint8_t {
+    root,
+    joint,
+    base,
+    rate,
+    foot,
+    support,
+    odometry,
+    safety,
+    joystick,
+    ball,
+    seen,
+    sensors
+  };
   enum class Type : std::uint8_t { number, flag, choice };
 
   Part part;
@@ -55,6 +69,12 @@ struct StatusField {
   // Of a choice: the name of each value; how many there are.
   const char* (*choice)(std::size_t value) = nullptr;
   std::size_t choices = 0;
+  std::size_t only = any_index;  // the one thing of its part that has it
+
+  static constexpr std::size_t any_index = static_cast<std::size_t>(-1);
+  bool is_of(Part other, std::size_t index) const noexcept {
+    return part == other && (only == any_index || only == index);
+  }
 
   double value(const Snapshot& snapshot, std::size_t index) const noexcept {
     return at(const_cast<Snapshot&>(snapshot), index).value();  // which is not written
@@ -63,8 +83,9 @@ struct StatusField {
 
 // Part by part, in the order in which records have them.
 std::span<const StatusField> status_fields() noexcept;
-// The fields of the sensors that a robot's configuration names; the sensors must outlive them.
-std::vector<StatusField> status_fields(const std::vector<SensorChannel>& sensors);
+// With the fields of the sensors and of the entries of the world model that a robot's configuration names; these must
+// outlive them.
+std::vector<StatusField> status_fields(const std::vector<SensorChannel>& sensors, const std::vector<SeenInfo>& seen);
 
 // Declares the fields of a part as signals "topic.name". The snapshot must outlive the table's use. Throws
 // std::invalid_argument on a name that is taken.

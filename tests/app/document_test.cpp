@@ -9,6 +9,10 @@ TEST_CASE("docs/scenarios.md: every file is accepted, every command works and pr
   document::check_page("scenarios.md", "document_scenarios");
 }
 
+TEST_CASE("docs/supervisor.md: every file is accepted, every command works and prints what is shown") {
+  document::check_page("supervisor.md", "document_supervisor");
+}
+
 TEST_CASE("docs/joystick.md: every file is accepted, every command works and prints what is shown") {
   document::check_page("joystick.md", "document_joystick");
 }

@@ -69,6 +69,27 @@ TEST_CASE("a reset of the odometry puts place and heading to 0 where the base is
   CHECK(ground.status.y_m == doctest::Approx(0));
 }
 
+TEST_CASE("the path of the odometry goes on over a reset, and counts where its way was lost") {
+  Ground ground;
+  ground.go(1, 0, 1, 0.5 * std::numbers::pi);
+  const double x_m = ground.status.path_x_m, y_m = ground.status.path_y_m;
+  CHECK(x_m == ground.status.x_m);
+  ground.odometry.reset();
+  ground.go(0, 0, tick_s);
+  CHECK(ground.status.x_m == 0);
+  CHECK(ground.status.path_x_m == doctest::Approx(x_m));
+  CHECK(ground.status.path_heading_rad == doctest::Approx(0.5 * std::numbers::pi).epsilon(1e-6));
+  ground.go(1, 0, 1);
+  CHECK(ground.status.path_x_m == doctest::Approx(x_m).epsilon(1e-6));
+  CHECK(ground.status.path_y_m == doctest::Approx(y_m + 1).epsilon(1e-6));
+  CHECK(ground.status.breaks == 0);
+  ground.fly(0.2);
+  CHECK(ground.status.breaks == 1);
+  ground.odometry.reset();
+  ground.go(0, 0, 1);
+  CHECK(ground.status.breaks == 2);
+}
+
 TEST_CASE("odometry of a robot that is lifted or lies is not valid until it is reset") {
   Ground ground;
   ground.go(1, 0, 1);

@@ -35,6 +35,22 @@ std::string brief_refusal(const Json& json, bool paced = false) {
 
 }  // namespace
 
+TEST_CASE("ctl tells of each entry of the world model what is known, and of others that they are there") {
+  const std::vector<SeenInfo> declared{
+      {.name = "ball", .places = 2, .fields = {{"x_m", "m", "", -9, 9}, {"y_m", "m", "", -9, 9}}},
+      {.name = "door", .places = 2, .fields = {{"x_m", "m", "", -9, 9}, {"y_m", "m", "", -9, 9}}}};
+  SeenEntries seen;
+  seen.count = 2;
+  seen.entries[0] = {.confidence = 0.5, .age_s = 0.25, .fields = {1.5, -1}, .source = SeenSource::perception};
+  const Json told = world_json(seen, declared)["world"];
+  REQUIRE(told.size() == 2);
+  CHECK(told[0]["entry"] == "ball");
+  CHECK(told[0]["age_s"] == 0.25);
+  CHECK(told[0]["source"] == "perception");
+  CHECK(told[0]["fields"] == Json{{"x_m", 1.5}, {"y_m", -1.0}});
+  CHECK(told[1] == Json{{"entry", "door"}});
+}
+
 TEST_CASE("Each order has a verb and words of its own, and a sentence") {
   std::set<std::string> verbs, words;
   for (const OrderInfo& order : order_table::orders) {

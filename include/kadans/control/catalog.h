@@ -12,6 +12,7 @@
 #include "kadans/control/switchover.h"
 #include "kadans/model/robot_model.h"
 #include "kadans/signal/parameter.h"
+#include "kadans/signal/seen_info.h"
 #include "kadans/signal/sensor_channel.h"
 #include "kadans/signal/setpoint.h"
 #include "kadans/signal/signal.h"
@@ -91,6 +92,7 @@ struct Catalog {
   std::vector<UnheldLaw> unheld;  // one per joint; empty: off
   std::vector<BehaviorValue> behavior_values;
   std::vector<FootInfo> feet;          // in the order of the frames
+  std::vector<SeenInfo> seen{};        // entries of the world model, in the order of the snapshot
   std::vector<SensorChannel> sensors;  // other than joints, IMU and feet; in the order of the frames
 };
 

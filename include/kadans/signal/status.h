@@ -54,6 +54,10 @@ struct alignas(8) OdometryStatus {
   double x_m = 0, y_m = 0, heading_rad = 0;
   std::uint32_t resets = 0;  // since the start; wraps around
   bool valid = false;        // no: it fell or was lifted since the reset
+  // The same since the start, whatever was reset: the path along which the world model keeps its places.
+  alignas(8) double path_x_m = 0;
+  double path_y_m = 0, path_heading_rad = 0;
+  std::uint32_t breaks = 0;  // how often `valid` changed; what lies before a change is not where the path says
 };
 
 // A fault in brief, for those who look at all new ones.
@@ -136,6 +140,7 @@ struct alignas(8) Snapshot {
   std::array<ArmedStatus, max_armed> armed{};
   JoystickState joystick;
   SeenBall ball;
+  SeenEntries seen;
   PowerStatus power;
 };
 
@@ -179,6 +184,7 @@ inline void copy_used(const Snapshot& from, Snapshot& to) noexcept {
   to.armed = from.armed;
   to.joystick = from.joystick;
   to.ball = from.ball;
+  copy_used(from.seen, to.seen);
   to.power.supply_V = from.power.supply_V;
   to.power.emergency = from.power.emergency;
   copy_first(from.power.drives, from.joints.count, to.power.drives);
@@ -190,8 +196,8 @@ static_assert(sizeof(BaseStatus) == 104 && sizeof(FootStatus) == 32 &&
               alignof(SafetyStatus) == 8);
 static_assert(offsetof(RobotStatus, feet) == 112 && offsetof(Snapshot, joints) == 32);
 static_assert(sizeof(DriveStatus) == 12 && sizeof(PowerStatus) == 16 + 12 * max_joints);
-static_assert(sizeof(OdometryStatus) == 32 &&
-              sizeof(Snapshot) == 5880 + 32 * max_feet + sizeof(SeenBall) +
+static_assert(sizeof(OdometryStatus) == 64 &&
+              sizeof(Snapshot) == 5912 + 32 * max_feet + sizeof(SeenBall) + sizeof(SeenEntries) +
                                       24 * new_faults_shown);  // a new field also belongs in copy_used()
 
 }  // namespace kadans

@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 class Sensors final : public SnapshotFilter {
  public:
   explicit Sensors(const Catalog& catalog)
-      : joints_(catalog.model->joint_names()), fields_(status_fields(catalog.sensors)) {
+      : joints_(catalog.model->joint_names()), fields_(status_fields(catalog.sensors, catalog.seen)) {
     for (const FootInfo& sole : catalog.feet) feet_.push_back(sole.name);
+    for (const SeenInfo& entry : catalog.seen) seen_.push_back(entry.name);
   }
 
   bool set(const std::string& name, double value) {
@@ -91,6 +92,10 @@ class Sensors final : public SnapshotFilter {
         return only("joystick");
       case ball:
         return only("seen.ball");
+      case seen: {
+        const std::optional<std::size_t> entry = one_of("seen", seen_);
+        return entry && field.is_of(seen, *entry) ? entry : std::nullopt;
+      }
       case sensors:
         return only("sensors");
       case root:
@@ -99,7 +104,7 @@ class Sensors final : public SnapshotFilter {
     return std::nullopt;
   }
 
-  std::vector<std::string> joints_, feet_;
+  std::vector<std::string> joints_, feet_, seen_;
   std::vector<StatusField> fields_;
   std::map<std::string, double> values_;
 };
@@ -229,6 +234,7 @@ std::unique_ptr<TestStage> RobotStages::make(const fs::path& behavior, const std
   scenario.robot =
       (robot.empty() ? (robot_.empty() ? robot_of_behavior(behavior) : robot_) : project_root(behavior) / robot)
           .string();
+  scenario.undecided = true;
   scenario.plant = plant.empty() ? "ideal" : plant;
   scenario.behaviors.push_back({.file = behavior});
   return std::make_unique<RobotStage>(std::move(scenario));

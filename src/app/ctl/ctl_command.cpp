@@ -158,6 +158,23 @@ std::string drives_text(const Json& answer) {
   return text + (answer.at("emergency").get<bool>() ? "the emergency stop's button is pressed\n" : "");
 }
 
+std::string world_text(const Json& answer) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Json& entry : answer.at("world")) {
+    if (!entry.contains("fields")) {
+      rows.push_back({entry.at("entry"), "nothing is known"});
+      continue;
+    }
+    std::string fields;
+    for (const auto& [name, value] : entry.at("fields").items())
+      fields += (fields.empty() ? "" : ", ") + name + " " + number(value);
+    rows.push_back({entry.at("entry"), fields, number(entry.at("age_s")) + " s old",
+                    "confidence " + number(entry.at("confidence")), "from " + entry.at("source").get<std::string>(),
+                    entry.at("carried").get<bool>() ? "" : "the way since is not known"});
+  }
+  return rows.empty() ? "the configuration names no entries (supervisor.world)\n" : table(rows);
+}
+
 // The parameters to which presets give other values, and how to change that.
 std::string overridden_text(const Json& overridden) {
   std::string text, last;
@@ -192,6 +209,7 @@ std::string answer_text(const std::string& words, const Json& answer) {
   if (words == "save") return save_text(answer);
   if (words == "fault list") return fault_list(answer);
   if (words == "drives") return drives_text(answer);
+  if (words == "world") return world_text(answer);
   const std::string text = answer.value("text", std::string());
   return text.empty() ? "" : text + "\n";
 }

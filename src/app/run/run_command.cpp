@@ -75,6 +75,18 @@ class JoystickTask final : public Task {
   bool connected_ = false;
 };
 
+class SupervisorTask final : public Task {
+ public:
+  explicit SupervisorTask(Supervisor& supervisor) noexcept : supervisor_(supervisor) {}
+  bool beat(const Beat& beat) override {
+    supervisor_.tick(beat.due_ns);
+    return true;
+  }
+
+ private:
+  Supervisor& supervisor_;
+};
+
 // Prepares a robot for being switched off: the playing behaviors leave their states, then the robot moves to the safe
 // posture of its configuration. It runs on the behavior thread after the supervisor has called ask().
 class Leaving final : public BesideTick {
@@ -217,6 +229,8 @@ class WallClockRun {
                    : std::make_unique<PlantTask>(*link_, *assembly_.world(),
                                                  assembly_.robot().engine.control_period_ns())),
         joystick_(make_joystick()),
+        supervisor_(assembly_.supervisor() == nullptr ? nullptr
+                                                      : std::make_unique<SupervisorTask>(*assembly_.supervisor())),
         leaving_({.pose = assembly_.robot().safe.pose, .time_s = assembly_.robot().safe.time_s}, assembly_.catalog(),
                  assembly_.orders(), parts_.behaviors, parts_.control.exchange()) {
     log_.add(record_side_);
@@ -252,7 +266,8 @@ class WallClockRun {
     if (!assembly_.plant().open(interrupted)) return exit_interrupted;
     LastResort last_resort(timing.real_time && !timing.virtual_time ? last_resort_priority : 0, exit_failed);
     RunThreads threads(timing,
-                       {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get()},
+                       {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get(),
+                        supervisor_.get(), supervisor_ ? assembly_.supervisor()->period_ns() : 0},
                        interrupted);
     if (!threads.start(print_error)) return end_before_start(threads, last_resort);
     if (may_record && !timing.virtual_time) disk_.start();
@@ -393,6 +408,7 @@ class WallClockRun {
     const bool held = level() >= SafetyLevel::hold;
     failed_ = failed_ || held;
     record_side_.expect_end();
+    assembly_.stop_deciding();
     if (!failed_) {
       leaving_.ask();
       pass(threads, assembly_.robot().safe.time_s + 0.2);
@@ -466,6 +482,7 @@ class WallClockRun {
   std::unique_ptr<TruthTask> truth_;  // of a model, or nullptr
   std::unique_ptr<PlantTask> plant_;  // of a model, or nullptr
   std::unique_ptr<JoystickTask> joystick_;
+  std::unique_ptr<SupervisorTask> supervisor_;  // of the decisions, or nullptr
   Leaving leaving_;
   Instance instance_{facts_of(options_, scenario_, assembly_), assembly_.catalog(),
                      parts_.control.safety().emergency_stop()};

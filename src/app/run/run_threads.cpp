@@ -17,7 +17,7 @@ RunThreads::RunThreads(const RunTiming& timing, const RunTasks& tasks, bool (*gi
     : timing_(timing),
       give_up_(give_up),
       line_(2 + std::size_t{tasks.plant != nullptr} + std::size_t{tasks.record != nullptr} +
-                std::size_t{tasks.joystick != nullptr},
+                std::size_t{tasks.joystick != nullptr} + std::size_t{tasks.supervisor != nullptr},
             start_ns),
       supervisor_wait_(timing.virtual_time ? virtual_time_.make_wait(give_up) : nullptr) {
   const auto priority = [&](int wanted) { return timing.real_time && !timing.virtual_time ? wanted : 0; };
@@ -53,6 +53,9 @@ RunThreads::RunThreads(const RunTiming& timing, const RunTasks& tasks, bool (*gi
     add({.name = "joystick", .period_ns = joystick_period_ns, .priority = priority(joystick_priority)}, *tasks.joystick,
         0);
   }
+  if (tasks.supervisor != nullptr)
+    add({.name = "supervisor", .period_ns = tasks.supervisor_period_ns, .first_ns = 3 * period_ns}, *tasks.supervisor,
+        0);
   if (tasks.record == nullptr) return;
   // Rows must not be lost when the machine is busy for seconds, because the ring holds only one or two seconds.
   add({.name = "record", .period_ns = record_period_ns, .priority = priority(record_priority)}, *tasks.record, 0);

@@ -31,6 +31,8 @@ struct RunTasks {
   PlantTask* plant = nullptr;  // of a model, else nullptr
   Task* record = nullptr;
   Task* joystick = nullptr;
+  Task* supervisor = nullptr;
+  std::int64_t supervisor_period_ns = 0;
 };
 
 struct RunTiming {

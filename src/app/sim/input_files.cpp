@@ -216,6 +216,10 @@ void add_robot(const Assembly& assembly, Gathering& files) {
   if (const ScriptHost* host = assembly.own_host()) {
     for (const fs::path& file : host->files()) files.add(file);
   }
+  if (const Supervisor* supervisor = assembly.supervisor();
+      supervisor != nullptr && supervisor->decisions() != nullptr) {
+    for (const fs::path& file : supervisor->decisions()->behavior().files()) files.add(file);
+  }
   for (const auto& other : assembly.others()) add_robot(*other, files);
 }
 
@@ -275,7 +279,8 @@ InputLayout layout_of(const Assembly& assembly) {
   return {.joints = static_cast<std::uint32_t>(robot.model.joints.size()),
           .feet = static_cast<std::uint32_t>(robot.plant.feet.size()),
           .channels = static_cast<std::uint32_t>(robot.plant.channels.size()),
-          .down = static_cast<std::uint32_t>(assembly.sets().hand_overs().down.size())};
+          .down = static_cast<std::uint32_t>(assembly.sets().hand_overs().down.size()),
+          .seen = static_cast<std::uint32_t>(assembly.catalog().seen.size())};
 }
 
 RunOptions options_of(const RunInputs& inputs, const std::string& record) {

@@ -213,6 +213,8 @@ void RepeatedRun::feed(const TickTaken& taken) {
   if (std::memcmp(&joystick_, &taken.joystick, sizeof joystick_) != 0) exchange.joystick.publish(taken.joystick);
   joystick_ = taken.joystick;
   if (taken.ball.confidence > 0) exchange.ball.publish(taken.ball);
+  if (std::memcmp(&seen_, &taken.seen, sizeof seen_) != 0) exchange.seen.publish(taken.seen);
+  seen_ = taken.seen;
   EmergencyStop& stop = control.safety().emergency_stop();
   if ((taken.inputs.stop & heard_lift) != 0) stop.lift();
   if ((taken.inputs.stop & heard_stop) != 0) stop.ask_as_recorded(taken.stopped_by);

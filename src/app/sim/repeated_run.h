@@ -144,6 +144,7 @@ class RepeatedRun final : private BehaviorInputs {
   // Batches of the record's commands: given to the control engine, and sent in the behavior ticks before.
   std::uint64_t fed_ = 0, sent_before_ = 0;
   JoystickState joystick_{};
+  SeenEntries seen_{};
   std::uint64_t ticks_ = 0, behavior_ticks_ = 0, commands_ = 0, events_ = 0;
   std::string parting_;
   StateHash hash_;

@@ -83,6 +83,11 @@ void RobotReader::read(Fields& f) {
   f.object("start", "the pose and place in which the robot starts", [&](Fields& e) { start(e); });
   f.object("joystick", "a joystick that behaviors read as s.joystick", [&](Fields& e) { joystick(e); });
   f.object("estimate", "settings of the estimator", [&](Fields& e) { estimate(e); });
+  f.object(
+      "supervisor", "what decides what is played, and what it knows of the world (docs/supervisor.md)", [&](Fields& e) {
+        const std::filesystem::path folder = std::filesystem::path(config_.file).parent_path().filename();
+        supervisor_fields(e, config_.supervisor, {.project_file = config_.file, .robot = folder.string()}, problems_);
+      });
   f.object("record", "what is recorded", [&](Fields& record) { record_fields(record, config_.record); });
   f.object("safety", "limits and reactions of the safety layer", [&](Fields& e) { safety(e); });
   f.object(

@@ -26,6 +26,7 @@
 #include "plant/joystick/settings.h"
 #include "record_config.h"
 #include "safety/settings.h"
+#include "supervisor_config.h"
 
 namespace kadans {
 
@@ -79,6 +80,7 @@ struct RobotConfig {
   SafeConfig safe;
   RecordConfig record;
   std::vector<InputEvent> input_events;
+  SupervisorConfig supervisor;
 };
 
 // Throws InputError with all mistakes, those of the URDF included. `object_types` are the types of control objects that

@@ -76,7 +76,7 @@ struct PlayOrder {
     resume,   // charts and motions continue
     stop,     // the playing behaviors leave their states
     reload,   // `behavior` continues with the program text of `file`
-    emit,     // `event` goes to what plays and declares it
+    emit,     // `event` goes to what plays and declares it; to `behavior` alone when that is named
   };
   Kind kind = Kind::play;
   std::vector<PlayItem> list{};

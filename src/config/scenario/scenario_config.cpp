@@ -42,7 +42,7 @@ struct KindInfo {
   const char* name;
   const char* size;  // what `size` means; "" when it means nothing
 };
-constexpr std::array<KindInfo, 22> fault_kinds{{
+constexpr std::array<KindInfo, 23> fault_kinds{{
     {"sensor_silent", ""},
     {"sensor_stuck", ""},
     {"sensor_offset", "added: rad, of the IMU rad/s, of a foot N"},
@@ -65,6 +65,7 @@ constexpr std::array<KindInfo, 22> fault_kinds{{
     {"commands_late", "delay in behavior ticks"},
     {"commands_not_finite", ""},
     {"clock_missed", "control ticks missed in a row, each time"},
+    {"supervisor_silent", ""},
 }};
 
 std::array<std::string, fault_kinds.size()> names_of_kinds() {
@@ -263,6 +264,28 @@ void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   });
 }
 
+void perception_fields(Fields& f, ScenarioPerception& perception) {
+  f.string("entry", perception.entry.name, "the entry of the world model that it tells of", Need::required);
+  perception.entry.place = f.place("entry");
+  f.string("object", perception.object.name, "the object of the world that is looked for", Need::required);
+  perception.object.place = f.place("object");
+  for (const SightRange& range : sight_ranges)
+    f.number(range.name, perception.settings.*range.value, {range.min, range.max, range.unit}, range.doc);
+  f.number("imagined", perception.imagined, {0, 1}, "share of the pictures that show it where it is not");
+  f.boolean("hidden", perception.hidden, "other objects of the world may stand before it");
+}
+
+// What it knows, and what decides.
+void supervisor_part(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+  f.object("supervisor", "what decides what is played, in place of that of the robot's configuration",
+           [&](Fields& e) { supervisor_fields(e, scenario.supervisor, folders_of(scenario), problems); });
+  f.list("perception", {0, max_seen}, "simulated perception of entries of the world model", [&](Fields& e) {
+    ScenarioPerception perception;
+    perception_fields(e, perception);
+    if (e.reading()) scenario.perception.push_back(std::move(perception));
+  });
+}
+
 void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig& scenario, Problems& problems) {
   f.string("name", robot.name, "the robot's name: its signals are NAME.plant.base.height_m and the like",
            Need::required);
@@ -282,6 +305,7 @@ void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig
     robot.robot = resolve_file(file, f.place("robot"), "robot", problems).string();
   variant_fields(f, robot, problems);
   play_fields(f, robot, problems);
+  supervisor_part(f, robot, problems);
   if (std::ranges::count(robot.faults, ScenarioFault::Kind::clock_missed, &ScenarioFault::kind) > 0)
     problems.add(f.place("faults"),
                  f.path("faults") + ": clock_missed is a fault of all robots: it belongs to the scenario's own faults");
@@ -357,10 +381,16 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   suite_fields(f, scenario, problems);
   variant_fields(f, scenario, problems);
   play_fields(f, scenario, problems);
+  supervisor_part(f, scenario, problems);
   f.list("robots", {0, further_robots_max}, "further robots in the same world and time", [&](Fields& e) {
     ScenarioConfig robot;
     further_robot_fields(e, robot, scenario, problems);
     if (e.reading()) scenario.robots.push_back(std::move(robot));
+  });
+  f.object("network", "the network between the robots", [&](Fields& e) {
+    e.number("delay_s", scenario.network.delay_s, {0, 10, "s"}, "the least time that a message takes");
+    e.number("jitter_s", scenario.network.jitter_s, {0, 10, "s"}, "the most that it takes longer");
+    e.number("lost", scenario.network.lost, {0, 1}, "share of the messages that are lost");
   });
   world_fields(f, scenario.world, problems);
   f.object("bus", "a bus with drives between the control and the model, byte by byte on virtual time",

@@ -10,6 +10,7 @@
 
 #include "config/json/fields.h"
 #include "config/robot/input_event.h"
+#include "config/robot/supervisor_config.h"
 #include "distribution.h"
 #include "kadans/signal/frames.h"
 #include "play_item.h"
@@ -58,6 +59,7 @@ struct ScenarioFault {
     commands_late,
     commands_not_finite,
     clock_missed,
+    supervisor_silent,
   };
   Kind kind = Kind::sensor_silent;
   // For a drive fault the name of a drive, as plant.drives has it; for a sensor fault that of a joint, a foot's link or
@@ -140,6 +142,22 @@ struct ScenarioSight {
   SightSettings settings;
 };
 
+// Perception of an entry of the world model that is simulated (simulated_perception.h). The numbers are quantities,
+// too.
+struct ScenarioPerception {
+  PlacedName entry;   // of the robot's supervisor
+  PlacedName object;  // of the world
+  SightSettings settings;
+  double imagined = 0;  // share of the pictures that show it where it is not
+  bool hidden = false;  // other objects of the world may stand before it
+};
+
+// The network between the robots of a scenario.
+struct ScenarioNetwork {
+  double delay_s = 0.01, jitter_s = 0.01;
+  double lost = 0;  // share of the messages
+};
+
 // Which plug-ins the robot may load. Plug-ins that a record from elsewhere names are not trusted.
 struct PluginGate {
   bool closed = false;
@@ -190,8 +208,12 @@ struct ScenarioConfig {
   WorldConfig world;
   ScenarioJoystick joystick;
   ScenarioSight sight;
+  SupervisorConfig supervisor;  // in place of the robot's, when it is given
+  std::vector<ScenarioPerception> perception;
+  ScenarioNetwork network;
   std::string joystick_device;  // not in the file: device of a run on the wall clock
   bool repeats = false;         // a record stands for the plant, which is not driven
+  bool undecided = false;       // not in the file: the robot's decisions do not run
   bool on_wall_clock = false;   // not in the file: time goes on while a behavior is slow
   std::vector<ScenarioCheck> checks;
   // Further robots in the same world and time. Of each only name, robot, quantities, behaviors, events, pushes,

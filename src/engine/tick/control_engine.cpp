@@ -5,6 +5,7 @@
 
 #include "engine/tick/control_engine.h"
 #include "estimate/estimator.h"
+#include "seen_entries.h"
 #include "signal/status_fields.h"
 
 namespace kadans {
@@ -23,6 +24,7 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
   written_ = actuation_;  // all of it, once
   declare_signals(catalog);
   if (settings.joystick) declare_part(catalog.signals, StatusField::Part::joystick, "joystick", snapshot_);
+  declare_seen(catalog.signals, catalog.seen, snapshot_.seen);
   if (settings.sight) declare_part(catalog.signals, StatusField::Part::ball, "seen.ball", snapshot_);
   if (!catalog.feet.empty()) declare_part(catalog.signals, StatusField::Part::odometry, "odometry", snapshot_);
   row_.resize(catalog.signals.size());
@@ -129,6 +131,11 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   if (exchange_.ball.has_news()) snapshot_.ball = exchange_.ball.newest();
   if (snapshot_.ball.confidence > 0)
     snapshot_.ball.age_s = 1e-9 * static_cast<double>(time_ns - snapshot_.ball.time_ns);
+  if (exchange_.seen.has_news()) {
+    const auto reading = exchange_.seen.read();
+    copy_used(*reading, seen_);
+  }
+  show_seen(seen_, snapshot_.status.odometry, time_ns, snapshot_.seen);
   tell_drives();
   exchange_.snapshot.publish(snapshot_);
   signals_.gather(row_);

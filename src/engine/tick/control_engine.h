@@ -57,6 +57,7 @@ using SnapshotStorage = Latest<Snapshot, snapshot_readers>;
 using HeartbeatStorage = Latest<std::int64_t>;  // time of the behavior engine's last tick
 using JoystickStorage = Latest<JoystickState>;
 using BallStorage = Latest<SeenBall>;
+using SeenStorage = Latest<SeenEntries>;
 
 // The storages between the threads. Position independent; may live in shared memory.
 struct EngineExchange {
@@ -65,6 +66,7 @@ struct EngineExchange {
   HeartbeatStorage heartbeat;  // written by the behavior thread
   JoystickStorage joystick;    // written by the thread that reads a joystick, read by the control thread
   BallStorage ball;            // written by the thread of perception, read by the control thread
+  SeenStorage seen;            // the world model: written by the supervisor, read by the control thread
 };
 
 class ControlEngine {
@@ -91,6 +93,8 @@ class ControlEngine {
   // Of the last tick; valid until the next one.
   const TickInputs& inputs() const noexcept { return inputs_; }
   const SensorFrame& sensors() const noexcept { return sensors_; }
+  // The world model that the last tick showed, as it was published.
+  const SeenEntries& seen() const noexcept { return seen_; }
   Safety& safety() noexcept { return safety_; }
   const Safety& safety() const noexcept { return safety_; }
   EngineExchange& exchange() noexcept { return exchange_; }
@@ -116,6 +120,7 @@ class ControlEngine {
   bool stopped_ = false;  // by the emergency stop, in the last tick
   TickInputs inputs_;
   SensorFrame sensors_;
+  SeenEntries seen_;
   Snapshot snapshot_;         // joints and status are estimated in place
   ActuationFrame actuation_;  // computed in the last tick, written in this one
   ActuationFrame written_;    // in this tick: what is wanted of the joints

@@ -118,6 +118,11 @@ std::string CtlRequests::at_once(CtlSession& session, const OrderRequest& reques
     drives["ok"] = true;
     return json_text(drives);
   }
+  if (request.is("world")) {
+    Json world = world_json(port_.status().seen, instance_.catalog().seen);
+    world["ok"] = true;
+    return json_text(world);
+  }
   if (request.is("unwatch")) {
     session.watched.clear();
     watches_fast(session, false);

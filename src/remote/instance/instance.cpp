@@ -45,7 +45,8 @@ InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) n
           .control_sets = snapshot.control_sets,
           .commands_refused = snapshot.commands_refused,
           .record = record,
-          .power = snapshot.power};
+          .power = snapshot.power,
+          .seen = snapshot.seen};
 }
 
 void Instance::publish(const InstanceStatus& status) noexcept {

@@ -53,6 +53,7 @@ struct InstanceStatus {
   std::uint32_t commands_refused = 0;
   RecordStatus record;
   PowerStatus power;
+  SeenEntries seen;
 };
 InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) noexcept;
 

@@ -126,7 +126,6 @@ inline constexpr OrderArgument record_file{
     .name = "file", .kind = text, .shown = "FILE", .doc = "name of the file (default: from robot and time)"};
 
 inline constexpr OrderArgument some_text{.name = "text", .kind = text, .required = true};
-
 inline constexpr OrderArgument some_joints{.name = "joints",
                                            .kind = text,
                                            .shown = "JOINTS",
@@ -198,6 +197,7 @@ inline constexpr OrderInfo orders[] = {
      {},
      {},
      "  kadans ctl drives --json\n"},
+    {"world", "world", ctl, Role::read, "What the robot knows of the world: entries with age, confidence, source", {}},
     {"enable_drives",
      "drive enable",
      all,

@@ -169,6 +169,24 @@ Json drives_json(const PowerStatus& power, const RobotModel& model) {
   return {{"supply_V", told(power.supply_V)}, {"emergency", power.emergency}, {"drives", drives}};
 }
 
+Json world_json(const SeenEntries& seen, const std::vector<SeenInfo>& declared) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < declared.size() && i < seen.count; ++i) {
+    const SeenEntry& entry = seen.entries[i];
+    Json one{{"entry", declared[i].name}};
+    if (entry.confidence > 0) {
+      one["source"] = name(entry.source);
+      one["age_s"] = entry.age_s;
+      one["confidence"] = entry.confidence;
+      one["carried"] = entry.carried;
+      for (std::size_t f = 0; f < declared[i].fields.size(); ++f)
+        one["fields"][declared[i].fields[f].name] = entry.fields[f];
+    }
+    all.push_back(std::move(one));
+  }
+  return {{"world", all}};
+}
+
 Json status_json(const Instance& instance, const InstanceStatus& status) {
   const Instance::Facts& facts = instance.facts();
   const Catalog& catalog = instance.catalog();

@@ -27,6 +27,9 @@ Json reasons_json(const Answer& answer);
 Json status_json(const Instance& instance, const InstanceStatus& status);
 // {"ok", "supply_V", "emergency", "drives": [{joint, state, code, temperature_C, homed}]}; unknown values are null.
 Json drives_json(const PowerStatus& power, const RobotModel& model);
+// {"ok", "world": [{entry, source, age_s, confidence, carried, fields: {x_m: 1.2}}]}; of an entry of which nothing is
+// known its name alone.
+Json world_json(const SeenEntries& seen, const std::vector<SeenInfo>& declared);
 
 const std::vector<std::string>& list_kinds();  // what can be listed: "behaviors", "sets" ...
 // Lists all items of a kind. `report` is used for behaviors, parameters and events, `status` for sets. Throws

@@ -18,7 +18,8 @@ double given_share(const ScenarioPush& push, double time_s) {
 Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& model)
     : pushes_(scenario.pushes, model, scenario.file), hands_(scenario) {
   for (const ScenarioFault& fault : scenario.faults) {
-    if (fault.kind == ScenarioFault::Kind::behaviors_silent || fault.kind == ScenarioFault::Kind::clock_missed)
+    if (fault.kind == ScenarioFault::Kind::behaviors_silent || fault.kind == ScenarioFault::Kind::clock_missed ||
+        fault.kind == ScenarioFault::Kind::supervisor_silent)
       faults_.push_back(fault);
   }
   happened_.resize(faults_.size());
@@ -26,18 +27,23 @@ Disturbances::Disturbances(const ScenarioConfig& scenario, const RobotModel& mod
 
 void Disturbances::apply(Lockstep& lockstep, const BehaviorEngine& behaviors, World& world, WorldRobot& robot) {
   const double time_s = 1e-9 * static_cast<double>(lockstep.time_ns());
-  bool silent = false;
+  bool silent = false, undecided = false;
   for (std::size_t i = 0; i < faults_.size(); ++i) {
     const ScenarioFault& fault = faults_[i];
     if (!(time_s >= fault.from_s && time_s < fault.until_s)) continue;
     if (fault.kind == ScenarioFault::Kind::behaviors_silent) {
       silent = true;
+    } else if (fault.kind == ScenarioFault::Kind::supervisor_silent) {
+      undecided = true;
     } else if (std::isfinite(fault.until_s) || !happened_[i]) {  // without an end it happens once
       lockstep.miss(static_cast<std::uint32_t>(fault.size));
     }
     happened_[i] = true;
   }
-  if (!faults_.empty()) lockstep.silence_behaviors(behaviors, silent);
+  if (!faults_.empty()) {
+    lockstep.silence_behaviors(behaviors, silent);
+    lockstep.silence_supervisor(behaviors, undecided);
+  }
   hands_.apply(world, robot, lockstep.time_ns(), lockstep.control_period_ns());
   pushes_.apply(robot, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
 }

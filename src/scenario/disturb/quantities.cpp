@@ -57,6 +57,12 @@ Quantities::Quantities(PlantVariant& variant, Catalog& catalog, bool further_rob
     for (const SightRange& range : sight_ranges)
       add_value(std::string("sight.") + range.name, {range.min, range.max, range.unit}, variant.sight.*range.value);
   }
+  for (ScenarioPerception& one : variant.perception) {
+    for (const SightRange& range : sight_ranges)
+      add_value("perception." + one.entry.name + "." + range.name, {range.min, range.max, range.unit},
+                one.settings.*range.value);
+    add_value("perception." + one.entry.name + ".imagined", {0, 1}, one.imagined);
+  }
   add_start(plant);
   add_sensors(plant);
   add_joints(variant.model, plant);

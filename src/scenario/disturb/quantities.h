@@ -42,6 +42,7 @@ struct PlantVariant {
   double actuation_delay_s = 0;
   bool sees = false;  // it has simulated perception
   SightSettings sight;
+  std::vector<ScenarioPerception> perception{};
 };
 
 class Quantities {

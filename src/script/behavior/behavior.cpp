@@ -202,7 +202,7 @@ int read_file(lua_State* state) {
   lua_call(state, 0, 1);
   const int result = lua_gettop(state);
   NodeKind kind{};
-  if (!is_node(state, result, &kind) || kind != NodeKind::behavior) {
+  if (!is_node(state, result, &kind) || (kind != NodeKind::behavior && kind != NodeKind::decisions)) {
     return luaL_error(state, "%s:1: the file must return k.behavior \"name\" { ... }",
                       parts.lua->sources().front().chunk.c_str());
   }
@@ -354,6 +354,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   Bindings& bindings = parts.bindings;
   bindings.begin(commands, snapshot, snapshot.time_ns);
   bindings.sent_events.clear();
+  bindings.decided.clear();
   if (parts.chart.fault_events.empty()) parts.reports.faults_seen = snapshot.status.safety.faults_raised;
   if (bindings.armed_count > 0) parts.tell_armed();
   bindings.take_back_orphans();
@@ -367,6 +368,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   if (!parts.run(tick_chart)) {
     commands.discard();
     bindings.sent_events.clear();
+    bindings.decided.clear();
     if (take_back(snapshot, commands)) return true;
     parts.failed = true;
     parts.error = parts.lua->error();
@@ -460,7 +462,13 @@ bool Behavior::post(const std::string& event) noexcept {
 }
 
 const std::vector<ScriptEvent>& Behavior::events() const noexcept { return parts_->lua->core().events; }
+bool Behavior::waits_for(const std::string& event) const noexcept {
+  const EventId id = parts_->chart.find_event(event);
+  return id != no_event && parts_->runner->waits_for(id);
+}
 std::vector<SentEvent>& Behavior::sent_events() noexcept { return parts_->bindings.sent_events; }
+std::vector<PlayOrder>& Behavior::decided() noexcept { return parts_->bindings.decided; }
+void Behavior::show_plays(const PlayReport* report) noexcept { parts_->bindings.plays = report; }
 
 namespace {
 
@@ -608,6 +616,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
                                                             .voice = &parts});
   parts.bindings.catalog = &parts.catalog;
   parts.bindings.inputs = settings.limits.inputs;
+  parts.bindings.folders = settings.folders.project_file.empty() ? nullptr : &settings.folders;
   parts.lua->core().bindings = &parts.bindings;
   if (!parts.lua->call(read_file, &parts, instructions, settings.limits.load_wall_ns)) {
     throw InputError(problem_of(parts.lua->error()));

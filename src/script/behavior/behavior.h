@@ -30,6 +30,7 @@
 #include "kadans/control/set_partition.h"
 #include "kadans/signal/status.h"
 #include "script/chart/chart.h"
+#include "script/host/play_report.h"
 #include "script/host/script_argument.h"
 #include "script/host/script_event.h"
 #include "script/host/script_parameter.h"
@@ -53,6 +54,7 @@ class Behavior {
     std::vector<PlayArgument> arguments{};  // for its `args` or its parameters
     std::string source{};                   // where the arguments were written, for messages
     std::string chunk{};                    // name of `file` when it was first read; set by Behavior
+    PlayFolders folders{};                  // of a k.decisions: where the behaviors are found that it plays
   };
   // `catalog` and `log` must outlive the behavior. Throws InputError.
   Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log);
@@ -91,8 +93,14 @@ class Behavior {
   const std::vector<ScriptEvent>& events() const noexcept;
   // Behavior thread, between ticks. The event waits for the next tick. Returns "", or why it is refused.
   std::string post(const PlayedEvent& event);
+  // Whether an active state has a transition for this event.
+  bool waits_for(const std::string& event) const noexcept;
   // What it sent to other behaviors in its last tick; the caller takes it.
   std::vector<SentEvent>& sent_events() noexcept;
+  // Of a k.decisions: what it asked for in its last tick; the caller takes it.
+  std::vector<PlayOrder>& decided() noexcept;
+  // Of a k.decisions, before a tick: what plays now. It must live as long as the tick runs.
+  void show_plays(const PlayReport* report) noexcept;
   // False: the behavior does not know the event, or its queue is full.
   [[nodiscard]] bool post(const std::string& event) noexcept;
 

@@ -130,6 +130,8 @@ std::string motion_option_reference() {
 
 constexpr ApiEntry written[] = {
     {"kadans", "behavior(name)", "fun(body: table): kadans.Behavior", "A behavior: k.behavior \"name\" { ... }"},
+    {"kadans", "decisions(name)", "fun(body: table): kadans.Behavior",
+     "What decides which behaviors play (docs/supervisor.md): k.decisions \"name\" { ... }"},
     {"kadans", "state(name)", "fun(body: kadans.Body): kadans.Node", "A state, with transitions and states inside"},
     {"kadans", "parallel(name)", "fun(body: kadans.Body): kadans.Node",
      "A state whose regions are all active together"},
@@ -222,6 +224,23 @@ constexpr ApiEntry written[] = {
 
     {"s", "joints", "kadans.Joints", "By name"},
     {"s", "base", "kadans.Base", "The trunk"},
+    {"decider", "play(list, arguments)", "boolean?, string?",
+     "Plays a list of behaviors after what plays now: `m:play(\"get_up, walk_to{x_m=1}\")`; a table has the arguments "
+     "of "
+     "the only one: `m:play(\"walk_to\", { x_m = far_m })`. Its end is the event play.done, play.failed or "
+     "play.refused; "
+     "nil, \"queue_full\" when too much was asked for in this tick"},
+    {"decider", "replace(list, arguments)", "boolean?, string?", "The same in place of what plays now"},
+    {"decider", "stop()", "boolean?, string?", "Ends what plays"},
+    {"decider", "pause()", "boolean?, string?", "Lets what plays stand still, until it is resumed"},
+    {"decider", "resume()", "boolean?, string?", "Lets what plays go on"},
+    {"decider", "plays(name)", "string?",
+     "The path of the innermost active state of the behavior of this name that plays now; without a name of the first "
+     "one; nil: it does not play"},
+    {"decider", "send(event, data)", "boolean?, string?",
+     "Sends an event to the other robots: `m:send(\"robot.pass\", { x_m = 1 })`. Its name begins with `robot.`, and "
+     "k.events "
+     "declares it; a text field `from` has the sender's name where it comes in"},
     {"s", "event", "kadans.Event", "The event of the present step; empty outside of such a step"},
     {"s", "feet", "kadans.Feet",
      "By name, as the robot's configuration has them; two without names are left and right"},
@@ -229,8 +248,10 @@ constexpr ApiEntry written[] = {
     {"s", "odometry", "kadans.Odometry", "Where the robot is by its feet and its gyro; never valid without feet"},
     {"s", "safety", "kadans.Safety", "State of the safety layer"},
     {"s", "joystick", "kadans.Joystick", "A joystick; centred while there is none"},
-    {"s", "seen", "kadans.Seen", "What perception saw last"},
-    {"seen", "ball", "kadans.SeenBall", "The ball; keeps what it was until the ball is seen again"},
+    {"s", "seen", "kadans.Seen",
+     "What perception saw last: the entries of the world model, by the names in robot.json (docs/supervisor.md)"},
+    {"seen", "ball", "kadans.SeenBall",
+     "The ball of a scenario's `sight`; keeps what it was until the ball is seen again"},
     {"event", "name", "string?", "Its name"},
     {"event", "data", "table?",
      "What its sender gave it; of an end: { result = }, of a k.parallel: { outcomes = { region = outcome }, results = "
@@ -265,6 +286,8 @@ const char* owner_of(StatusField::Part part) {
       return "joystick";
     case ball:
       return "ball";
+    case seen:
+      return "entry";
     case sensors:
       return "sensors";
     case root:
@@ -317,7 +340,9 @@ constexpr Owner owners[] = {{"kadans", "kadans", "The module: `local k = require
                             {"safety", "kadans.Safety", "The safety layer: `s.safety`"},
                             {"joystick", "kadans.Joystick", "A joystick: `s.joystick`"},
                             {"seen", "kadans.Seen", "What perception saw: `s.seen`"},
-                            {"ball", "kadans.SeenBall", "The ball: `s.seen.ball`"}};
+                            {"ball", "kadans.SeenBall", "The ball of a scenario's `sight`: `s.seen.ball`"},
+                            {"entry", "kadans.Entry", "An entry of the world model: `s.seen.NAME`"},
+                            {"decider", "kadans.Decider", "`m` of a k.decisions, beside wait, emit, vars and args"}};
 
 std::string bare(std::string_view name) { return std::string(name.substr(0, name.find('('))); }
 
@@ -408,6 +433,12 @@ std::string lua_stubs(const Catalog& catalog) {
   for (const SensorChannel& sensor : catalog.sensors)
     text +=
         "---@field " + sensor.name + " number " + sensor.doc + (sensor.unit.empty() ? "" : " In " + sensor.unit) + "\n";
+  for (const SeenInfo& entry : catalog.seen) {
+    text += "\n---@class kadans.Entry." + entry.name + ": kadans.Entry\n";
+    for (const SeenField& field : entry.fields)
+      text +=
+          "---@field " + field.name + " number " + field.doc + (field.unit.empty() ? "" : " In " + field.unit) + "\n";
+  }
   text += "\n---@class kadans.Feet\n";
   for (const FootInfo& foot : catalog.feet) text += "---@field " + foot.name + " kadans.Foot\n";
   text += "\n";
@@ -415,6 +446,10 @@ std::string lua_stubs(const Catalog& catalog) {
     text += "---@class " + std::string(owner.type) + "\n";
     for (const ApiEntry& entry : script_api()) {
       if (std::string_view(entry.owner) == owner.name) text += stub_line(entry);
+    }
+    if (std::string_view(owner.name) == "seen") {
+      for (const SeenInfo& entry : catalog.seen)
+        text += "---@field " + entry.name + " kadans.Entry." + entry.name + " " + entry.doc + "\n";
     }
     if (std::string_view(owner.name) == "m") {
       for (const ObjectInfo& object : catalog.objects) {
@@ -473,6 +508,8 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("joystick", s["joystick"].names());
   add("seen", s["seen"].names());
   add("ball", s["seen"].fields["ball"].names());
+  for (const char* field : {"age_s", "carried", "confidence", "source"}) all.push_back(std::string("entry.") + field);
+  for (std::string& word : decider_words()) all.push_back(std::move(word));
   std::sort(all.begin(), all.end());
   return all;
 }

@@ -18,6 +18,8 @@ struct ApiEntry {
   const char* doc;    // one sentence, with the unit
 };
 std::span<const ApiEntry> script_api();
+// "decider.play" and so on: the words that m has in a k.decisions alone.
+std::vector<std::string> decider_words();
 
 // A ---@meta file for lua-language-server with the table and this robot's objects, set-points, presets, poses and
 // joints.

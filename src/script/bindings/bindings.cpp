@@ -91,7 +91,8 @@ void Bindings::begin(CommandSender& to, const Snapshot& seen, std::int64_t time_
 }
 
 Bindings::Mark Bindings::mark() const noexcept {
-  return {sender->mark(), refused, motion_count, cancelled_count, armed_count, armed_in_tick, sent_events.size()};
+  return {sender->mark(), refused,       motion_count,       cancelled_count,
+          armed_count,    armed_in_tick, sent_events.size(), decided.size()};
 }
 
 void Bindings::take_back_to(const Mark& mark) noexcept {
@@ -105,6 +106,7 @@ void Bindings::take_back_to(const Mark& mark) noexcept {
   armed_count = mark.armed;
   armed_in_tick = mark.armed_in_tick;
   sent_events.erase(sent_events.begin() + static_cast<std::ptrdiff_t>(mark.events), sent_events.end());
+  decided.erase(decided.begin() + static_cast<std::ptrdiff_t>(mark.decided), decided.end());
 }
 
 // Each has a command in the transaction, so there is room for all.

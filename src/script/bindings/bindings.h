@@ -16,6 +16,7 @@
 #include "kadans/control/set_partition.h"
 #include "script/chart/chart.h"
 #include "script/chart/chart_runner.h"
+#include "script/host/play_report.h"
 #include "script/lua/lua_core.h"
 #include "script/motion/motion.h"
 
@@ -75,6 +76,11 @@ struct Bindings {
   std::uint32_t switched = 0;      // the newest one that brings sets in
   bool begun = false;
   std::vector<SentEvent> sent_events{};  // by this tick, for other behaviors
+  // Of a k.decisions (decision_binding.cpp): where behaviors are found, what plays now, and what this tick asked for.
+  const PlayFolders* folders = nullptr;
+  const PlayReport* plays = nullptr;
+  std::vector<PlayOrder> decided{};
+  std::string order_text{}, order_problem{};  // kept here, because Lua does not destroy what it leaves by an error
 
   bool has_object(std::size_t machine, std::uint32_t object) const noexcept {
     return machine >= machine_objects.size() || (machine_objects[machine] >> object & 1U) != 0;
@@ -108,6 +114,7 @@ struct Bindings {
     bool refused = false;
     std::uint32_t motions = 0, cancelled = 0, armed = 0;
     std::uint16_t armed_in_tick = 0;
+    std::size_t decided = 0;
     std::size_t events = 0;  // for other behaviors
   };
   Mark mark() const noexcept;
@@ -129,6 +136,9 @@ struct Bindings {
 inline Bindings& bindings_of(lua_State* state) noexcept { return *static_cast<Bindings*>(core_of(state).bindings); }
 
 void open_log(lua_State* state);  // [-1 +1] adds `log` to the module's table at the top of the stack
+
+// [-0 +0] Adds play, replace, stop and the other words of a k.decisions to the machine's table at the top of the stack.
+void open_decisions(lua_State* state);
 
 // [-0 +1] Pushes the handle of a control object: m.posture.
 void push_object(lua_State* state, std::uint32_t object);
@@ -164,6 +174,8 @@ EventId check_event(lua_State* state, Chart& chart, const char* name);
 void check_event_data(lua_State* state, const ScriptEvent& event, int index);
 // For m:emit with options: notes the event for other behaviors. `declared` may be nullptr. Raises.
 int send_away(lua_State* state, const ScriptEvent* declared, const char* name, int data, int options);
+// The same to the receiver `to`.
+int send_to(lua_State* state, const ScriptEvent* declared, const char* name, int data, const char* to);
 // [-0 +1] Pushes data of an event from outside as a table.
 void push_event_data(lua_State* state, const PlayedEvent& event);
 // The object on which the method was called; `number` is its index in the catalog. Raises.

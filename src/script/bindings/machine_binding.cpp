@@ -173,6 +173,9 @@ int refuse_read(lua_State* state) {
   for (std::uint32_t i = 0; i < bindings.catalog->objects.size(); ++i) {
     const ObjectInfo& object = bindings.catalog->objects[i];
     if (lua_type(state, 2) != LUA_TSTRING || object.name != lua_tostring(state, 2)) continue;
+    if (bindings.folders != nullptr)
+      return luaL_error(state, "'%s' is a control object: a k.decisions has none, it plays behaviors that have",
+                        object.name.c_str());
     if (bindings.recording) return push_object(state, i), 1;  // m:on may switch to its set
     if (number < bindings.machine_sets.size())
       return luaL_error(state, "%s", not_in_sets(bindings, object.name, number).data());
@@ -335,7 +338,7 @@ int make_result(lua_State* state) {
 
 void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, std::size_t number) {
   lua_newtable(state);
-  for (std::uint32_t object = 0; object < bindings.catalog->objects.size(); ++object) {
+  for (std::uint32_t object = 0; object < bindings.catalog->objects.size() && !chart.decides; ++object) {
     if (!bindings.has_object(number, object)) continue;
     push_object(state, object);
     lua_setfield(state, -2, bindings.catalog->objects[object].name.c_str());
@@ -350,13 +353,14 @@ void push_machine_content(lua_State* state, const Chart& chart, const Bindings& 
   lua_setfield(state, -2, "args");
   lua_pushcfunction(state, wait);
   lua_setfield(state, -2, "wait");
+  lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
+  lua_pushcclosure(state, emit, 1);
+  lua_setfield(state, -2, "emit");
+  if (chart.decides) return open_decisions(state);
   lua_pushcfunction(state, clear_faults);
   lua_setfield(state, -2, "clear_faults");
   lua_pushcfunction(state, reset_odometry);
   lua_setfield(state, -2, "reset_odometry");
-  lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
-  lua_pushcclosure(state, emit, 1);
-  lua_setfield(state, -2, "emit");
   open_armed(state, chart);
 }
 

@@ -126,9 +126,23 @@ void SnapshotTables::push_joints(lua_State* state, const RobotModel& model) {
   make_read_only(state, "s.joints");
 }
 
+// [-0 +1] The entries of the world model; without one of that name, the ball that a scenario's `sight` shows.
+void SnapshotTables::push_seen(lua_State* state, const std::vector<SeenInfo>& entries) {
+  lua_createtable(state, 0, static_cast<int>(entries.size()) + 1);
+  push_whole_part(state, Kind::ball, 0, "s.seen.ball");
+  lua_setfield(state, -2, "ball");
+  for (std::size_t i = 0; i < std::min(entries.size(), max_seen); ++i) {
+    lua_pushfstring(state, "s.seen.%s", entries[i].name.c_str());
+    push_whole_part(state, Kind::seen, i, lua_tostring(state, -1));
+    lua_setfield(state, -3, entries[i].name.c_str());
+    lua_pop(state, 1);
+  }
+  make_read_only(state, "s.seen");
+}
+
 int SnapshotTables::open(lua_State* state, const Catalog& catalog, bool on_demand) {
   on_demand_ = on_demand;
-  fields_ = status_fields(catalog.sensors);
+  fields_ = status_fields(catalog.sensors, catalog.seen);
   open_shelf(state);
   push_names(state);
   push_part(state, Kind::root, 0);
@@ -155,10 +169,7 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, bool on_deman
   lua_setfield(state, -2, "safety");
   push_whole_part(state, Kind::joystick, 0, "s.joystick");
   lua_setfield(state, -2, "joystick");
-  lua_createtable(state, 0, 1);
-  push_whole_part(state, Kind::ball, 0, "s.seen.ball");
-  lua_setfield(state, -2, "ball");
-  make_read_only(state, "s.seen");
+  push_seen(state, catalog.seen);
   lua_setfield(state, -2, "seen");
   push_whole_part(state, Kind::sensors, 0, "s.sensors");
   lua_setfield(state, -2, "sensors");
@@ -177,7 +188,8 @@ int SnapshotTables::open(lua_State* state, const Catalog& catalog, bool on_deman
   finish_part(state, 0, "s");
   std::size_t all = 0;
   for (const Part& part : parts_)
-    all += static_cast<std::size_t>(std::ranges::count(fields_, part.kind, &StatusField::part));
+    all += static_cast<std::size_t>(
+        std::ranges::count_if(fields_, [&](const StatusField& field) { return field.is_of(part.kind, part.index); }));
   read_.reserve(all);
   for (std::size_t i = 0; !on_demand && i < parts_.size(); ++i) read_whole(state, i);
   return luaL_ref(state, LUA_REGISTRYINDEX);
@@ -226,14 +238,15 @@ bool SnapshotTables::read_first(lua_State* state, std::size_t part, int key) {
   if (lua_type(state, key) != LUA_TSTRING) return false;
   const std::string_view name = lua_tostring(state, key);
   for (std::size_t i = 0; i < fields_.size(); ++i) {
-    if (fields_[i].part == parts_[part].kind && fields_[i].name == name) return read_field(state, part, i), true;
+    if (fields_[i].is_of(parts_[part].kind, parts_[part].index) && fields_[i].name == name)
+      return read_field(state, part, i), true;
   }
   return false;
 }
 
 void SnapshotTables::read_whole(lua_State* state, std::size_t part) {
   for (std::size_t i = 0; i < fields_.size(); ++i) {
-    if (fields_[i].part == parts_[part].kind) read_field(state, part, i);
+    if (fields_[i].is_of(parts_[part].kind, parts_[part].index)) read_field(state, part, i);
   }
 }
 

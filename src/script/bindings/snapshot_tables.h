@@ -35,7 +35,7 @@ class SnapshotTables {
   struct Part {
     Kind kind;
     std::uint32_t index;
-    std::bitset<128> read{};  // its fields that were read
+    std::bitset<512> read{};  // its fields that were read
   };
   struct Read {
     std::uint16_t part, field;
@@ -50,6 +50,7 @@ class SnapshotTables {
   void finish_part(lua_State* state, std::size_t number, const char* shown);
   void push_whole_part(lua_State* state, Kind kind, std::size_t index, const char* shown);
   void push_joints(lua_State* state, const RobotModel& model);
+  void push_seen(lua_State* state, const std::vector<SeenInfo>& entries);
   void read_field(lua_State* state, std::size_t part, std::size_t field);
   void push_value(lua_State* state, std::size_t field, std::size_t index) const;
 

@@ -99,6 +99,7 @@ struct Chart {
   };
 
   std::string name;
+  bool decides = false;  // a k.decisions: it plays behaviors, and has no control objects
   std::vector<State> states;
   std::vector<Transition> transitions;  // those of one state are contiguous
   std::vector<Machine> machines;

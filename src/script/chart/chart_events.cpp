@@ -207,6 +207,23 @@ void open_events(lua_State* state) {
   add_type(state, "text", Field::Type::text);
 }
 
+// Nothing here raises but the charge, before there are texts.
+void declare_play_events(lua_State* state) {
+  core_of(state).budget.charge(state, 3 * event_instructions);
+  constexpr std::array<std::array<const char*, 3>, 3> all{
+      {{"play.done", "what was played is over: all of it ended with done", nullptr},
+       {"play.failed", "what was played is over: something ended otherwise", nullptr},
+       {"play.refused", "what was asked for cannot be played", "why"}}};
+  for (const auto& [name, doc, field] : all) {
+    if (find_event(core_of(state).events, name) != nullptr) continue;
+    ScriptEvent& event = core_of(state).events.emplace_back();
+    event.chunk = "kadans";  // no file declares it: nobody has to wait for it
+    event.name = name;
+    event.doc = doc;
+    if (field != nullptr) event.fields.push_back({.name = field, .type = Field::Type::text});
+  }
+}
+
 void check_event_data(lua_State* state, const ScriptEvent& event, int index) {
   core_of(state).budget.charge(state, checked_instructions * static_cast<double>(event.fields.size() + 1));
   const bool given = !lua_isnoneornil(state, index);
@@ -223,7 +240,6 @@ void check_event_data(lua_State* state, const ScriptEvent& event, int index) {
   }
 }
 
-// What is read does not raise any more, so the texts and the list are safe.
 int send_away(lua_State* state, const ScriptEvent* declared, const char* name, int data, int options) {
   if (!lua_istable(state, options)) return luaL_error(state, "the last argument of m:emit is { to = \"behavior\" }");
   check_keys(state, options, calling_place(state), "m:emit", emit_keys);
@@ -231,6 +247,11 @@ int send_away(lua_State* state, const ScriptEvent* declared, const char* name, i
   const int to = lua_gettop(state);
   if (lua_type(state, to) != LUA_TSTRING || lua_objlen(state, to) > EventBounds::name_bytes)
     return luaL_error(state, "m:emit: 'to' must be the name of a behavior, or \"all\"");
+  return send_to(state, declared, name, data, lua_tostring(state, to));
+}
+
+// What is read does not raise any more, so the texts and the list are safe.
+int send_to(lua_State* state, const ScriptEvent* declared, const char* name, int data, const char* to) {
   if (declared == nullptr)
     return luaL_error(state, "the event '%s' is not declared: k.events { %s = {} } says what other behaviors get", name,
                       name);
@@ -238,7 +259,7 @@ int send_away(lua_State* state, const ScriptEvent* declared, const char* name, i
   std::vector<SentEvent>& sent = bindings_of(state).sent_events;
   if (sent.size() >= EventQueue::sent_max) return queue_full(state);
   SentEvent& event = sent.emplace_back();
-  event.to = lua_tostring(state, to);
+  event.to = to;
   event.event.name = name;
   for (const Field& field : declared->fields) {
     if (lua_isnoneornil(state, data)) break;

@@ -26,6 +26,8 @@ constexpr double node_instructions = 300, transition_instructions = 160;  // to 
 
 constexpr const char* behavior_keys[] = {"version", "controls", "vars",   "args", "migrate", "initial", "always",
                                          "enter",   "exit",     "during", "run",  "endless", nullptr};
+constexpr const char* decisions_keys[] = {"version", "vars", "args",   "migrate", "initial", "always",
+                                          "enter",   "exit", "during", "run",     "endless", nullptr};
 constexpr const char* state_keys[] = {"controls", "initial", "enter",   "exit", "during",
                                       "run",      "always",  "endless", nullptr};
 constexpr const char* parallel_keys[] = {"controls", "initial", "enter", "exit", "during", "run", "always", nullptr};
@@ -37,6 +39,8 @@ const char* const* keys_of(NodeKind kind) noexcept {
   switch (kind) {
     case NodeKind::behavior:
       return behavior_keys;
+    case NodeKind::decisions:
+      return decisions_keys;
     case NodeKind::parallel:
       return parallel_keys;
     case NodeKind::final_state:
@@ -302,6 +306,7 @@ int begin_node(lua_State* state) {
                     "%s \"%s\" { ... } takes its table behind the name, without a comma", node_word(kind),
                     lua_tostring(state, 1));
   }
+  if (kind == NodeKind::decisions) declare_play_events(state);
   push_node_maker(state, kind, 1, place);
   return 1;
 }
@@ -330,7 +335,8 @@ int take_arguments(lua_State* state) {  // (node, arguments)
 }  // namespace
 
 const char* node_word(NodeKind kind) noexcept {
-  constexpr const char* words[] = {"k.behavior", "k.state", "k.parallel", "k.region", "k.final", "k.history", "k.call"};
+  constexpr const char* words[] = {"k.behavior", "k.state",   "k.parallel", "k.region",
+                                   "k.final",    "k.history", "k.call",     "k.decisions"};
   return words[static_cast<int>(kind)];
 }
 
@@ -377,7 +383,7 @@ void push_node_body(lua_State* state, int index) { lua_getfield(state, index, "b
 void open_nodes(lua_State* state) {
   const luaL_Reg functions[] = {{"__call", take_arguments}};
   open_kind(state, node_key, functions);
-  constexpr NodeKind kinds[] = {NodeKind::behavior, NodeKind::state,       NodeKind::parallel,
+  constexpr NodeKind kinds[] = {NodeKind::behavior, NodeKind::decisions,   NodeKind::state,  NodeKind::parallel,
                                 NodeKind::region,   NodeKind::final_state, NodeKind::history};
   for (const NodeKind kind : kinds) {
     lua_pushinteger(state, static_cast<int>(kind));
@@ -569,7 +575,7 @@ struct Reader {
     const ScriptPlace place = node_place(state, node);
     const char* name = node_name(state, node);
     if (kind == NodeKind::call) return read_call(node, name, parent, place, depth);
-    if (kind == NodeKind::behavior)
+    if (kind == NodeKind::behavior || kind == NodeKind::decisions)
       raise_at(state, place, nullptr, "a behavior inside a behavior: k.call \"%s\" does that", name);
     constexpr Chart::Kind kinds[] = {Chart::Kind::state,  Chart::Kind::state,       Chart::Kind::parallel,
                                      Chart::Kind::region, Chart::Kind::final_state, Chart::Kind::history};
@@ -593,8 +599,10 @@ struct Reader {
     }
     const int behavior = lua_gettop(state);
     NodeKind kind{};
-    if (!is_node(state, behavior, &kind) || kind != NodeKind::behavior) {
-      raise_at(state, place, name, "k.call: '%s' does not return a k.behavior", name);
+    const NodeKind wanted = chart.decides ? NodeKind::decisions : NodeKind::behavior;
+    if (!is_node(state, behavior, &kind) || kind != wanted) {
+      raise_at(state, place, name, "k.call: '%s' does not return a %s%s", name, node_word(wanted),
+               chart.decides ? ": decisions m:play() behaviors" : "");
     }
     push_node_body(state, node);
     const int given = lua_gettop(state);
@@ -659,6 +667,8 @@ void charge_resolving(lua_State* state, const Chart& chart) {
 
 void read_chart(lua_State* state, int index, Chart& chart) {
   Reader reader{state, chart};
+  NodeKind kind{};
+  chart.decides = is_node(state, index, &kind) && kind == NodeKind::decisions;
   chart.name = node_name(state, index);
   reader.read_machine(index, no_state, 0);
   charge_resolving(state, chart);

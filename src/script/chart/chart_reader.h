@@ -15,7 +15,7 @@ namespace kadans {
 
 // The nodes that the constructors of the `kadans` module make from an author's tables. A node is a table {kind, name,
 // chunk, line, body} with a metatable of its own, which distinguishes it from any other table.
-enum class NodeKind : int { behavior, state, parallel, region, final_state, history, call };
+enum class NodeKind : int { behavior, state, parallel, region, final_state, history, call, decisions };
 const char* node_word(NodeKind kind) noexcept;  // "k.state"
 
 // True when the value at `index` is a node; then `kind` is set.
@@ -35,6 +35,8 @@ void open_nodes(lua_State* state);
 
 // [-1 +1] Adds params to the module's table at the top of the stack.
 void open_parameters(lua_State* state);
+// Declares the events by which a k.decisions hears of what it plays. [-0 +0]
+void declare_play_events(lua_State* state);
 // [-1 +1] Adds events, flag and text to the module's table at the top of the stack.
 void open_events(lua_State* state);
 // True when the value at `index` is a parameter; then `number` is its index in LuaCore::parameters.
@@ -42,8 +44,8 @@ bool is_parameter(lua_State* state, int index, std::size_t* number);
 
 std::vector<std::string> transition_key_names();
 
-// Reads the behavior at `index` of the stack and all behaviors that it calls into `chart`. Functions and tables get
-// registry references. Raises on anything that cannot be read; wrong names are found later by Chart::resolve().
+// Reads the behavior or the decisions at `index` of the stack and all that it calls into `chart`. Functions and tables
+// get registry references. Raises on anything that cannot be read; wrong names are found later by Chart::resolve().
 void read_chart(lua_State* state, int index, Chart& chart);
 
 // Finds the source line of each transition of a chart. The tables from which the chart was read do not know the lines,

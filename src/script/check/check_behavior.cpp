@@ -48,7 +48,8 @@ int look_at_file(lua_State* state) {
   NodeKind kind{};
   looked.returned = !lua_isnil(state, -1);
   looked.unfinished = lua_iscfunction(state, -1) != 0;
-  if (is_node(state, lua_gettop(state), &kind) && kind == NodeKind::behavior) looked.found.kind = ScriptKind::behavior;
+  if (is_node(state, lua_gettop(state), &kind) && (kind == NodeKind::behavior || kind == NodeKind::decisions))
+    looked.found.kind = ScriptKind::behavior;
   return 0;
 }
 

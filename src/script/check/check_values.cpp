@@ -75,11 +75,12 @@ bool without_colon(const SourceUse& use, const Tokens& tokens) {
 
 }  // namespace
 
-ValueCheck::ValueCheck(const Behavior::Parts& parts) : parts_(parts), fields_(status_fields(parts.catalog.sensors)) {}
+ValueCheck::ValueCheck(const Behavior::Parts& parts)
+    : parts_(parts), fields_(status_fields(parts.catalog.sensors, parts.catalog.seen)) {}
 
-ValueCheck::Type ValueCheck::field_of(StatusField::Part part, const std::string& name) const {
+ValueCheck::Type ValueCheck::field_of(StatusField::Part part, const std::string& name, std::size_t index) const {
   for (const StatusField& field : fields_) {
-    if (field.part != part || field.name != name) continue;
+    if (!field.is_of(part, index) || field.name != name) continue;
     if (field.type == StatusField::Type::number) {
       using Part = StatusField::Part;
       const bool sensed = part == Part::joint || part == Part::base || part == Part::rate || part == Part::foot ||
@@ -108,7 +109,12 @@ ValueCheck::Type ValueCheck::type_of(const SourceMeaning& meaning) const {
   if (path.size() == 3 && path[0] == "joints") return field_of(Part::joint, path[2]);
   if (path.size() == 3 && path[0] == "feet") return field_of(Part::foot, path[2]);
   if (path.size() == 3 && path[0] == "base") return field_of(Part::rate, path[2]);
-  if (path.size() == 3 && path[0] == "seen") return field_of(Part::ball, path[2]);
+  if (path.size() == 3 && path[0] == "seen") {
+    const auto& entries = parts_.catalog.seen;
+    const auto entry = std::ranges::find(entries, path[1], &SeenInfo::name);
+    if (entry != entries.end()) return field_of(Part::seen, path[2], static_cast<std::size_t>(entry - entries.begin()));
+    return field_of(Part::ball, path[2]);
+  }
   constexpr std::pair<const char*, Part> parts[] = {{"base", Part::base},         {"support", Part::support},
                                                     {"odometry", Part::odometry}, {"safety", Part::safety},
                                                     {"joystick", Part::joystick}, {"sensors", Part::sensors}};

@@ -31,7 +31,7 @@ class ValueCheck {
     bool measured = false;  // a number that comes from a sensor
   };
   Type type_of(const SourceMeaning& meaning) const;
-  Type field_of(StatusField::Part part, const std::string& name) const;
+  Type field_of(StatusField::Part part, const std::string& name, std::size_t index = 0) const;
   std::string compared(const SourceUse& use, const Type& type, const Tokens& tokens, std::size_t value,
                        const SourceToken& sign) const;
   void operands(const SourceUse& use, const Type& type, const Tokens& tokens,

@@ -127,6 +127,11 @@ int read(lua_State* state) {
     KnownNames::Shape& event = known.snapshot.fields["event"];
     event.fields["name"] = {};
     event.fields["data"].open = true;
+    // A scenario may give the robot of decisions another world than its configuration does.
+    if (KnownNames::Shape& seen = known.snapshot.fields["seen"]; parts.chart.decides && parts.catalog.seen.empty()) {
+      seen.fields.clear();
+      seen.open = true;
+    }
     read_methods(state, known.object_methods);
   }
   read_modules(state, known);

@@ -27,13 +27,22 @@ std::string shortened(std::string text) {
 EventDelivery::EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs)
     : log_(log), inputs_(std::move(inputs)), levels_(inputs_.size(), Level::unknown) {}
 
-std::string EventDelivery::refusal(const PlayedEvent& event, PlayList& list, bool paused) {
+namespace {
+
+bool is_meant(const std::string& to, const Behavior& behavior) {
+  return to.empty() || to == "all" || to == behavior.name();
+}
+
+}  // namespace
+
+std::string EventDelivery::refusal(const PlayedEvent& event, const std::string& to, PlayList& list, bool paused) {
   if (paused) return "the behaviors are paused; the event would be old when they go on";
   std::vector<std::string> known;
   std::string wrong, waits;
   bool fits = false;
   list.each_in_turn([&](const PlayList::Entry& entry) {
     const Behavior& behavior = *entry.behavior;
+    if (!is_meant(to, behavior)) return;
     for (const ScriptEvent& declared : behavior.events()) known.push_back(declared.name);
     if (const ScriptEvent* declared = find_event(behavior.events(), event.name)) {
       const std::string why = wrong_data(*declared, event).why;
@@ -48,6 +57,7 @@ std::string EventDelivery::refusal(const PlayedEvent& event, PlayList& list, boo
   if (!waits.empty())
     return "'" + waits + "' does not let the event '" + event.name + "' in: it lacks k.events { " + event.name +
            " = {} }";
+  if (known.empty() && !to.empty() && to != "all") return "no '" + to + "' that declares events (k.events) plays";
   if (known.empty()) return "no behavior that plays declares events (k.events)";
   std::ranges::sort(known);
   known.erase(std::unique(known.begin(), known.end()), known.end());
@@ -73,8 +83,9 @@ void EventDelivery::tell(const PlayedEvent& event, Severity severity, const std:
   log_.message(snapshot.time_ns, severity, "supervisor", "event " + text);
 }
 
-void EventDelivery::deliver(const PlayedEvent& event, PlayList& list, const Snapshot& snapshot, bool paused) {
-  if (const std::string why = refusal(event, list, paused); !why.empty()) return refuse(event, why, list, snapshot);
+void EventDelivery::deliver(const PlayedEvent& event, const std::string& to, PlayList& list, const Snapshot& snapshot,
+                            bool paused) {
+  if (const std::string why = refusal(event, to, list, paused); !why.empty()) return refuse(event, why, list, snapshot);
   std::string takers, wrong, data = data_json(event.data);
   if (data_bytes_ + data.size() > data_bytes_max)
     return refuse(event,
@@ -82,7 +93,7 @@ void EventDelivery::deliver(const PlayedEvent& event, PlayList& list, const Snap
                   list, snapshot);
   data_bytes_ += data.size();
   list.each_in_turn([&](const PlayList::Entry& entry) {
-    if (find_event(entry.behavior->events(), event.name) == nullptr) return;
+    if (!is_meant(to, *entry.behavior) || find_event(entry.behavior->events(), event.name) == nullptr) return;
     const std::string why = entry.behavior->post(event);
     if (why.empty()) takers += (takers.empty() ? "" : ", ") + entry.behavior->name();
     if (!why.empty()) wrong = why;
@@ -126,7 +137,7 @@ void EventDelivery::input_says(const InputEvent& input, const std::string& event
   list.each_in_turn([&](const PlayList::Entry& entry) {
     declared = declared || find_event(entry.behavior->events(), event) != nullptr;
   });
-  if (declared) return deliver(played, list, snapshot, paused);
+  if (declared) return deliver(played, "", list, snapshot, paused);
   list.count_event(false);
   if (!told("input " + input.input + " " + event))
     log_.message(snapshot.time_ns, Severity::info, "supervisor",

@@ -35,9 +35,9 @@ class EventDelivery {
 
   // To be called when a tick begins.
   void begin_tick() noexcept { data_bytes_ = 0; }
-  // Why nobody could take the event now; "": somebody can.
-  static std::string refusal(const PlayedEvent& event, PlayList& list, bool paused);
-  void deliver(const PlayedEvent& event, PlayList& list, const Snapshot& snapshot, bool paused);
+  // Why nobody could take the event now; "": somebody can. `to`: the name of a behavior; "" or "all": all of them.
+  static std::string refusal(const PlayedEvent& event, const std::string& to, PlayList& list, bool paused);
+  void deliver(const PlayedEvent& event, const std::string& to, PlayList& list, const Snapshot& snapshot, bool paused);
   // To be called in each tick: what inputs say, as compared with the tick before.
   void look_at_inputs(PlayList& list, const Snapshot& snapshot, bool paused);
   // To be called after the tick of a behavior.

@@ -60,14 +60,13 @@ class PlayList {
   bool over() const noexcept {
     return std::all_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.over; });
   }
+  bool has_turn(std::size_t number) const noexcept;  // it plays now
   std::vector<Entry>& entries() noexcept { return entries_; }
   const std::vector<Entry>& entries() const noexcept { return entries_; }
   void publish(bool paused) noexcept;
   const PlayStatus& status() const noexcept { return status_; }
 
  private:
-  bool has_turn(std::size_t number) const noexcept;
-
   std::vector<Entry> entries_;
   PlayStatus status_;
 };

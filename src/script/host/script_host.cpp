@@ -28,8 +28,10 @@ std::uint64_t chart_sign(const Chart& chart) noexcept {
   return sign.value();
 }
 
-// Each state with the signal of the region that it is in; not those in regions that have no signal.
-void add_states(const Chart& chart, const std::string& name, const SignalTable& signals, std::vector<SignalState>& to) {
+}  // namespace
+
+void add_signal_states(const Chart& chart, const std::string& name, const SignalTable& signals,
+                       std::vector<SignalState>& to) {
   const std::string prefix = "behavior." + name + ".";
   std::vector<std::optional<SignalId>> shown_by{signals.find(prefix + "state")};
   for (StateIndex i = 1; i < chart.size(); ++i) {
@@ -40,8 +42,6 @@ void add_states(const Chart& chart, const std::string& name, const SignalTable& 
       to.push_back({state.path, name, *shown_by[i], static_cast<double>(i), static_cast<double>(state.end)});
   }
 }
-
-}  // namespace
 
 ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
     : settings_(settings),
@@ -76,7 +76,12 @@ std::vector<PlayList::Entry> ScriptHost::load(const std::vector<PlayItem>& list,
                                       .arguments = item.arguments,
                                       .source = item.source};
     try {
-      loaded.push_back({std::make_unique<Behavior>(settings, catalog_, log_), item.lane, lasting});
+      auto behavior = std::make_unique<Behavior>(settings, catalog_, log_);
+      if (behavior->chart().decides)
+        throw InputError({item.source, item.place.line, item.place.column,
+                          "'" + behavior->name() + "' is a k.decisions, which plays behaviors: name it as " +
+                              "supervisor.decisions, in the robot's configuration or the scenario"});
+      loaded.push_back({std::move(behavior), item.lane, lasting});
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }
@@ -180,7 +185,7 @@ void ScriptHost::declare_signals(SignalTable& signals) {
   const auto declare = [&](const PlayList::Entry& entry) {
     const BehaviorStatus& status = entry.behavior->status();
     const std::string name = status.declare_numbered(signals, entry.behavior->name());
-    add_states(entry.behavior->chart(), name, signals, signal_states_);
+    add_signal_states(entry.behavior->chart(), name, signals, signal_states_);
   };
   std::ranges::for_each(list_.entries(), declare);
   for (const Due& due : events_) std::ranges::for_each(due.loaded, declare);
@@ -243,7 +248,8 @@ void ScriptHost::check_event(const PlayOrder& order) {
       std::ranges::count(orders_, PlayOrder::Kind::emit, [](const Due& due) { return due.order.kind; });
   std::string why = out_of_bounds(order.event.data);
   // What another process kept is in the list from the first tick on; the event is judged again when it is delivered.
-  if (why.empty() && settings_.kept.empty()) why = EventDelivery::refusal(order.event, list_, pause_.paused());
+  if (why.empty() && settings_.kept.empty())
+    why = EventDelivery::refusal(order.event, order.behavior.name, list_, pause_.paused());
   if (why.empty() && static_cast<std::size_t>(waiting) >= EventDelivery::ordered_max)
     why = std::to_string(EventDelivery::ordered_max) + " events wait for the next tick already";
   if (why.empty()) return;
@@ -266,7 +272,8 @@ void ScriptHost::carry_out(Due& due, const Snapshot& snapshot, CommandSender& co
   using Kind = PlayOrder::Kind;
   const Kind kind = due.order.kind;
   if (kind == Kind::reload) return reload(due.order, snapshot, commands);
-  if (kind == Kind::emit) return delivery_.deliver(due.order.event, list_, snapshot, pause_.paused());
+  if (kind == Kind::emit)
+    return delivery_.deliver(due.order.event, due.order.behavior.name, list_, snapshot, pause_.paused());
   std::string text = play_order_names[static_cast<std::size_t>(kind)];
   for (const PlayList::Entry& entry : due.loaded) text += " " + entry.behavior->name();
   log_.message(snapshot.time_ns, BehaviorLog::Severity::info, "supervisor", text);
@@ -368,6 +375,31 @@ std::vector<BehaviorReport> ScriptHost::reports() const {
     if (!entry.over) all.back().events = behavior.events();
   }
   return all;
+}
+
+namespace {
+
+template <std::size_t room>
+void put_text(std::array<char, room>& to, const std::string& text) noexcept {
+  to.fill('\0');
+  std::copy_n(text.begin(), std::min(text.size(), room - 1), to.begin());
+}
+
+}  // namespace
+
+void ScriptHost::report(PlayReport& report) const noexcept {
+  const PlayStatus& status = list_.status();
+  report.phase = status.phase.load(std::memory_order_relaxed);
+  report.done = status.done.load(std::memory_order_relaxed);
+  report.not_done = status.not_done.load(std::memory_order_relaxed);
+  report.count = 0;
+  const std::vector<PlayList::Entry>& entries = list_.entries();
+  for (std::size_t i = 0; i < entries.size() && report.count < PlayReport::behaviors_max; ++i) {
+    if (!list_.has_turn(i)) continue;
+    PlayReport::Playing& one = report.playing[report.count++];
+    put_text(one.name, entries[i].behavior->name());
+    put_text(one.state, entries[i].behavior->state());
+  }
 }
 
 BehaviorReply ScriptHost::set_parameter(const std::string& name, double value) {

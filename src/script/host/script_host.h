@@ -23,10 +23,16 @@
 #include "file_watch.h"
 #include "pause.h"
 #include "play_list.h"
+#include "play_report.h"
 #include "safe_posture.h"
 #include "script/bindings/signal_expressions.h"
 
 namespace kadans {
+
+// The states of a chart, each with the signal of the region that it is in, by which conditions know them; not those in
+// regions that have no signal. `name`: that of its signals.
+void add_signal_states(const Chart& chart, const std::string& name, const SignalTable& signals,
+                       std::vector<SignalState>& to);
 
 class ScriptHost final : public BehaviorHost, public OrderTaker {
  public:
@@ -89,6 +95,9 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   void declare_signals(SignalTable& signals);
   // The states of these behaviors, for conditions. After declare_signals().
   std::span<const SignalState> signal_states() const noexcept { return signal_states_; }
+
+  // Behavior thread, between ticks: what plays now; the counts of orders are the caller's.
+  void report(PlayReport& report) const noexcept;
 
   bool in_safe_posture() const noexcept { return safe_.moved(); }  // the robot was sent there after a failure
   bool paused() const noexcept { return pause_.paused(); }

@@ -18,8 +18,8 @@ namespace {
 template <typename T>
 constexpr std::size_t words_of = sizeof(T) / sizeof(std::uint64_t);
 static_assert(sizeof(TickInputs) % 8 == 0 && sizeof(FaultWords) % 8 == 0 && sizeof(JoystickState) % 8 == 0 &&
-              sizeof(SeenBall) % 8 == 0 && sizeof(JointSample) % 8 == 0 && sizeof(ImuSample) % 8 == 0 &&
-              sizeof(FootSample) % 8 == 0 && sizeof(ChannelSample) % 8 == 0);
+              sizeof(SeenBall) % 8 == 0 && sizeof(SeenEntry) % 8 == 0 && sizeof(JointSample) % 8 == 0 &&
+              sizeof(ImuSample) % 8 == 0 && sizeof(FootSample) % 8 == 0 && sizeof(ChannelSample) % 8 == 0);
 
 // A frame lies in three pieces: head and joints; IMU and feet; supply, button and channels.
 constexpr std::size_t frame_head = offsetof(SensorFrame, joints) / 8, frame_imu = offsetof(SensorFrame, imu) / 8,
@@ -68,6 +68,11 @@ void make_sound(TickTaken& taken) noexcept {
     sound(joint.braked, 1);
   }
   sound(taken.sensors.emergency, 1);
+  for (SeenEntry& entry : taken.seen.entries) {
+    sound(entry.places, 3);
+    sound(entry.source, seen_sources - 1);
+    sound(entry.carried, 1);
+  }
   for (bool& button : taken.joystick.buttons) sound(button, 1);
   sound(taken.joystick.connected, 1);
 }
@@ -97,25 +102,29 @@ std::span<const double> as_words(const T* first, std::size_t words) noexcept {
 }  // namespace
 
 std::size_t InputLayout::words() const noexcept {
-  return words_of<TickInputs> + words_of<FaultWords> + words_of<JoystickState> + words_of<SeenBall> + down +
-         frame_head + joints * words_of<JointSample> + body_words(*this) + rest_words(*this);
+  return words_of<TickInputs> + words_of<FaultWords> + words_of<JoystickState> + words_of<SeenBall> +
+         seen * words_of<SeenEntry> + down + frame_head + joints * words_of<JointSample> + body_words(*this) +
+         rest_words(*this);
 }
 
 TextMap InputLayout::facts() const {
-  return {{"format", inputs_format},
-          {"joints", std::to_string(joints)},
-          {"feet", std::to_string(feet)},
-          {"channels", std::to_string(channels)},
-          {"down", std::to_string(down)}};
+  TextMap facts{{"format", inputs_format},
+                {"joints", std::to_string(joints)},
+                {"feet", std::to_string(feet)},
+                {"channels", std::to_string(channels)},
+                {"down", std::to_string(down)}};
+  if (seen > 0) facts["seen"] = std::to_string(seen);
+  return facts;
 }
 
 std::optional<InputLayout> InputLayout::of(const TextMap& facts) {
   const auto format = facts.find("format");
   const auto joints = count_in(facts, "joints", max_joints), feet = count_in(facts, "feet", max_feet),
              channels = count_in(facts, "channels", max_channels), down = count_in(facts, "down", down_max);
+  const auto seen = facts.contains("seen") ? count_in(facts, "seen", max_seen) : std::optional<std::uint32_t>(0);
   const bool known = format != facts.end() && format->second == inputs_format;
-  if (!known || !joints || !feet || !channels || !down) return std::nullopt;
-  return InputLayout{*joints, *feet, *channels, *down};
+  if (!known || !joints || !feet || !channels || !down || !seen) return std::nullopt;
+  return InputLayout{*joints, *feet, *channels, *down, *seen};
 }
 
 void unpack(std::span<const std::uint64_t> words, const InputLayout& layout, TickTaken& taken) {
@@ -128,6 +137,8 @@ void unpack(std::span<const std::uint64_t> words, const InputLayout& layout, Tic
   take(taken.stopped_by.data(), words_of<FaultWords>);
   take(&taken.joystick, words_of<JoystickState>);
   take(&taken.ball, words_of<SeenBall>);
+  taken.seen.count = layout.seen;
+  take(taken.seen.entries.data(), layout.seen * words_of<SeenEntry>);
   taken.down.resize(layout.down);
   take(taken.down.data(), layout.down);
   auto* const frame = reinterpret_cast<std::byte*>(&taken.sensors);
@@ -149,6 +160,7 @@ InputPieces::InputPieces(const ControlEngine& engine, const InputLayout& layout,
   pieces_.push_back(as_words(engine.safety().stopped_by().data(), words_of<FaultWords>));
   pieces_.push_back(as_words(&state.joystick, words_of<JoystickState>));
   pieces_.push_back(as_words(&state.ball, words_of<SeenBall>));
+  pieces_.push_back(as_words(engine.seen().entries.data(), layout.seen * words_of<SeenEntry>));
   pieces_.push_back(as_words(numbers_.data(), numbers_.size()));
   pieces_.push_back(as_words(&frame, frame_head + layout.joints * words_of<JointSample>));
   pieces_.push_back(as_words(&frame.imu, body_words(layout)));

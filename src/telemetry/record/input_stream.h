@@ -49,6 +49,7 @@ inline constexpr const char* inputs_format = "2";
 struct InputLayout {
   std::uint32_t joints = 0, feet = 0, channels = 0;
   std::uint32_t down = 0;  // storages from high to low levels
+  std::uint32_t seen = 0;  // entries of the world model
 
   std::size_t words() const noexcept;
   TextMap facts() const;
@@ -64,6 +65,7 @@ struct TickTaken {
   FaultWords stopped_by{};
   JoystickState joystick;
   SeenBall ball;
+  SeenEntries seen;                // as the supervisor published it
   std::vector<std::int64_t> down;  // which values low levels found
   SensorFrame sensors;
   std::vector<std::uint64_t> words;  // all of it, as it is stored

@@ -1,0 +1,29 @@
+// What plays, as its host tells it after each behavior tick: decisions on another thread read it. Trivially copyable.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+namespace kadans {
+
+struct PlayReport {
+  static constexpr std::size_t behaviors_max = 8, name_max = 64, state_max = 128, why_max = 256;
+
+  struct Playing {
+    std::array<char, name_max> name{};    // cut off when it is longer
+    std::array<char, state_max> state{};  // path of its innermost active state, the first of several
+  };
+
+  std::uint32_t orders = 0;              // taken so far
+  std::uint32_t orders_refused = 0;      // of them
+  std::array<char, why_max> refusal{};   // of the last one that was refused
+  std::uint32_t taken_over = 0;          // how often something else was played, because nothing decided any more
+  std::uint32_t phase = 0;               // as PlayStatus
+  std::uint32_t done = 0, not_done = 0;  // behaviors that ended so
+  std::uint32_t count = 0;               // of those that play now, as far as they are listed
+  std::array<Playing, behaviors_max> playing{};
+};
+static_assert(std::is_trivially_copyable_v<PlayReport>);
+
+}  // namespace kadans

@@ -1,0 +1,83 @@
+#include "supervised_host.h"
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <string>
+
+#include "kadans/signal/input_error.h"
+
+namespace kadans {
+
+using Severity = BehaviorLog::Severity;
+
+SupervisedHost::SupervisedHost(const SupervisorConfig& config, BehaviorHost& played, ScriptHost& host,
+                               SupervisorLink& link, BehaviorLog& log)
+    : config_(config), played_(played), host_(host), link_(link), log_(log) {}
+
+void SupervisedHost::say(std::int64_t time_ns, Severity severity, const std::string& text) noexcept {
+  log_.message(time_ns, severity, "supervisor", text);
+}
+
+void SupervisedHost::before_tick(const Snapshot& snapshot) noexcept {
+  const OdometryStatus& odometry = snapshot.status.odometry;
+  link_.snapshot.publish(snapshot);
+  (void)link_.poses.try_push(
+      {snapshot.time_ns, odometry.path_x_m, odometry.path_y_m, odometry.path_heading_rad, odometry.breaks});
+  while (link_.lines.pop(std::numeric_limits<std::int64_t>::max(), line_)) line_.say_to(log_);
+  const bool leaving = leaving_.load(std::memory_order_relaxed);
+  take_orders(snapshot.time_ns, leaving);
+  if (!leaving) watch(snapshot.time_ns);
+}
+
+void SupervisedHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
+  played_.tick(snapshot, commands);
+  host_.report(report_);
+  link_.report.publish(report_);
+}
+
+bool SupervisedHost::carry_out(const PlayOrder& order, std::int64_t time_ns) noexcept {
+  try {
+    host_.order(order);
+    return true;
+  } catch (const std::exception& error) {
+    const std::string why = error.what();
+    report_.refusal.fill('\0');
+    std::copy_n(why.begin(), std::min(why.size(), report_.refusal.size() - 1), report_.refusal.begin());
+    say(time_ns, Severity::warning, "an order of the decisions was refused: " + why);
+    return false;
+  }
+}
+
+void SupervisedHost::take_orders(std::int64_t time_ns, bool leaving) noexcept {
+  while (const auto order = link_.take()) {
+    ++report_.orders;
+    if (leaving || !carry_out(*order, time_ns)) ++report_.orders_refused;
+  }
+}
+
+void SupervisedHost::watch(std::int64_t time_ns) noexcept {
+  const Heartbeat beat = link_.heartbeat.newest();
+  if (beat.ticks != beat_ || since_ns_ < 0) since_ns_ = time_ns;
+  beat_ = beat.ticks;
+  const double silent_s = 1e-9 * static_cast<double>(time_ns - since_ns_);
+  const bool lost = beat.failed != 0 || silent_s > config_.lost_after_s;
+  if (lost == lost_) return;
+  lost_ = lost;
+  if (lost) return answer_loss(time_ns);
+  say(time_ns, Severity::info, "decides again");
+}
+
+void SupervisedHost::answer_loss(std::int64_t time_ns) noexcept {
+  using When = SupervisorConfig::WhenLost;
+  constexpr const char* answers[] = {"what plays goes on", "what plays is stopped", "another list takes over"};
+  say(time_ns, Severity::warning,
+      std::string("nothing decides any more: ") + answers[static_cast<std::size_t>(config_.when_lost)]);
+  if (config_.when_lost == When::go_on) return;
+  ++report_.taken_over;
+  const bool plays = config_.when_lost == When::play;
+  (void)carry_out({.kind = plays ? PlayOrder::Kind::replace : PlayOrder::Kind::stop, .list = config_.lost_list},
+                  time_ns);
+}
+
+}  // namespace kadans

@@ -1,0 +1,52 @@
+// The behaviors' side of the supervisor: it shows the supervisor what the behaviors see and what plays, carries out its
+// orders between two behavior ticks, and notices when it is lost. The behaviors themselves do not notice: they go on,
+// until the configuration's answer to the loss changes what plays.
+//
+// Behavior thread.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "config/robot/supervisor_config.h"
+#include "engine/behavior_host.h"
+#include "engine/behavior_log.h"
+#include "script/host/script_host.h"
+#include "supervisor_link.h"
+
+namespace kadans {
+
+class SupervisedHost final : public BehaviorHost {
+ public:
+  // Keeps references. `played`: what gets the ticks; `host`: what plays behaviors behind it.
+  SupervisedHost(const SupervisorConfig& config, BehaviorHost& played, ScriptHost& host, SupervisorLink& link,
+                 BehaviorLog& log);
+
+  void before_tick(const Snapshot& snapshot) noexcept override;
+  void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
+  void prepare(const Snapshot& newest) noexcept override { played_.prepare(newest); }
+
+  // Any thread: the run ends, and somebody else decides what plays from now on.
+  void leave() noexcept { leaving_.store(true, std::memory_order_relaxed); }
+
+ private:
+  void take_orders(std::int64_t time_ns, bool leaving) noexcept;
+  bool carry_out(const PlayOrder& order, std::int64_t time_ns) noexcept;
+  void watch(std::int64_t time_ns) noexcept;
+  void answer_loss(std::int64_t time_ns) noexcept;
+  void say(std::int64_t time_ns, BehaviorLog::Severity severity, const std::string& text) noexcept;
+
+  SupervisorConfig config_;
+  BehaviorHost& played_;
+  ScriptHost& host_;
+  SupervisorLink& link_;
+  BehaviorLog& log_;
+  PlayReport report_;
+  std::uint32_t beat_ = 0;      // the last heartbeat that was seen
+  std::int64_t since_ns_ = -1;  // when it was seen; -1: no tick yet
+  bool lost_ = false;
+  std::atomic<bool> leaving_{false};
+  Event line_;
+};
+
+}  // namespace kadans

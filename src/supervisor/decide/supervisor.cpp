@@ -1,0 +1,183 @@
+#include "supervisor.h"
+
+#include <cmath>
+#include <exception>
+#include <span>
+
+#include "engine/tick/seen_entries.h"
+#include "script/host/script_host.h"
+#include "supervisor/world/perception_message.h"
+
+namespace kadans {
+namespace {
+
+std::unique_ptr<Decisions> make_decisions(const Supervisor::Settings& settings, const Catalog& catalog,
+                                          BehaviorLog& log) {
+  if (settings.config.decisions.empty()) return nullptr;
+  const PlayItem& item = settings.config.decisions.front();
+  return std::make_unique<Decisions>(
+      Behavior::Settings{.root = settings.root,
+                         .file = item.file.is_absolute() ? item.file : settings.root / item.file,
+                         .seed = settings.seed,
+                         .limits = settings.limits,
+                         .arguments = item.arguments,
+                         .source = item.source,
+                         .folders = settings.folders},
+      catalog, log);
+}
+
+}  // namespace
+
+Supervisor::Supervisor(const Settings& settings, const Catalog& catalog, SupervisorLink& link, SeenStorage& seen,
+                       BehaviorLog& log)
+    : period_ns_(std::llround(1e9 / settings.config.rate_Hz)),
+      link_(link),
+      seen_(seen),
+      log_(log),
+      world_(settings.config.seen),
+      messages_(settings.config.messages, settings.boot),
+      message_channel_(settings.messages),
+      perception_channel_(settings.perception),
+      decisions_(make_decisions(settings, catalog, log)) {
+  seen_.publish(world_.entries());
+}
+
+void Supervisor::declare_signals(SignalTable& signals, std::vector<SignalState>& states) {
+  signals.add({"supervisor.ticks", "", "Ticks of the supervisor so far."}, &status_.ticks);
+  signals.add({"supervisor.observations", "", "Observations that the world model took."}, &status_.observations);
+  signals.add({"supervisor.refused", "", "Observations that it refused, or that found no place."}, &status_.refused);
+  signals.add({"supervisor.orders", "", "Orders of the decisions so far."}, &status_.orders);
+  signals.add({"supervisor.sent", "", "Messages to other robots."}, &status_.sent);
+  signals.add({"supervisor.unsent", "", "Messages that were refused: too long, or beyond the budget."},
+              &status_.unsent);
+  signals.add({"supervisor.heard", "", "Messages of other robots that the decisions got."}, &status_.heard);
+  signals.add({"supervisor.unheard", "", "Messages and datagrams of perception that were refused."}, &status_.unheard);
+  signals.add({"supervisor.failed", "", "Whether an error ended the decisions."}, &status_.failed);
+  if (!decisions_) return;
+  const Behavior& behavior = decisions_->behavior();
+  add_signal_states(behavior.chart(), behavior.status().declare_numbered(signals, behavior.name()), signals, states);
+}
+
+void Supervisor::watch() {
+  if (!decisions_) return;
+  watch_ = std::make_unique<FileWatch>();
+  for (const std::filesystem::path& file : decisions_->behavior().files()) (void)watch_->add(file.parent_path());
+}
+
+void Supervisor::observe(const Observation& observation) noexcept {
+  if (waiting_count_ < waiting_.size()) {
+    waiting_[waiting_count_++] = observation;
+  } else {
+    status_.refused.fetch_add(1, std::memory_order_relaxed);
+  }
+}
+
+void Supervisor::warn_once(std::string_view about, const std::string& text) {
+  if (warned_.size() < 64 && warned_.insert(std::string(about)).second)
+    log_.message(snapshot_.time_ns, BehaviorLog::Severity::warning, "supervisor", text + " (told once)");
+}
+
+void Supervisor::take_perception(std::int64_t time_ns) {
+  std::string_view datagram;
+  std::int64_t came_ns = time_ns;
+  for (std::size_t i = 0; i < datagrams_max && perception_channel_->receive(time_ns, datagram, came_ns); ++i) {
+    const std::string why = read_perception(datagram, world_.declared(), came_ns, perceived_);
+    if (why.empty()) continue;
+    status_.unheard.fetch_add(1, std::memory_order_relaxed);
+    warn_once("perception", "a datagram of perception was refused: " + why);
+  }
+  for (const Observation& one : perceived_) observe(one);
+  perceived_.clear();
+}
+
+// Each goes to the decisions as an event, when they declare it so.
+void Supervisor::take_messages(std::int64_t time_ns) {
+  std::string_view datagram;
+  std::int64_t came_ns = time_ns;
+  for (std::size_t i = 0; i < datagrams_max && message_channel_->receive(time_ns, datagram, came_ns); ++i) {
+    PlayedEvent event;
+    std::string why;
+    const RobotMessages::Answer answer = messages_.decode(datagram, came_ns, event, why);
+    if (answer == RobotMessages::Answer::own) continue;
+    if (answer == RobotMessages::Answer::taken) why = decisions_->hear(event);
+    const bool heard = answer == RobotMessages::Answer::taken && why.empty();
+    (heard ? status_.heard : status_.unheard).fetch_add(1, std::memory_order_relaxed);
+    if (!why.empty()) warn_once("message " + event.who, "a message was refused: " + why);
+  }
+}
+
+void Supervisor::send_messages() {
+  for (const PlayedEvent& event : decisions_->messages()) {
+    std::string why = "this robot has no name among others: supervisor.messages in its configuration";
+    const bool named = message_channel_ != nullptr;
+    const std::string bytes = named ? messages_.encode(event, snapshot_.time_ns, why) : "";
+    const bool sent = !bytes.empty() && message_channel_->send(snapshot_.time_ns, bytes);
+    (sent ? status_.sent : status_.unsent).fetch_add(1, std::memory_order_relaxed);
+    if (bytes.empty()) warn_once("send " + event.name, "message '" + event.name + "' was not sent: " + why);
+  }
+}
+
+void Supervisor::take_observations(std::int64_t time_ns) noexcept {
+  for (const Observation& one : std::span(waiting_).first(waiting_count_)) {
+    const bool taken = world_.observe(one, past_, time_ns) == WorldModel::Answer::taken;
+    (taken ? status_.observations : status_.refused).fetch_add(1, std::memory_order_relaxed);
+  }
+  waiting_count_ = 0;
+  world_.forget(time_ns);
+  seen_.publish(world_.entries());
+}
+
+// Whatever goes wrong in it, nobody waits for it: the heartbeat says so, and the behaviors' side does the rest.
+void Supervisor::tick(std::int64_t time_ns) noexcept {
+  try {
+    if (!ended_) step(time_ns);
+  } catch (const std::exception& error) {
+    ended_ = true;
+    log_.message(time_ns, BehaviorLog::Severity::error, "supervisor", std::string("ended: ") + error.what());
+  }
+  const std::uint32_t ticks = status_.ticks.fetch_add(1, std::memory_order_relaxed) + 1;
+  const bool failed = ended_ || (decisions_ && decisions_->failed());
+  status_.failed.store(failed ? 1 : 0, std::memory_order_relaxed);
+  link_.heartbeat.publish({time_ns, ticks, failed ? 1U : 0U});
+}
+
+void Supervisor::step(std::int64_t time_ns) {
+  for (PastPose pose; link_.poses.try_pop(pose);) past_.add(pose);
+  if (perception_channel_ != nullptr) take_perception(time_ns);
+  take_observations(time_ns);
+  if (past_.size() == 0) return;  // the behaviors have not begun
+  const auto shown = link_.snapshot.read();
+  copy_used(*shown, snapshot_);
+  decide();
+}
+
+void Supervisor::decide() {
+  if (!decisions_) return;
+  show_seen(world_.entries(), snapshot_.status.odometry, snapshot_.time_ns, snapshot_.seen);
+  reload_saved();
+  if (message_channel_ != nullptr) take_messages(snapshot_.time_ns);
+  const auto report = link_.report.read();
+  (void)decisions_->tick(snapshot_, *report);
+  send_orders();
+  send_messages();
+}
+
+void Supervisor::send_orders() {
+  for (PlayOrder& order : decisions_->orders()) {
+    if (link_.give(std::move(order))) {
+      ++sent_;
+    } else {
+      decisions_->refuse("too many orders wait for the behaviors");
+      log_.message(snapshot_.time_ns, BehaviorLog::Severity::warning, "supervisor",
+                   "an order of the decisions was lost: too many wait for the behaviors");
+    }
+  }
+  decisions_->sent(sent_);
+  status_.orders.store(sent_, std::memory_order_relaxed);
+}
+
+void Supervisor::reload_saved() {
+  if (watch_ != nullptr && watch_->poll()) decisions_->reload(snapshot_);
+}
+
+}  // namespace kadans
