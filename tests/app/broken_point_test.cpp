@@ -34,7 +34,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 70> breakages = {{
+constexpr std::array<Breakage, 71> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},

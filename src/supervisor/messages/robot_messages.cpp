@@ -83,7 +83,7 @@ RobotMessages::Answer RobotMessages::decode(std::string_view datagram, std::int6
 RobotMessages::Answer RobotMessages::read(std::string_view datagram, std::int64_t now_ns, PlayedEvent& event) {
   const JsonValue json = parse_json(datagram, message_source);
   if (json.kind != Kind::object) bad_message(json, "a message is one object");
-  (void)whole(json, "kadans", 1);
+  if (whole(json, "kadans", 1) != 1) bad_message(json, "'kadans' is not 1, the only version there is");
   const std::string& from = value_of(json, "from", Kind::string).text;
   if (from == config_.name) return Answer::own;
   if (std::ranges::find(config_.peers, from) == config_.peers.end()) return Answer::stranger;
