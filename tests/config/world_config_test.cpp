@@ -86,7 +86,7 @@ TEST_CASE("Every wrong entry of a world is refused with its place and what was m
       {box + R"(, "radius_m": 1})",
        "file:1:87: unknown key 'radius_m' in world[0] (known: kind, name, position_m, roll_pitch_yaw_rad, friction, "
        "size_m, "
-       "mass_kg, velocity_m_s, motion)"},
+       "mass_kg, velocity_m_s, carried, motion)"},
       {R"({"kind": "ball", "name": "a", "mass_kg": 1, "position_m": [0, 0, 0]})",
        "file:1:12: key 'radius_m' is missing in world[0]: radius of the ball or bob"},
       {box + R"(, "friction": -1})",

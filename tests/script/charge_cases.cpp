@@ -172,6 +172,8 @@ constexpr ChargeCase cases[] = {
 
     {"k.behavior", "return k.behavior 'x', { always = {}, enter = print, vars = {}, k.state 'a' {} }"},
     {"k.behavior", "return pcall, k.behavior, ('x'):rep(60000)"},
+    {"k.decisions", "return k.decisions 'x', { always = {}, enter = print, vars = {}, k.state 'a' {} }"},
+    {"k.decisions", "return pcall, k.decisions, ('x'):rep(60000)"},
     {"k.state", "local t = {} for i = 1, 3000 do t['k' .. i] = 1 end return pcall, k.state 'x', t"},
     {"k.state", "local t = { to = 'a' } local all = {} for i = 1, 3000 do all[i] = t end return k.state 'x', all"},
     {"k.state", "return pcall, k.state 'x', { [('x'):rep(199)] = 1 }"},

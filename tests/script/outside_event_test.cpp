@@ -103,6 +103,17 @@ TEST_CASE("an event from outside that nobody declares, or with wrong data, is re
   CHECK(refused(theatre) == 12);
 }
 
+TEST_CASE("an event from outside that only a pattern takes is taken") {
+  Theatre theatre({head + events +
+                   "return k.behavior 'one' { initial = 'a', k.state 'a' { { on = 'whi*', to = 'b' } },\n"
+                   "k.state 'b' { enter = function(_, s) print(s.event.name) end } }"});
+  theatre.tick();
+  theatre.host->order(emit("game.whistle"));
+  theatre.tick();
+  CHECK(lines_of(theatre, "one") == "game.whistle\n");
+  CHECK(taken(theatre) == 1);
+}
+
 TEST_CASE("a flood of events is refused visibly: 32 wait for a tick, and the next tick takes 32 more") {
   Theatre theatre({listener("one")});
   theatre.tick();

@@ -96,6 +96,16 @@ std::string error_of(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("a transition for play.* takes each way in which what was played ends") {
+  for (const char* played : {"short", "broken", "short{far_m=9}"}) {
+    Supervised robot(decisions("k.state 'a' { enter = function(m) m:play('" + std::string(played) +
+                               "') end, { on = 'play.*', to = 'b' } }, k.final 'b' { outcome = 'done' }"));
+    robot.pass(40);
+    CAPTURE(played);
+    CHECK(robot.outcome() == "done");
+  }
+}
+
 TEST_CASE("decisions play behaviors one after the other, and hear how each of them ended") {
   Supervised robot(
       decisions("k.state 'a' { enter = function(m) m:play('short') end, { on = 'play.done', to = 'b' } },\n"

@@ -463,7 +463,7 @@ bool Behavior::post(const std::string& event) noexcept {
 
 const std::vector<ScriptEvent>& Behavior::events() const noexcept { return parts_->lua->core().events; }
 bool Behavior::waits_for(const std::string& event) const noexcept {
-  const EventId id = parts_->chart.find_event(event);
+  const EventId id = parts_->chart.find_or_learn(event);
   return id != no_event && parts_->runner->waits_for(id);
 }
 std::vector<SentEvent>& Behavior::sent_events() noexcept { return parts_->bindings.sent_events; }
@@ -493,8 +493,9 @@ int post_event(lua_State* state) {
 std::string Behavior::post(const PlayedEvent& event) {
   Parts& parts = *parts_;
   const ScriptEvent* declared = find_event(events(), event.name);
-  const EventId id = parts.chart.find_event(event.name);
-  if (failed() || finished() || declared == nullptr || id == no_event) return "'" + name() + "' does not declare it";
+  const EventId id = parts.chart.find_or_learn(event.name);
+  if (failed() || finished() || declared == nullptr) return "'" + name() + "' does not declare it";
+  if (id == no_event) return "nothing in '" + name() + "' waits for it";
   if (WrongData wrong = wrong_data(*declared, event); !wrong.why.empty()) return wrong.why;
   Posting posting{parts, event, id, !declared->fields.empty()};
   if (!parts.run(post_event, &posting)) return "'" + name() + "' has no memory for it";

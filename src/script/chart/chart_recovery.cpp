@@ -47,7 +47,10 @@ struct ChartRunner::Attempt {
 };
 
 bool ChartRunner::waits_for(EventId event) const noexcept {
-  return std::ranges::any_of(active_, [&](StateIndex index) { return has_transition_for(index, event); });
+  return std::ranges::any_of(active_, [&](StateIndex index) {
+    return has_transition_for(
+        index, [&](const Chart::Transition& one) { return one.on == event || chart_.takes_by_pattern(one, event); });
+  });
 }
 
 ChartRunner::Attempt ChartRunner::begin_attempt(lua_State* state) const noexcept {

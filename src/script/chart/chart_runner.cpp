@@ -343,22 +343,11 @@ void ChartRunner::go_on(StateIndex index) noexcept {
   if (ended.kind == Chart::Kind::region) go_on(ended.parent);
 }
 
-bool ChartRunner::has_transition_for(StateIndex index, EventId event) const noexcept {
-  const Chart::State& at = chart_.states[index];
-  const auto has = [&](std::uint16_t first, std::uint16_t count) {
-    const auto begin = chart_.transitions.begin() + first;
-    return std::any_of(begin, begin + count, [&](const Chart::Transition& one) {
-      return one.on == event || (chart_.is_report(event) && chart_.takes_by_pattern(one, event));
-    });
-  };
-  return has(at.first_transition, at.transition_count) || has(at.first_always, at.always_count);
-}
-
 // Whether a transition somewhere has this event: an end that nobody waits for is none.
 bool ChartRunner::waits_for_end(StateIndex ended, EventId outcome) const noexcept {
   for (StateIndex index = ended;; index = chart_.states[index].parent) {
     const Chart::State& at = chart_.states[index];
-    if (has_transition_for(index, outcome)) return true;
+    if (has_transition_for(index, [&](const Chart::Transition& one) { return one.on == outcome; })) return true;
     if (at.kind == Chart::Kind::region || at.machine_root) return false;
   }
 }

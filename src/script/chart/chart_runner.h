@@ -22,6 +22,7 @@
 // destructor. They allocate nothing beyond what the script allocates.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -178,7 +179,13 @@ class ChartRunner {
   std::uint16_t select_passed_over(lua_State* state, StepMeter& meter, StateIndex outer);
   void note_passed_over(lua_State* state, StepMeter& meter);
   void push_guard(lua_State* state, std::uint16_t transition);
-  bool has_transition_for(StateIndex index, EventId event) const noexcept;
+  template <typename Takes>
+  bool has_transition_for(StateIndex index, Takes takes) const noexcept {
+    const Chart::State& at = chart_.states[index];
+    const auto begin = chart_.transitions.begin();
+    return std::any_of(begin + at.first_transition, begin + at.first_transition + at.transition_count, takes) ||
+           std::any_of(begin + at.first_always, begin + at.first_always + at.always_count, takes);
+  }
   bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
   bool happened(std::uint16_t transition, const WaitingEvent* event) const noexcept;
   bool due(lua_State* state, std::uint16_t transition) const;
