@@ -121,6 +121,7 @@ class Assembly {
   // What decides what is played; nullptr: nothing does. In a run on threads it is ticked by its own.
   Supervisor* supervisor() noexcept { return supervisor_.get(); }
   const Supervisor* supervisor() const noexcept { return supervisor_.get(); }
+  const SupervisorConfig& supervising() const noexcept { return supervising_; }  // the scenario's or the robot's
   void stop_deciding() noexcept {
     if (supervised_) supervised_->leave();
   }

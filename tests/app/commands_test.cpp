@@ -82,7 +82,8 @@ const std::set<std::string> word_types{"FILE",
                                        "PART/PARTS",
                                        "LINK=X,Y,Z",
                                        "KIND[:OF]@S[+D][=SIZE]",
-                                       "PATTERN[@HZ],..."};
+                                       "PATTERN[@HZ],...",
+                                       "SCENARIO"};
 
 std::string type_of(const CLI::Option& option) {
   std::string type = option.get_type_name();

@@ -65,6 +65,7 @@ const std::map<std::string, std::vector<std::string>> samples{
     {"ctl list",
      {"ctl list behaviors", "ctl list parameters --names", "ctl list signals", "ctl list sets", "ctl list objects"}},
     {"ctl drives", {"ctl drives"}},
+    {"ctl world", {"ctl world"}},
     {"ctl get", {"ctl get posture.l_knee.kp_Nm_per_rad", "ctl get base.tilt_rad", "ctl get nothing"}},
     {"ctl watch", {"ctl watch joint.l_knee.position_rad --count 3", "ctl watch nothing"}},
     {"ctl why", {"ctl why", "ctl why nothing"}},
@@ -237,7 +238,7 @@ TEST_CASE("--json of every verb of ctl is one object a line, whether it is done 
                                        "ctl fault list",     "ctl estop",         "ctl fault clear",
                                        "ctl drive disable",  "ctl drive enable",  "ctl drive reset",
                                        "ctl drive home",     "ctl drive release", "ctl drive brake",
-                                       "ctl odometry reset", "ctl mark"};
+                                       "ctl odometry reset", "ctl mark",          "ctl world"};
   std::string script = "export XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/none\"\n'" + program +
                        "' run config/tulip/robot.json --plant ideal --play squat --threads-on-virtual-time --ctl c "
                        ">out 2>err &\nrun=$!\nuntil '" +

@@ -196,12 +196,13 @@ TEST_CASE("Robots need a world that they can share, and one clock") {
                        InputError);
 }
 
-TEST_CASE("A robot that is carried stands on, and its odometry does not notice; so are further robots and a ball") {
+TEST_CASE("A robot that is carried stands on, and its odometry does not notice, and so are further robots and a ball") {
   ScenarioConfig scenario = with_left(1);
   scenario.behaviors.clear();
   scenario.robots[0].behaviors.clear();
   for (ScenarioConfig* robot : {&scenario, &scenario.robots[0]})
-    robot->behaviors = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/side_by_side.json").behaviors;  // stand
+    robot->behaviors =
+        read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/side_by_side.json").behaviors;  // stand
   scenario.carried = {{.at_s = 1, .heading_rad = 1.2, .to_m = {3, 4}}};
   scenario.robots[0].carried = {{.at_s = 1.5, .heading_rad = -1, .to_m = {-2, 1}}};
   WorldObject ball{.name = "ball", .shape = WorldBall{.radius_m = 0.1, .mass_kg = 0.4}};

@@ -104,9 +104,9 @@ TEST_CASE("an event from outside that nobody declares, or with wrong data, is re
 }
 
 TEST_CASE("an event from outside that only a pattern takes is taken") {
-  Theatre theatre({head + events +
-                   "return k.behavior 'one' { initial = 'a', k.state 'a' { { on = 'whi*', to = 'b' } },\n"
-                   "k.state 'b' { enter = function(_, s) print(s.event.name) end } }"});
+  Theatre theatre({head + "k.events { ['game.whistle'] = {} }\nreturn k.behavior 'one' { initial = 'a',\n"
+                          "k.state 'a' { { on = 'game.*', to = 'b' } },\n"
+                          "k.state 'b' { enter = function(_, s) print(s.event.name) end } }"});
   theatre.tick();
   theatre.host->order(emit("game.whistle"));
   theatre.tick();

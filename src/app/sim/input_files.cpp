@@ -204,6 +204,13 @@ class Gathering {
   std::map<std::string, InputFile> files_;
 };
 
+void add_scripts(const fs::path& folder, Gathering& files) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".lua" && !entry.path().stem().string().ends_with("_test")) files.add(entry.path());
+  }
+}
+
 void add_robot(const Assembly& assembly, Gathering& files) {
   const RobotConfig& robot = assembly.robot();
   for (const fs::path& file : meshes(robot.model)) files.add_name(file);
@@ -216,9 +223,14 @@ void add_robot(const Assembly& assembly, Gathering& files) {
   if (const ScriptHost* host = assembly.own_host()) {
     for (const fs::path& file : host->files()) files.add(file);
   }
+  for (const PlayItem& item : assembly.supervising().lost_list) files.add(item.file);
   if (const Supervisor* supervisor = assembly.supervisor();
       supervisor != nullptr && supervisor->decisions() != nullptr) {
     for (const fs::path& file : supervisor->decisions()->behavior().files()) files.add(file);
+    const PlayFolders folders = folders_of(assembly.scenario());  // what they may play is in
+    const fs::path behaviors = project_root(folders.project_file) / "behaviors";
+    add_scripts(behaviors / folders.robot, files);
+    add_scripts(behaviors / "lib", files);
   }
   for (const auto& other : assembly.others()) add_robot(*other, files);
 }

@@ -111,6 +111,7 @@ class RepeatedRun final : private BehaviorInputs {
   std::filesystem::path moved(const std::filesystem::path& file) const;
   void send_again(const BehaviorInput& input);
   const BehaviorInput* next_moment(BehaviorInput::Kind kind);
+  bool next_event(std::string& text);
   void compare_events();
   void part(const std::string& what);
   std::string place() const;

@@ -49,7 +49,7 @@ void seen_entry(Fields& f, std::vector<SeenInfo>& all, Problems& problems) {
   double within_m = 100;
   check_name(f, "an entry", problems);
   f.string("what", entry.doc, "what it is, a sentence without a full stop");
-  f.choice(
+  const bool placed = f.choice(
       "place", place, place_names,
       "where it is, as the robot sees it: a point has x_m and y_m, a pose has heading_rad, too; both are carried on "
       "by the odometry");
@@ -65,7 +65,8 @@ void seen_entry(Fields& f, std::vector<SeenInfo>& all, Problems& problems) {
   }
   f.map("fields", "further numbers, by name", [&](Fields& e) { seen_field(e, entry, problems); });
   if (!f.reading()) return;
-  if (entry.fields.empty() || entry.fields.size() > max_seen_fields)
+  const bool none = entry.fields.empty() && (placed || !f.has("place"));  // a wrong place is told already
+  if (none || entry.fields.size() > max_seen_fields)
     problems.add(f.key_place(), f.path() + " has " + std::to_string(entry.fields.size()) + " fields, it must have 1.." +
                                     std::to_string(max_seen_fields) + ", those of its place included");
   if (all.size() == max_seen)

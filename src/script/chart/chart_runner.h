@@ -118,6 +118,7 @@ class ChartRunner {
   bool started() const noexcept { return started_; }
   bool finished() const noexcept { return finished_; }
   EventId outcome() const noexcept { return run_[0].outcome; }
+  StateIndex finished_by() const noexcept { return finished_by_; }  // the final state that it ended in, or no_state
   // [-0 +1 when true] Once the behavior is finished: the result of the final state that it reached.
   bool push_result(lua_State* state) const;
   bool active(StateIndex state) const noexcept { return run_[state].active; }

@@ -75,9 +75,9 @@ void SupervisedHost::answer_loss(std::int64_t time_ns) noexcept {
       std::string("nothing decides any more: ") + answers[static_cast<std::size_t>(config_.when_lost)]);
   if (config_.when_lost == When::go_on) return;
   ++report_.taken_over;
-  const bool plays = config_.when_lost == When::play;
-  (void)carry_out({.kind = plays ? PlayOrder::Kind::replace : PlayOrder::Kind::stop, .list = config_.lost_list},
-                  time_ns);
+  PlayOrder order{.kind = PlayOrder::Kind::stop};
+  if (config_.when_lost == When::play) order = {.kind = PlayOrder::Kind::replace, .list = config_.lost_list};
+  (void)carry_out(order, time_ns);
 }
 
 }  // namespace kadans
