@@ -110,7 +110,10 @@ std::vector<std::string> with_positionals(const CommandEntry& entry, const CLI::
 
 std::string refusal(const CommandEntry& entry, const CLI::Option* option, const std::string& value) {
   std::vector<std::string> words = with_positionals(entry, option);
-  for (const CLI::Option* needed : option->get_needs()) words.push_back(needed->get_name());
+  for (const CLI::Option* needed : option->get_needs()) {
+    words.push_back(needed->get_name());
+    if (!type_of(*needed).empty()) words.emplace_back("/dev/null");
+  }
   if (option->get_positional()) {
     words.push_back(value);
   } else {

@@ -1,4 +1,4 @@
-// The page: robot and plots in the middle, signals on the left, one of five panels on the right, time below.
+// The page: robot and plots in the middle, signals on the left, one of six panels on the right, time below.
 import { useEffect, useMemo, useRef, useState } from 'preact/hooks';
 import { active_paths } from './data/active_states.js';
 import { keep, kept } from './data/kept.js';
@@ -13,9 +13,10 @@ import { ScrubBar } from './panels/scrub_bar.jsx';
 import { SignalList } from './panels/signal_list.jsx';
 import { TimingPanel } from './panels/timing_panel.jsx';
 import { TopBar } from './panels/top_bar.jsx';
+import { WorldPanel } from './panels/world_panel.jsx';
 import { useSession, useShown } from './watching.js';
 
-const tabs = [['Behavior', BehaviorPanel], ['Parameters', ParametersPanel], ['Safety', SafetyPanel], ['Timing', TimingPanel], ['Log', LogPanel]];
+const tabs = [['Behavior', BehaviorPanel], ['Parameters', ParametersPanel], ['Safety', SafetyPanel], ['Timing', TimingPanel], ['Log', LogPanel], ['World', WorldPanel]];
 
 // What is plotted first: of a robot on feet, of one that looks, else the joints.
 function first_plots(session) {

@@ -407,7 +407,8 @@ void Behavior::publish_status() noexcept {
   parts.lua->collect();
   store(status_.gc_pause_ns, wall ? static_cast<std::uint64_t>(WallClock{}.now_ns() - began_ns) : 0);
   store(status_.heap_bytes, parts.lua->used_bytes());
-  const StateIndex ended = parts.runner->finished_by();
+  // Decisions stay where they ended; a behavior that is over is in no state any more.
+  const StateIndex ended = parts.chart.decides ? parts.runner->finished_by() : no_state;
   store(status_.state, number_of(ended == no_state ? parts.runner->innermost() : ended));
   for (std::size_t i = 0; i < region_states_.size(); ++i) {
     const StateIndex region = region_states_[i];
@@ -654,9 +655,7 @@ void BehaviorStatus::declare(SignalTable& signals, const std::string& name) cons
               &instructions);
   signals.add({prefix + "gc_pause_ns", "ns", "Pause of the collector after its last tick; 0 in virtual time."},
               &gc_pause_ns);
-  signals.add({prefix + "state", "",
-               "Number of its innermost active state, or of the final one that it ended in; 0: the behavior itself."},
-              &state);
+  signals.add({prefix + "state", "", "Number of its innermost active state; 0: the behavior itself."}, &state);
   for (std::size_t i = 0; i < region_paths.size(); ++i) {
     signals.add({prefix + "region." + region_paths[i], "", "Number of the region's innermost active state; 0: none."},
                 &regions[i]);

@@ -6,7 +6,7 @@ import { chromium_options, folder, live_address, project, run, scenario, start, 
 
 const out = `${folder}/pictures`;
 const sizes = { laptop: { width: 1366, height: 768 }, screen: { width: 1920, height: 1080 } };
-const tabs = ['behavior', 'parameters', 'safety', 'timing', 'log'];
+const tabs = ['behavior', 'parameters', 'safety', 'timing', 'log', 'world'];
 const wanted = process.env.PICTURES ?? '';
 let browser;
 
