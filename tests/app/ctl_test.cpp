@@ -240,7 +240,7 @@ return k.behavior "broken" { k.state "x" { endless = true, run = function(m) m:w
   const std::string commands =
       "until ctl list behaviors --json | grep -q 'it broke'; do kill -0 $run || exit 8; done\n"
       "ctl list behaviors --json | sed 's/behaviors.tulip.broken.lua:2: //'; ctl list events --json\n"
-      "ctl list parameters | grep -v '[.].*[.]'\n"
+      "ctl list behaviors | grep listen; ctl list parameters | grep -v '[.].*[.]'\n"
       "ctl why listen | grep -v ' s left'; ctl why nobody; echo $?\n"
       "ctl set count.steps 5 && ctl get count.steps && ctl undo && ctl get count.steps\n"
       "ctl set count.steps 50; ctl set count.stepz 5; ctl undo; echo $?\n"
@@ -261,6 +261,7 @@ return k.behavior "broken" { k.state "x" { endless = true, run = function(m) m:w
   CHECK(told("process") == thread);
   CAPTURE(thread);
   CHECK(has(thread, "\"result\":\"{ steps = 3 }\""));
+  CHECK(has(thread, "listen  in "));
   CHECK(has(thread, "to_rad: a number in rad, -1..1"));
   CHECK(has(thread, "to_rad: a number in rad, -0.5..1"));
   CHECK(has(thread, "count.steps: 3 -> 5"));

@@ -4,7 +4,7 @@ export const keys = [
   ['← →', '10 ms back or on; with shift 1 s'],
   ['Home End', 'Begin or end'],
   ['[ ]', 'Transition before or after'],
-  ['1 … 5', 'Behavior, parameters, safety, timing, log'],
+  ['1 … 6', 'Behavior, parameters, safety, timing, log, world'],
   ['/', 'Find a signal'],
   ['f', 'Look at the robot from the start again'],
   ['t', 'Dark or light'],

@@ -115,7 +115,7 @@ std::string list_text(const Json& items) {
     if (item.contains("type")) row.push_back(item.at("type"));
     if (item.contains("joints")) row.push_back(joined(item.at("joints")));
     if (item.contains("objects")) row.push_back(joined(item.at("objects")));
-    if (item.contains("active")) row.emplace_back(item.at("active").get<bool>() ? "active" : "");
+    if (item.contains("objects")) row.emplace_back(item.value("active", false) ? "active" : "");
     if (item.contains("lane")) row.push_back(behavior_text(item).substr(row.front().size()));
     if (item.contains("doc")) row.push_back(item.at("doc"));
     rows.push_back(std::move(row));

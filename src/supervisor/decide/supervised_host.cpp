@@ -25,7 +25,7 @@ void SupervisedHost::before_tick(const Snapshot& snapshot) noexcept {
   (void)link_.poses.try_push(
       {snapshot.time_ns, odometry.path_x_m, odometry.path_y_m, odometry.path_heading_rad, odometry.breaks});
   while (link_.lines.pop(std::numeric_limits<std::int64_t>::max(), line_)) line_.say_to(log_);
-  const bool leaving = leaving_.load(std::memory_order_relaxed);
+  const bool leaving = link_.leaving.load(std::memory_order_relaxed);
   take_orders(snapshot.time_ns, leaving);
   if (!leaving) watch(snapshot.time_ns);
 }

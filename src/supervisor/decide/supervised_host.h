@@ -5,7 +5,6 @@
 // Behavior thread.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 
 #include "config/robot/supervisor_config.h"
@@ -27,7 +26,7 @@ class SupervisedHost final : public BehaviorHost {
   void prepare(const Snapshot& newest) noexcept override { played_.prepare(newest); }
 
   // Any thread: the run ends, and somebody else decides what plays from now on.
-  void leave() noexcept { leaving_.store(true, std::memory_order_relaxed); }
+  void leave() noexcept { link_.leaving.store(true, std::memory_order_relaxed); }
 
  private:
   void take_orders(std::int64_t time_ns, bool leaving) noexcept;
@@ -45,7 +44,6 @@ class SupervisedHost final : public BehaviorHost {
   std::uint32_t beat_ = 0;      // the last heartbeat that was seen
   std::int64_t since_ns_ = -1;  // when it was seen; -1: no tick yet
   bool lost_ = false;
-  std::atomic<bool> leaving_{false};
   Event line_;
 };
 

@@ -145,7 +145,7 @@ void Supervisor::step(std::int64_t time_ns) {
   for (PastPose pose; link_.poses.try_pop(pose);) past_.add(pose);
   if (perception_channel_ != nullptr) take_perception(time_ns);
   take_observations(time_ns);
-  if (past_.size() == 0) return;  // the behaviors have not begun
+  if (past_.size() == 0 || link_.leaving.load(std::memory_order_relaxed)) return;  // not begun, or about to end
   const auto shown = link_.snapshot.read();
   copy_used(*shown, snapshot_);
   decide();

@@ -1,6 +1,7 @@
 // The storages between the behavior thread and the supervisor. Neither side ever waits for the other.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -29,6 +30,7 @@ class SupervisorLink {
   SupervisorLink(const SupervisorLink&) = delete;
   SupervisorLink& operator=(const SupervisorLink&) = delete;
 
+  std::atomic<bool> leaving{false};  // written by any thread: the run ends, and nothing is decided any more
   // Written by the behavior thread, read by the supervisor.
   Latest<Snapshot> snapshot;
   Latest<PlayReport> report;
