@@ -53,7 +53,8 @@ std::string shown(DebugClient& client, const Json& stopped) {
 
 TEST_CASE("debug stops at a line of Lua and shows frames, the chart's path, variables and expressions") {
   DebugClient client(source, "");
-  const Json first = client.begin(scenario, sine, {{{"line", 31}}});
+  const Json launch = with(scenario, {{"program", "config/jiwiy/../scenarios/jiwiy_sine.json"}});
+  const Json first = client.begin(launch, sine, {{{"line", 31}}});
   CHECK(first.at("reason") == "entry");
   const Json stopped = client.go("continue");
   CHECK(stopped.at("reason") == "breakpoint");
@@ -80,6 +81,7 @@ TEST_CASE("debug stops at a line of Lua and shows frames, the chart's path, vari
   const Json threads = client.get("threads").at("threads");
   CHECK(threads.size() == 2);
   const Json run_frame = client.frames(1).at(0);
+  CHECK(run_frame.at("source").at("path") == (source / "config/scenarios/jiwiy_sine.json").string());
   CHECK(client.value(run_frame.at("id"), "signals", "joint.pan.position_rad") != "none");
   CHECK(client.get("evaluate", {{"expression", "joint.pan.position_rad > 100"}, {"frameId", 1}}).at("result") ==
         "false");
