@@ -53,7 +53,8 @@ std::string shown(DebugClient& client, const Json& stopped) {
 
 TEST_CASE("debug stops at a line of Lua and shows frames, the chart's path, variables and expressions") {
   DebugClient client(source, "");
-  const Json first = client.begin(scenario, sine, {{{"line", 31}}});
+  const Json launch = with(scenario, {{"program", "config/jiwiy/../scenarios/jiwiy_sine.json"}});
+  const Json first = client.begin(launch, sine, {{{"line", 31}}});
   CHECK(first.at("reason") == "entry");
   const Json stopped = client.go("continue");
   CHECK(stopped.at("reason") == "breakpoint");
@@ -80,6 +81,7 @@ TEST_CASE("debug stops at a line of Lua and shows frames, the chart's path, vari
   const Json threads = client.get("threads").at("threads");
   CHECK(threads.size() == 2);
   const Json run_frame = client.frames(1).at(0);
+  CHECK(run_frame.at("source").at("path") == (source / "config/scenarios/jiwiy_sine.json").string());
   CHECK(client.value(run_frame.at("id"), "signals", "joint.pan.position_rad") != "none");
   CHECK(client.get("evaluate", {{"expression", "joint.pan.position_rad > 100"}, {"frameId", 1}}).at("result") ==
         "false");
@@ -201,6 +203,9 @@ TEST_CASE("debug stops where a script raises, with its stack, and where the run 
   const Json stopped = client.go("continue");
   CHECK(stopped.at("reason") == "exception");
   CHECK(has(stopped.at("text"), "index field 'a'"));
+  const Json info = client.get("exceptionInfo", {{"threadId", behavior_thread}});
+  CHECK(info.at("exceptionId") == "error");
+  CHECK(info.at("description") == stopped.at("text"));
   const Json frame = client.frames(behavior_thread).at(0);
   CHECK(frame.at("line") == 29);
   CHECK(std::stod(client.value(frame.at("id"), "locals", "time_s")) > 0.25);
@@ -224,6 +229,7 @@ TEST_CASE("debug repeats records forwards and backwards") {
     (void)client.go("continue");
     const Json at = client.position();
     CHECK(client.frames(behavior_thread).at(0).at("source").at("path") == file);
+    CHECK(!client.frames(1).at(0).contains("source"));  // the record is no text that an editor could open
     (void)client.go("continue");
     CHECK(client.go("reverseContinue", {{"threadId", behavior_thread}}).at("reason") == "breakpoint");
     CHECK(client.position() == at);
@@ -257,6 +263,26 @@ TEST_CASE("A reload at a stop is a branch, which is taken again after going back
   CHECK(!has(client.said(), "as newest"));
 }
 
+// An editor that does not know that the run goes on takes the next stop for one of a second thread, and continues it.
+TEST_CASE("debug tells when a line in the console lets the run go, and when it is terminated") {
+  DebugClient client(source, "");
+  (void)client.begin(scenario, sine, {{{"line", 31}, {"hitCondition", "1"}}});
+  CHECK(client.go("continue").at("threadId") == behavior_thread);
+  for (const std::string line : {":control 3", ":tick 700", ":tick 5"}) {
+    CAPTURE(line);
+    (void)client.get("evaluate", {{"expression", line}, {"context", "repl"}});
+    CHECK(client.wait("continued").at("allThreadsContinued") == true);
+    CHECK(client.wait("stopped").at("threadId") == 1);
+  }
+  CHECK(client.ask("exceptionInfo", {{"threadId", 1}}).at("success") == false);
+  (void)client.get("terminate");
+  CHECK(!client.wait("terminated").is_null());
+  (void)client.get("terminate");
+  (void)client.get("disconnect");
+  CHECK(client.wait("terminated").is_null());  // so an editor that answers it with `terminate` comes to an end
+  CHECK(client.end() == 0);
+}
+
 TEST_CASE("debug waits for an editor at a port, where the command line alone says what runs") {
   Running program(source, "debug config/scenarios/jiwiy_sine.json --port 0");
   REQUIRE(program.says("waits for an editor at 127.0.0.1:"));
@@ -282,10 +308,17 @@ TEST_CASE("debug tells wrong input in a sentence and goes on, and ends at bytes 
   CHECK(has(why("launch", {{"program", "config/tulip/robot.json"}}), "robot"));
   CHECK(has(why("launch", {{"program", 7}}), "another kind"));
   CHECK(has(why("fly"), "does not know the request 'fly'"));
+  CHECK(has(why("initialize", {{"linesStartAt1", false}}), "lines and columns from 1"));
+  CHECK(has(why("initialize", {{"pathFormat", "uri"}}), "by their paths"));
   (void)client.begin(scenario);
   CHECK(has(why("kadans/ticks", {{"unit", "year"}}), "not \"year\""));
   CHECK(has(why("evaluate", {{"expression", ":bhavior 3"}, {"context", "repl"}}), "did you mean 'behavior'?"));
   CHECK(has(why("scopes", {{"frameId", -5}}), "no such frame"));
+  const auto shown_to_user = [&](const std::string& command, const Json& arguments) {
+    return client.ask(command, arguments).at("body").at("error").at("showUser").get<bool>();
+  };
+  CHECK(shown_to_user("kadans/ticks", {{"unit", "year"}}));
+  CHECK(!shown_to_user("evaluate", {{"expression", "no_such_signal"}, {"context", "watch"}}));
   CHECK(has(why("variables", {{"variablesReference", 77}}), "77"));
   CHECK(has(why("scopes"), "missing"));
   const Json set =

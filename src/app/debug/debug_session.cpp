@@ -27,6 +27,9 @@ std::uint64_t whole_number(const Json& json) {
 
 namespace {
 
+constexpr std::array<std::string_view, 7> own_questions{"evaluate",  "threads",       "stackTrace",        "scopes",
+                                                        "variables", "exceptionInfo", "dataBreakpointInfo"};
+
 constexpr const char* orders_help =
     ":control [N]    N control ticks on, or back when N is below 0\n"
     ":behavior [N]   the same for behavior ticks\n"
@@ -74,9 +77,14 @@ void DebugSession::handle(const Json& request) {
     const std::string why = json != nullptr ? "an argument is missing or of another kind" : error.what();
     response["success"] = false;
     response["message"] = why;
-    response["body"] = {{"error", {{"id", 1}, {"format", "{why}"}, {"variables", {{"why", why}}}, {"showUser", true}}}};
+    // What a person asked for. An editor asks the rest itself, for each watch after each step, and shows it in place.
+    const bool show = std::ranges::find(own_questions, command) == own_questions.end();
+    response["body"] = {{"error", {{"id", 1}, {"format", "{why}"}, {"variables", {{"why", why}}}, {"showUser", show}}}};
   }
   stream_.send(std::move(response));
+  // Editors know that `continue` and steps let the run go, but not that an evaluated line does.
+  if (after_ && (command == "evaluate" || command.starts_with("kadans/")))
+    event("continued", {{"threadId", stop_.at("thread")}, {"allThreadsContinued", true}});
   try {
     if (const auto begin = std::exchange(after_, nullptr)) begin();
   } catch (const std::exception& error) {
@@ -102,6 +110,7 @@ Json DebugSession::answer(const std::string& command, const Json& arguments) {
       {"variables", &DebugSession::variables},
       {"evaluate", &DebugSession::evaluate},
       {"loadedSources", &DebugSession::loaded_sources},
+      {"exceptionInfo", &DebugSession::exception_info},
       {"continue", &DebugSession::go_on},
       {"next", &DebugSession::next},
       {"stepIn", &DebugSession::step_in},
@@ -109,7 +118,7 @@ Json DebugSession::answer(const std::string& command, const Json& arguments) {
       {"stepBack", &DebugSession::step_back},
       {"reverseContinue", &DebugSession::reverse_continue},
       {"pause", &DebugSession::pause},
-      {"terminate", &DebugSession::leave},
+      {"terminate", &DebugSession::terminate},
       {"disconnect", &DebugSession::leave},
       {"kadans/position", &DebugSession::position},
       {"kadans/goto", &DebugSession::go_to},
@@ -119,7 +128,6 @@ Json DebugSession::answer(const std::string& command, const Json& arguments) {
   const auto handler = handlers.find(command);
   if (handler == handlers.end()) refuse_it("kadans does not know the request '" + command + "'");
   Json body = (this->*handler->second)(arguments);
-  if (command == "terminate") event("terminated");
   if (command == "disconnect") left_ = true;
   return body;
 }
@@ -132,7 +140,10 @@ void DebugSession::output(const char* category, const std::string& text) {
   event("output", {{"category", category}, {"output", text}});
 }
 
-Json DebugSession::initialize(const Json&) {
+Json DebugSession::initialize(const Json& arguments) {
+  if (!arguments.value("linesStartAt1", true) || !arguments.value("columnsStartAt1", true) ||
+      arguments.value("pathFormat", "path") != "path")
+    refuse_it("kadans counts lines and columns from 1, and names files by their paths");
   const auto filter = [](const char* name, const char* label, const char* doc, bool on, const char* condition) {
     Json one{{"filter", name}, {"label", label}, {"description", doc}, {"default", on}};
     if (condition != nullptr) one.update({{"supportsCondition", true}, {"conditionDescription", condition}});
@@ -148,12 +159,14 @@ Json DebugSession::initialize(const Json&) {
           {"supportsSteppingGranularity", true},
           {"supportsDataBreakpoints", true},
           {"supportsExceptionFilterOptions", true},
+          {"supportsExceptionInfoRequest", true},
           {"supportsLoadedSourcesRequest", true},
           {"supportsTerminateRequest", true},
           {"supportsDelayedStackTraceLoading", true},
+          {"supportsSetVariable", false},  // what is shown is a copy
           {"exceptionBreakpointFilters",
            {filter("error", "Errors of scripts", "A behavior raises an error that it does not catch", true, nullptr),
-            filter("fault", "Faults", "The safety layer finds a fault", true, "part of its text: motor_hot of l_knee"),
+            filter("fault", "Faults", "The safety layer finds a fault", false, "part of its text: motor_hot of l_knee"),
             filter("check", "Failed checks", "A check of the scenario can no longer pass", true, nullptr),
             filter("transition", "Transitions", "A behavior goes into another state", false,
                    "FROM -> TO, or TO: states by their last names; * for any")}}};
@@ -233,7 +246,7 @@ Json DebugSession::stack_trace(const Json& arguments) {
   for (std::size_t i = from; i < all.size() && (levels == 0 || i - from < levels); ++i) {
     Json frame{{"id", all[i].at("id")}, {"name", all[i].at("name")}, {"line", all[i].at("line")}, {"column", 1}};
     if (all[i].contains("chunk")) frame["source"] = source_of(all[i].at("chunk"));
-    if (!all[i].contains("chunk")) {
+    if (!all[i].contains("chunk") && !subject_->recorded) {  // a record is no text
       frame["line"] = 1;
       frame["source"] = {{"name", "run"}, {"path", run_.at("file")}};
     }
@@ -333,6 +346,19 @@ void DebugSession::drop_run() {
   searcher_ = {};
   looked_into_ = {};
   copies_.clear();
+}
+
+Json DebugSession::exception_info(const Json&) {
+  need_standing();
+  if (stop_.value("reason", "") != "exception")
+    refuse_it("the run does not stand at an error, fault, check or transition");
+  return {{"exceptionId", stop_.at("filter")}, {"description", stop_.at("text")}, {"breakMode", "always"}};
+}
+
+Json DebugSession::terminate(const Json& arguments) {
+  // Only once: Emacs answers the event with this request.
+  if (doing_ != Doing::over) after_ = [this] { event("terminated"); };
+  return leave(arguments);
 }
 
 Json DebugSession::leave(const Json&) {

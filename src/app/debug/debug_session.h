@@ -41,7 +41,7 @@ class DebugSession {
   void event(const char* name, Json body = Json::object());
   void output(const char* category, const std::string& text);
 
-  Json initialize(const Json&);
+  Json initialize(const Json& arguments);
   Json launch(const Json& arguments);
   Json configuration_done(const Json&);
   Json set_breakpoints(const Json& arguments);
@@ -55,6 +55,7 @@ class DebugSession {
   Json variables(const Json& arguments);
   Json evaluate(const Json& arguments);
   Json loaded_sources(const Json&);
+  Json exception_info(const Json&);
   Json go_on(const Json&);
   Json next(const Json& arguments) { return step("over", arguments); }
   Json step_in(const Json& arguments) { return step("in", arguments); }
@@ -62,6 +63,7 @@ class DebugSession {
   Json step_back(const Json& arguments);
   Json reverse_continue(const Json&);
   Json pause(const Json&);
+  Json terminate(const Json&);
   Json leave(const Json&);
   Json position(const Json&);
   Json go_to(const Json& arguments);

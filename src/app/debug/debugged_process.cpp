@@ -60,7 +60,7 @@ Json description(Assembly& assembly, const DebugSubject& subject) {
   };
   describe(assembly);
   for (const auto& other : assembly.others()) describe(*other);
-  return {{"file", fs::absolute(subject.launch.file).string()},
+  return {{"file", fs::absolute(subject.launch.file).lexically_normal().string()},
           {"root", root.string()},
           {"sources", sources},
           {"states", states}};

@@ -262,7 +262,7 @@ void DebugSession::hear_found(const Json& stop) {
   searcher_ = {};
   if (!stop.is_null()) {
     Json reason{{"reason", stop.at("reason")}, {"thread", stop.at("thread")}};
-    for (const char* field : {"ids", "text"}) {
+    for (const char* field : {"ids", "text", "filter"}) {
       if (stop.contains(field)) reason[field] = stop.at(field);
     }
     return arrive(stop.at("at").get<RunPosition>(), std::move(reason));
