@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include "app/assembly.h"
+#include "app/sim/input_files.h"
 #include "kadans/signal/random.h"
 #include "report.h"
+#include "telemetry/record/input_stream.h"
 #include "telemetry/record/recorder.h"
 
 namespace kadans::bench {
@@ -42,25 +44,42 @@ void bench_drain(Report& report, const SignalTable& signals, bool flight) {
 
 }  // namespace
 
-// What recording all signals of TULip costs the control thread, and the thread that drains.
+// What recording all signals of TULip costs the control thread, what the inputs of its ticks cost beside them, and what
+// the thread that drains pays.
 void bench_record(Report& report) {
   const ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/squat.json");
   RunLog log;
   Assembly robot(scenario, 1, log);
-  Recorder recorder(robot.catalog().signals);
-  const std::vector<double> row(robot.catalog().signals.size(), 0.5);
+  const SignalTable& signals = robot.catalog().signals;
+  Recorder plain(signals), repeatable(signals);
+  RecordedInputs behaviors(KADANS_SOURCE_DIR);
+  const HandOvers hand_overs = robot.sets().hand_overs();
+  const InputLayout layout = layout_of(robot);
+  repeatable.record_inputs(
+      std::make_unique<InputPieces>(robot.parts().control, layout,
+                                    std::vector<const DownStorage*>(hand_overs.down.begin(), hand_overs.down.end())),
+      behaviors);
+  const std::vector<double> row(signals.size(), 0.5);
   std::uint64_t tick = 0;
-  std::vector<double> each;
-  for (int i = 0; i < 300; ++i) {
+  const auto cost_ns = [&](Recorder& recorder) {
     constexpr int calls = 100;
     const double began = now_ns();
     for (int j = 0; j < calls; ++j, ++tick) recorder.record(tick, static_cast<std::int64_t>(tick) * 1'000'000, row);
-    each.push_back((now_ns() - began) / calls);
+    const double each = (now_ns() - began) / calls;
     (void)recorder.drain();
+    return each;
+  };
+  std::vector<double> without, with;
+  for (int i = 0; i < 300; ++i) {
+    without.push_back(cost_ns(plain));
+    with.push_back(cost_ns(repeatable));
   }
-  report.add("record_tick_ns", "record() of " + std::to_string(row.size()) + " signals", median(each), "ns");
-  bench_drain(report, robot.catalog().signals, false);
-  bench_drain(report, robot.catalog().signals, true);
+  const double plain_ns = median(without);
+  report.add("record_tick_ns", "record() of " + std::to_string(row.size()) + " signals", plain_ns, "ns");
+  report.add("record_inputs_ns", "the inputs of a tick beside them, " + std::to_string(layout.words()) + " numbers",
+             median(with) - plain_ns, "ns");
+  bench_drain(report, signals, false);
+  bench_drain(report, signals, true);
 }
 
 }  // namespace kadans::bench
