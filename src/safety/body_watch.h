@@ -53,9 +53,7 @@ class ImuWatch {
   FaultMask look(const ImuSample& sample, const SensorState& health) noexcept;
   // Value and limit of a fault that look() has just found.
   void describe(const SensorState& health, Fault& fault) const noexcept;
-  void pass_state(auto& bytes) noexcept {
-    bytes(seen_, gyro_rad_s_, acceleration_m_s2_, jump_, jump_max_, repeats_);
-  }
+  void pass_state(auto& bytes) noexcept { bytes(seen_, gyro_rad_s_, acceleration_m_s2_, jump_, jump_max_, repeats_); }
 
  private:
   SensorWatchSettings settings_;

@@ -80,8 +80,8 @@ class Safety {
     for (Ladder& ladder : foot_ladders_) bytes(ladder);
     for (std::size_t i = 0; i < settings_.channels.size(); ++i) bytes(channel_ladders_[i]);
     bytes(imu_, fall_, engine_, supply_, robot_, pending_, cut_, lost_, lasting_s_, last_dt_s_, change_s_, came_back_,
-          stopped_by_, heard_, stopped_, lifts_, fault_count_, first_fault_, faults_raised_, new_faults_,
-          level_number_, robot_level_number_);
+          stopped_by_, heard_, stopped_, lifts_, fault_count_, first_fault_, faults_raised_, new_faults_, level_number_,
+          robot_level_number_);
     bytes.must(((pending_ | cut_) & unknown) == 0 && static_cast<std::size_t>(first_fault_.code) < fault_codes);
   }
   // Notes a fault that another part found; its reaction follows in the next check.

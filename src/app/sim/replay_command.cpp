@@ -240,6 +240,14 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
                     run.comparison().gone().front());
   if (!run.shortened().empty()) notes.push_back("the record is not whole: " + run.shortened());
   if (run.ticks() == 0) notes.emplace_back("it holds no tick to compare");
+  if (run.repeats_flight()) {
+    notes.push_back(printed("repeated from the state of its control engine at %.3f s: ",
+                            1e-9 * static_cast<double>(run.begun_ns())) +
+                    plural(run.commands(), "command") + "; " + plural(run.states(), "later state") +
+                    " the same, bit for bit");
+    notes.emplace_back("a flight record: behaviors and the high levels of control objects are not repeated");
+    return notes;
+  }
   notes.push_back("repeated from its inputs: " + plural(run.behavior_ticks(), "tick") + " of the behaviors, " +
                   plural(run.commands(), "command") + ", " + plural(run.events(), "event"));
   if (with)
@@ -253,9 +261,16 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
 
 // A run on threads: its files come out of the record.
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
+  const bool flight = is_flight_record(options.record);
+  if (flight && !options.with.empty())
+    throw InputError(
+        {.file = "--with",
+         .message = "is for complete records; " + options.record +
+                    " is a flight record: behaviors are not repeated, and its state is that of its files"});
   const UnpackedRun run(inputs, options.record, options.allow_plugins, options.with);
   RepeatedRun repeated(options.record, run.scenario, run.files, inputs.fact("root"),
-                       !options.with.empty()                ? RepeatedRun::Behaviors::leading
+                       flight                               ? RepeatedRun::Behaviors::saved
+                       : !options.with.empty()              ? RepeatedRun::Behaviors::leading
                        : run.options.behaviors == "process" ? RepeatedRun::Behaviors::none
                                                             : RepeatedRun::Behaviors::compared);
   catch_interrupts();

@@ -4,8 +4,8 @@
 
 namespace kadans {
 
-EngineStates::EngineStates(ControlEngine& engine, std::vector<const DownStorage*> down)
-    : engine_(engine), down_(std::move(down)), found_(down_.size()) {
+EngineStates::EngineStates(ControlEngine& engine, std::vector<const DownStorage*> down, std::uint64_t every_ticks)
+    : engine_(engine), down_(std::move(down)), every_ticks_(every_ticks), found_(down_.size()) {
   StateBytes measuring(StateBytes::Levels::low);
   engine_.pass_state(measuring);
   bytes_.resize(measuring.size());
