@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -259,6 +260,42 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
   return notes;
 }
 
+// A stage of the tick, in the order of the stages, and what it is made of.
+struct Stage {
+  const char* signals;  // how their names begin
+  const char* fed;
+};
+constexpr Stage stages[] = {
+    {"imu.", "the samples of the tick"},
+    {"sensor.", "the samples of the tick"},
+    {"joint.", "the estimate, of the samples of its sensors"},
+    {"base.", "the estimate, of the IMU's samples"},
+    {"foot.", "the estimate, of the samples of its sole"},
+    {"support.", "the estimate, of feet and joints"},
+    {"odometry.", "the estimate, of feet, joints and IMU"},
+    {"safety.", "safety, of samples, estimate and what the control objects asked for in the tick before"},
+    {"actuation.", "what the control objects asked for in the tick before, within safety's limits"},
+    {"engine.", "the commands that came down"},
+    {"control.", ""},
+    {"composition.", "the control sets and their objects"},
+};
+
+// The first one in the order of the tick, and what feeds it.
+std::string first_of(const std::vector<SignalDifference>& differences, const Catalog& catalog) {
+  for (const Stage& stage : stages) {
+    const auto found = std::ranges::find_if(
+        differences, [&](const SignalDifference& difference) { return difference.name.starts_with(stage.signals); });
+    if (found == differences.end()) continue;
+    const auto object = std::ranges::find_if(
+        catalog.objects, [&](const ObjectInfo& info) { return found->name.starts_with("control." + info.name + "."); });
+    const std::string fed = object == catalog.objects.end()
+                                ? stage.fed
+                                : "control object " + object->name + " (" + object->type + "), of the estimate";
+    if (!fed.empty()) return "the first of them in the tick is " + found->name + ": from " + fed;
+  }
+  return "";
+}
+
 // A run on threads: its files come out of the record.
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   const bool flight = is_flight_record(options.record);
@@ -276,13 +313,11 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   catch_interrupts();
   repeated.go(interrupted);
   if (interrupted()) return exit_interrupted;
-  const Findings findings{options,
-                          repeated.comparison(),
-                          repeated.compared_ticks(),
-                          repeated.same(),
-                          {},
-                          changed_program(inputs),
-                          notes_of(repeated, inputs, !options.with.empty())};
+  std::vector<std::string> notes = notes_of(repeated, inputs, !options.with.empty());
+  const std::string first = first_of(repeated.comparison().differences(), repeated.assembly().catalog());
+  if (!first.empty()) notes.insert(notes.begin(), first);
+  const Findings findings{options, repeated.comparison(),   repeated.compared_ticks(), repeated.same(),
+                          {},      changed_program(inputs), std::move(notes)};
   options.json ? print_json(findings) : print_comparison(findings);
   return findings.same ? exit_passed : exit_failed;
 }
