@@ -160,7 +160,7 @@ TEST_CASE("A state is saved in its tick without allocating, and one that waits i
   Engine engine;
   EngineStates states(engine.engine, {}, 100);
   while (engine.engine.ticks() < 130) engine.tick();
-  const AllocationCount heap;
+  const testing::AllocationCount heap;
   states.save_if_due(99);
   EngineStates::Saved saved;
   const bool none = states.take(saved);
