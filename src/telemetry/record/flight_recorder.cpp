@@ -92,8 +92,9 @@ void FlightMemory::add_state(const EngineStates::Saved& state) {
 
 void FlightMemory::seal() {
   const std::size_t rows = ticks_.size();
-  if (rows == 0) return;
-  if (encoder_ != nullptr) encoder_->encode(inputs_);
+  if (rows == 0 && behaviors_.size() + states_.size() == 0) return;
+  if (encoder_ != nullptr && rows > 0) encoder_->encode(inputs_);
+  if (rows > 0) last_ns_ = static_cast<std::int64_t>(times_.back());
   const std::size_t rows_bytes = rows * (signals_ * sizeof(float) + 2 * sizeof(std::uint64_t));
   planes_.resize(std::max(planes_.size(), rows_bytes + inputs_.size() + behaviors_.size() + states_.size()));
   std::byte* to = put_column<std::uint64_t>(planes_.data(), rows, [&](std::size_t row) { return ticks_[row]; });
@@ -105,7 +106,7 @@ void FlightMemory::seal() {
   Block block{.offset = head_,
               .size = 0,
               .rows = rows,
-              .last_ns = static_cast<std::int64_t>(times_.back()),
+              .last_ns = last_ns_,
               .inputs = static_cast<std::uint32_t>(inputs_.size()),
               .behaviors = static_cast<std::uint32_t>(behaviors_.size()),
               .states = static_cast<std::uint32_t>(states_.size())};
@@ -297,8 +298,8 @@ void FlightRecorder::step() {
 
 // Behind the rows of their ticks.
 void FlightRecorder::write_inputs() {
-  const std::int64_t time_ns = rows_.times_ns.back();
-  (void)dump_->inputs(rows_.inputs, time_ns);
+  const std::int64_t time_ns = rows_.times_ns.empty() ? last_ns_ : rows_.times_ns.back();
+  if (!rows_.inputs.empty()) (void)dump_->inputs(rows_.inputs, time_ns);
   if (!rows_.behaviors.empty()) (void)dump_->behavior_inputs(rows_.behaviors, time_ns);
   for (const std::vector<std::byte>& state : rows_.states) (void)dump_->state(state, time_ns);
 }

@@ -59,7 +59,7 @@ class FlightMemory {
            std::span<const std::uint64_t> inputs = {});
   void add_behavior_inputs(std::span<const std::byte> events) { behaviors_.put(events); }
   void add_state(const EngineStates::Saved& state);
-  void seal();  // ends the block
+  void seal();  // ends the block, which may hold no rows, only what came down after them
 
   // Blocks are numbered from 0; those in [first(), end()) are stored.
   std::uint64_t first() const noexcept { return end_ - blocks_.size(); }
@@ -88,6 +88,7 @@ class FlightMemory {
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
   std::vector<std::byte> store_, planes_, packed_;
   std::size_t head_ = 0;  // offset of the next block
+  std::int64_t last_ns_ = 0;
   std::deque<Block> blocks_;
   std::uint64_t end_ = 0;
   std::vector<std::uint64_t> ticks_, times_;  // of the open block
