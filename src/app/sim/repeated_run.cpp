@@ -16,6 +16,7 @@
 namespace kadans {
 namespace {
 
+constexpr std::int64_t waiting_values_max = 1000;  // of a high level, ahead of its low level
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 bool same_command(const Command& a, const Command& b) noexcept {
@@ -252,9 +253,13 @@ bool RepeatedRun::hand_down(std::size_t storage, std::int64_t number) {
       return false;
     }
     if (input.kind != BehaviorInput::Kind::handed_down || input.number >= handed_.size()) continue;
-    handed_[input.number] = std::max(handed_[input.number], input.handed);
-    if (!hand_overs_.down[input.number]->feed(input.handed, input.bytes))
-      part("a value of a control object has another size");
+    if (input.handed <= handed_[input.number]) continue;
+    handed_[input.number] = input.handed;
+    DownStorage& down = *hand_overs_.down[input.number];
+    if (input.handed - waiting_values_max > down.taken() || !down.feed(input.handed, input.bytes)) {
+      part("what a high level handed down has another size, or comes too early");
+      return false;
+    }
   }
   return true;
 }
