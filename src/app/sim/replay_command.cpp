@@ -280,17 +280,33 @@ constexpr Stage stages[] = {
     {"composition.", "the control sets and their objects"},
 };
 
+// The control objects that have a share in the joint of an actuation's signal: "walk, posture".
+std::string writers_of(const std::string& signal, const Catalog& catalog, std::span<const double> row) {
+  const std::size_t first = signal.find('.') + 1;
+  const std::string joint = signal.substr(first, signal.rfind('.') - first);
+  const std::optional<SignalId> writers = catalog.signals.find("composition." + joint + ".writers");
+  std::string names;
+  for (std::size_t i = 0; writers && i < catalog.objects.size(); ++i) {
+    if ((static_cast<std::uint32_t>(row[*writers]) >> i & 1U) != 0)
+      names += (names.empty() ? "" : ", ") + catalog.objects[i].name;
+  }
+  return names.empty() ? "none" : names;
+}
+
 // The first one in the order of the tick, and what feeds it.
-std::string first_of(const std::vector<SignalDifference>& differences, const Catalog& catalog) {
+std::string first_of(const std::vector<SignalDifference>& differences, Assembly& assembly) {
+  const Catalog& catalog = assembly.catalog();
   for (const Stage& stage : stages) {
     const auto found = std::ranges::find_if(
         differences, [&](const SignalDifference& difference) { return difference.name.starts_with(stage.signals); });
     if (found == differences.end()) continue;
     const auto object = std::ranges::find_if(
         catalog.objects, [&](const ObjectInfo& info) { return found->name.starts_with("control." + info.name + "."); });
-    const std::string fed = object == catalog.objects.end()
-                                ? stage.fed
-                                : "control object " + object->name + " (" + object->type + "), of the estimate";
+    std::string fed = stage.fed;
+    if (object != catalog.objects.end())
+      fed = "control object " + object->name + " (" + object->type + "), of the estimate";
+    if (found->name.starts_with("actuation."))
+      fed += "; its control objects are " + writers_of(found->name, catalog, assembly.control().row());
     if (!fed.empty()) return "the first of them in the tick is " + found->name + ": from " + fed;
   }
   return "";
@@ -314,7 +330,7 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   repeated.go(interrupted);
   if (interrupted()) return exit_interrupted;
   std::vector<std::string> notes = notes_of(repeated, inputs, !options.with.empty());
-  const std::string first = first_of(repeated.comparison().differences(), repeated.assembly().catalog());
+  const std::string first = first_of(repeated.comparison().differences(), repeated.assembly());
   if (!first.empty()) notes.insert(notes.begin(), first);
   const Findings findings{options, repeated.comparison(),   repeated.compared_ticks(), repeated.same(),
                           {},      changed_program(inputs), std::move(notes)};
