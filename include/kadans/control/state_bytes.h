@@ -15,8 +15,8 @@
 // no pointer. How many there are follows from the setup: measure once, before the loop. Nothing here allocates, locks
 // or throws.
 //
-// By the same function the state is hashed. Two objects with the same hash go on alike; so a state that comes from
-// outside, which must never be put into an object, can at least be compared.
+// By the same function the state is hashed. Two objects with the same hash go on alike; so a state can be compared
+// where it is not held. Bytes of a flight record come from outside: must() checks what could do harm.
 //
 // Threads: the control thread, between ticks. With Levels::both the behavior thread must stand still, too.
 #pragma once
