@@ -246,6 +246,20 @@ void ControlSets::fill(Snapshot& snapshot) const noexcept {
     snapshot.objects[i].dwell_s = static_cast<float>(dwell_.left_s(i));
 }
 
+void ControlSets::pass_state(StateBytes& bytes) noexcept {
+  bytes(active_, running_, fresh_, touched_, computed_, dwell_, switchover_, unheld_);
+  for (std::uint32_t& writers : writers_) bytes(writers);
+  bytes.must(active_ != 0 && static_cast<std::size_t>(std::bit_width(active_)) <= plans_.size());
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    for (const std::size_t joint : catalog_.objects[i].joints) {
+      JointActuation& proposal = proposals_[i]->joints[joint];
+      bytes(proposal);
+      bytes.must(proposal.mode <= last_actuation_mode);
+    }
+  }
+  for (const auto& object : objects_) object->pass_state(bytes);
+}
+
 HandOvers ControlSets::hand_overs() const noexcept {
   HandOvers all;
   for (const auto& object : objects_) object->hand_overs(all);

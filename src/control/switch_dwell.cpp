@@ -45,7 +45,7 @@ void SwitchDwell::note(SetMask active, std::int64_t time_ns) noexcept {
   const ObjectMask running = partition_.objects(active);
   const auto begin = [time_ns](Stay& stay) { stay.until_ns = time_ns + stay.demanded_ns; };
   each_bit(active ^ active_, [&](std::uint32_t set) { begin(sets_[set]); });
-  each_bit(running ^ running_, [&](std::uint32_t object) { begin(objects_[object]); });
+  each_bit(running ^ partition_.objects(active_), [&](std::uint32_t object) { begin(objects_[object]); });
   active_ = active;
   running_ = running;
 }

@@ -32,6 +32,7 @@ class ContactDetector {
 
   const Config& config() const noexcept { return config_; }
   const State& state() const noexcept { return state_; }
+  void pass_state(auto& bytes) noexcept { bytes(state_); }
 
  private:
   Config config_;

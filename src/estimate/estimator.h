@@ -47,6 +47,19 @@ class Estimator {
   // From the next update on.
   void reset_odometry() noexcept { odometry_.reset(); }
 
+  // All that changes from tick to tick (kadans/control/state_bytes.h).
+  void pass_state(auto& bytes) noexcept {
+    for (JointTrack& joint : joints_)
+      bytes(joint.velocity, joint.last_time_ns, joint.last_sequence, joint.elapsed_s, joint.state);
+    for (FootTrack& foot : feet_) bytes(foot.detector, foot.leg, foot.bore, foot.last_sequence, foot.force_N);
+    for (std::size_t i = 0; i < health_.joint_count; ++i) bytes(health_.joints[i]);
+    for (std::size_t i = 0; i < health_.foot_count; ++i) bytes(health_.feet[i]);
+    for (std::size_t i = 0; i < health_.channel_count; ++i)
+      bytes(health_.channels[i], last_channel_sequences_[i], channels_[i]);
+    bytes(orientation_, health_.imu, started_, last_imu_sequence_, imu_elapsed_s_, last_imu_time_ns_, height_m_,
+          heading_x_, heading_y_, support_, odometry_);
+  }
+
   const SensorHealth& health() const noexcept { return health_; }  // as of the last update
   const EstimateSettings& settings() const noexcept { return settings_; }
   const OrientationFilter::State& orientation() const noexcept { return orientation_.state(); }

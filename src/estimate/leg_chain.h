@@ -67,6 +67,7 @@ class LegChain {
     const Vec3 arm = along(axes_, in_link_m);
     return {position_m_[0] + arm[0], position_m_[1] + arm[1], position_m_[2] + arm[2]};
   }
+  void pass_state(auto& bytes) noexcept { bytes(axes_, position_m_); }
 
  private:
   struct Segment {

@@ -51,6 +51,10 @@ class Odometry {
   // heading: where the base points, a unit vector in that world. all: every foot bears.
   void update(const Way& way, bool all, const std::array<double, 2>& heading, const BaseStatus& base, double dt_s,
               OdometryStatus& status) noexcept;
+  void pass_state(auto& bytes) noexcept {
+    bytes(state_, zero_rad_, zero_x_, zero_y_, path_, path_direction_, lifted_s_, drift_rad_s_, quiet_s_, learnt_s_,
+          resets_);
+  }
 
  private:
   void learn_drift(const Way& way, bool all, const Vec3& rate_rad_s, double dt_s) noexcept;

@@ -41,6 +41,7 @@ class OrientationFilter {
   const State& state() const noexcept { return state_; }
   // Where the base will be so long after the last reading if it goes on turning as it does.
   Quat orientation_after(double time_s) const noexcept;
+  void pass_state(auto& bytes) noexcept { bytes(state_, last_gyro_rad_s_); }
 
  private:
   void initialise(const Vec3& specific_force_m_s2) noexcept;

@@ -13,6 +13,8 @@ struct SensorState {
   std::uint32_t silent_ticks = 0;  // since the last new reading; 0: there was one in this tick
   std::uint32_t period_ticks = 1;  // it is looked at every so many ticks: up to period_ticks - 1 silent ones are normal
   bool finite = true;              // of the last new reading; what was not finite has not been used
+
+  void pass_state(auto& bytes) noexcept { bytes(silent_ticks, finite); }
 };
 
 struct SensorHealth {

@@ -37,6 +37,7 @@ class RepeatWatch {
     return changes_ >= alive_after && same_ >= most;
   }
   std::uint32_t count() const noexcept { return same_; }
+  void pass_state(auto& bytes) noexcept { bytes(changes_, same_); }
 
   static constexpr std::uint32_t alive_after = 50;  // readings in a row that all changed
 
@@ -52,6 +53,7 @@ class ImuWatch {
   FaultMask look(const ImuSample& sample, const SensorState& health) noexcept;
   // Value and limit of a fault that look() has just found.
   void describe(const SensorState& health, Fault& fault) const noexcept;
+  void pass_state(auto& bytes) noexcept { bytes(seen_, gyro_rad_s_, acceleration_m_s2_, jump_, jump_max_, repeats_); }
 
  private:
   SensorWatchSettings settings_;
@@ -90,6 +92,7 @@ class FootWatch {
 
   FaultMask look(const FootSample& sample, const SensorState& health) noexcept;
   void describe(const SensorState& health, Fault& fault) const noexcept;
+  void pass_state(auto& bytes) noexcept { bytes(force_N_, worst_N_, repeats_); }
 
  private:
   double force_max_N_ = 0;
@@ -127,6 +130,10 @@ class FallWatch {
   // Share of every torque: 1, except while falling and for a while afterwards.
   double share() const noexcept { return share_; }
   const double& impact_m_s2() const noexcept { return impact_m_s2_; }  // the largest of the last fall
+  void pass_state(auto& bytes) noexcept {
+    bytes(phase_, phase_number_, share_, for_s_, impact_m_s2_);
+    bytes.must(phase_ <= Phase::fallen);
+  }
 
  private:
   bool beyond(const BaseStatus& base, double rate_rad_s) const noexcept;
@@ -170,6 +177,7 @@ class EngineWatch {
     }
   }
   void clear() noexcept { in_a_row_ = 0; }
+  void pass_state(auto& bytes) noexcept { bytes(heartbeat_age_s_, in_a_row_, missed_, missed_ticks_); }
 
   const std::uint32_t& missed_ticks() const noexcept { return missed_ticks_; }  // since the start
 

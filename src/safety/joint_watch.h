@@ -49,6 +49,7 @@ class ThermalModel {
   }
 
   const double& temperature_C() const noexcept { return temperature_C_; }
+  void pass_state(auto& bytes) noexcept { bytes(temperature_C_); }
 
  private:
   double ambient_C_ = 0;
@@ -79,6 +80,10 @@ class JointWatch {
   const ThermalModel& thermal() const noexcept { return thermal_; }
   // The share of its torque that the winding allows, down to the continuous torque's.
   double derating() const noexcept { return derating_; }
+  void pass_state(auto& bytes) noexcept {
+    bytes(thermal_, derating_, seen_, reading_rad_, step_rad_, step_max_rad_, since_s_, same_, mean_rad_, motor_rad_,
+          asked_, motor_low_rad_, motor_high_rad_, asked_low_, asked_high_);
+  }
 
  private:
   static constexpr double swing_s = 0.05;  // of the smoothing; a rotor of 0.04 kg m2 on 100 Nm/rad swings in 0.13 s
@@ -204,6 +209,7 @@ class DriveWatch {
   }
   // Value, limit and the maker's words of a fault that look() has just found; other faults are not changed.
   void describe(const SafetySettings& settings, const Input& in, Fault& fault) const noexcept;
+  void pass_state(auto& bytes) noexcept { bytes(idle_s_, was_enabled_); }
 
  private:
   static double age_s(const Input& in) noexcept { return seconds_between(in.sample.time_ns, in.frame_ns); }
@@ -218,6 +224,7 @@ class SupplyWatch {
 
   FaultMask look(const SensorFrame& sensors, double dt_s) noexcept;
   void describe(Fault& fault) const noexcept;
+  void pass_state(auto& bytes) noexcept { bytes(supply_V_, low_s_, high_s_); }
 
  private:
   SupplySettings settings_;

@@ -67,6 +67,10 @@ class Ladder {
   SafetyLevel level() const noexcept { return level_; }
   // Nothing is wrong, was wrong lately or is latched: update(0) would change nothing.
   bool idle() const noexcept { return idle_; }
+  void pass_state(auto& bytes) noexcept {
+    bytes(left_s_, reported_, latched_faults_, latched_, level_, idle_);
+    bytes.must(latched_ <= SafetyLevel::off && level_ <= SafetyLevel::off);
+  }
 
  private:
   void settle() noexcept;

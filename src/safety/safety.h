@@ -66,6 +66,24 @@ class Safety {
   // For rehearsals: takes over the state of `other`, a safety layer of the same robot; the log stays its own. Does not
   // allocate.
   void imitate(const Safety& other) noexcept;
+  // All that changes from tick to tick (kadans/control/state_bytes.h), but what other threads asked of the emergency
+  // stop, and the log.
+  void pass_state(auto& bytes) noexcept {
+    constexpr FaultMask unknown = ~((FaultMask{2} << (fault_codes - 1)) - 1);
+    for (std::size_t i = 0; i < joint_count_; ++i) {
+      JointGuard& joint = joints_[i];
+      bytes(joint.watch, joint.drive, joint.ladder, joint.writable, joint.cut, joint.authority, joint.gave_way,
+            joint.last_Nm, joint.driven, joint.level_number);
+      bytes.must((joint.cut & unknown) == 0);
+    }
+    for (FootWatch& foot : feet_) bytes(foot);
+    for (Ladder& ladder : foot_ladders_) bytes(ladder);
+    for (std::size_t i = 0; i < settings_.channels.size(); ++i) bytes(channel_ladders_[i]);
+    bytes(imu_, fall_, engine_, supply_, robot_, pending_, cut_, lost_, lasting_s_, last_dt_s_, change_s_, came_back_,
+          stopped_by_, heard_, stopped_, lifts_, fault_count_, first_fault_, faults_raised_, new_faults_, level_number_,
+          robot_level_number_);
+    bytes.must(((pending_ | cut_) & unknown) == 0 && static_cast<std::size_t>(first_fault_.code) < fault_codes);
+  }
   // Notes a fault that another part found; its reaction follows in the next check.
   void raise(const Fault& fault) noexcept;
   // Brings the robot down when asked; clear() and imitate() do not change it.

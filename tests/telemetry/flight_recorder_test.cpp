@@ -118,6 +118,40 @@ TEST_CASE("FlightMemory forgets what is older than it keeps, and more of it when
   }
 }
 
+TEST_CASE("FlightMemory keeps the inputs of its ticks, what came down and saved states, within its bytes") {
+  const InputLayout layout{.joints = 1, .state_bytes = 50};
+  FlightMemory memory(2, {.kept_s = 10, .bytes = 1U << 20U, .inputs = layout});
+  const std::vector<std::byte> event(30, std::byte{7}), state(40, std::byte{9});
+  std::vector<std::uint64_t> words(layout.words());
+  for (std::uint64_t tick = 5000; tick < 5250; ++tick) {
+    for (std::size_t w = 0; w < words.size(); ++w) words[w] = tick * (w + 1);
+    if (tick == 5110) memory.add_behavior_inputs(event);
+    if (tick == 5230) memory.add_state({5229, {}, state});
+    memory.add(tick, static_cast<std::int64_t>(tick) * ms, std::array{0.5, 1.0}, words);
+  }
+  memory.seal();
+  REQUIRE(memory.end() == 3);
+  struct None final : SignalBits {
+    std::optional<std::uint64_t> bits(std::uint64_t, std::uint32_t) const override { return std::nullopt; }
+  } none;
+  for (std::uint64_t block = 0; block < 3; ++block) {
+    FlightMemory::Rows rows;
+    REQUIRE(memory.read(block, rows));
+    InputDecoder decoder(layout);
+    std::deque<TickTaken> ticks;
+    REQUIRE(decoder.decode(rows.inputs, none, ticks));
+    CHECK(ticks.size() == rows.ticks.size());
+    CHECK(ticks.back().words[3] == ticks.back().tick * 4);
+    CHECK(rows.values[1] == 1.0);
+    CHECK(rows.behaviors.size() == (block == 1 ? event.size() : 0));
+    REQUIRE(rows.states.size() == (block == 2 ? 1 : 0));
+    std::vector<std::int64_t> found;
+    EngineStates::Saved saved;
+    if (block == 2) CHECK(take_state(rows.states[0], found, saved));
+    if (block == 2) CHECK(saved.tick == 5229);
+  }
+}
+
 TEST_CASE("FlightMemory packs what moves slowly, and what stands still into next to nothing") {
   RandomStream random(1, "noise");
   FlightMemory memory(10, {.kept_s = 30, .bytes = 8U << 20U});

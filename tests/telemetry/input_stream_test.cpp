@@ -1,6 +1,8 @@
 // The inputs of a run in its record: read as they were written, and never believed when they are damaged.
 #include "telemetry/record/input_stream.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -8,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include "kadans/signal/random.h"
+#include "telemetry/record/recorded_inputs.h"
 #include "telemetry/record/run_inputs.h"
 
 namespace input_stream_test {
@@ -115,6 +118,32 @@ TEST_CASE("Inputs of ticks are read with the bits with which they were written, 
   }
 }
 
+TEST_CASE("Each message of a flight record is read without the messages before it") {
+  InputLayout alone = layout;
+  alone.state_bytes = 100;
+  const Ticks ticks(250, 1000);
+  InputEncoder encoder(alone, {});
+  std::vector<std::vector<std::byte>> messages;
+  for (std::size_t t = 0; t < 250; ++t) {
+    if (encoder.full() || t == 130) {
+      ByteWriter message;
+      encoder.encode(message);
+      messages.emplace_back(message.bytes().begin(), message.bytes().end());
+    }
+    REQUIRE(encoder.add(1000 + t, Ticks::time_ns(t), ticks.words[t], {}));
+  }
+  REQUIRE(messages.size() == 3);
+  for (const std::size_t which : {2, 0, 1}) {
+    InputDecoder decoder(alone);
+    std::deque<TickTaken> read;
+    CHECK(messages[which].size() <= InputEncoder::bytes_max(alone));
+    REQUIRE(decoder.decode(messages[which], ticks, read));
+    for (const TickTaken& tick : read) check_same(tick, ticks.words[tick.tick - 1000]);
+    CHECK(read.front().tick == std::array{1000, 1100, 1130}[which]);
+  }
+  CHECK(InputLayout::of(alone.facts())->state_bytes == 100);
+}
+
 TEST_CASE(
     "Inputs that stand still, count or are signals take some bytes a message, encoders and near ones one a tick") {
   const Ticks ticks(300, 0);
@@ -167,6 +196,76 @@ TEST_CASE("Damaged inputs are refused, or read as other values of the same types
   CHECK(refused > 1000);
   CHECK_FALSE(InputLayout::of({{"format", "2"}, {"joints", "5000"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
   CHECK_FALSE(InputLayout::of({{"format", "1"}, {"joints", "2"}, {"feet", "1"}, {"channels", "0"}, {"down", "0"}}));
+}
+
+TEST_CASE("A flight record gets commands and what is handed down, a record the rest, and both notice what is missing") {
+  const auto read_all = [](std::span<const std::byte> bytes) {
+    ByteReader reader(bytes);
+    std::uint32_t expected = 0;
+    std::vector<BehaviorInput> all;
+    while (reader.left() > 0 && take_behavior_input(reader, expected, all.emplace_back())) {
+    }
+    return all;
+  };
+  RecordedInputs inputs("/project");
+  std::vector<std::byte> value(5003);
+  for (std::size_t i = 0; i < value.size(); i += i < 400 ? 3 : 900) value[i] = static_cast<std::byte>(i + 1);
+  const std::array<Command, 2> batch{Command{.kind = CommandKind::transaction, .count = 1, .sequence = 3},
+                                     Command{.kind = CommandKind::clear_faults}};
+  inputs.tick_begins({}, 0);
+  inputs.handed_down(4, 77, value);
+  inputs.sent(batch, true);
+  inputs.handed_down(4, 78, {});
+  inputs.tick_ends();
+  ByteWriter message, record, flight;
+  inputs.take(message);
+  EventSorter sorter;
+  sorter.sort(message.bytes(), &record, &flight);
+  const std::vector<BehaviorInput> recorded = read_all(record.bytes()), flown = read_all(flight.bytes());
+  REQUIRE(recorded.size() == 3);
+  CHECK(recorded[1].kind == BehaviorInput::Kind::sent);
+  REQUIRE(flown.size() == 3);
+  CHECK(flown[0].number == 4);
+  CHECK(flown[0].handed == 77);
+  CHECK(flown[0].bytes == value);
+  CHECK(flown[1].commands.size() == 2);
+  CHECK(flown[2].bytes.empty());
+  CHECK(flight.size() < 1500);  // zeros take next to nothing
+
+  ByteWriter lost;
+  inputs.tick_begins({}, 0);
+  inputs.take(lost);
+  lost.clear();
+  inputs.sent(batch, true);
+  inputs.take(lost);
+  record.clear();
+  flight.clear();
+  sorter.sort(lost.bytes(), &record, &flight);
+  CHECK(number_of_behavior_input(ByteReader(record.bytes())) == 4);  // 3 is missing
+  CHECK(number_of_behavior_input(ByteReader(flight.bytes())) == 4);
+
+  RandomStream random(13, "damage");
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<std::byte> damaged(message.bytes().begin(), message.bytes().end());
+    damaged[random.next() % damaged.size()] = static_cast<std::byte>(random.next());
+    if (i % 2 == 0) damaged.resize(random.next() % damaged.size());
+    (void)read_all(damaged);
+    EventSorter().sort(damaged, &record, &flight);
+  }
+}
+
+TEST_CASE("A saved state is read as it was written, and a cut one is refused") {
+  const std::vector<std::int64_t> numbers{5, -7};
+  const std::vector<std::byte> bytes(100, std::byte{3});
+  ByteWriter message;
+  put_state({41, numbers, bytes}, message);
+  std::vector<std::int64_t> found;
+  EngineStates::Saved saved;
+  REQUIRE(take_state(message.bytes(), found, saved));
+  CHECK(saved.tick == 41);
+  CHECK(std::ranges::equal(saved.found, numbers));
+  CHECK(std::ranges::equal(saved.bytes, bytes));
+  for (std::size_t size = 0; size < 28; ++size) CHECK_FALSE(take_state(message.bytes().first(size), found, saved));
 }
 
 TEST_CASE("What the behavior thread took is read in its order, damage and a missing event are noticed") {

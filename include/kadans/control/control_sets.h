@@ -51,6 +51,8 @@ class ControlSets {
   // joints that are not measured in this tick; they keep what is in `actuation`.
   void drive(const ControlInput& input, JointMask blind, ActuationFrame& actuation) noexcept;
   bool drives() const noexcept { return at_drives_ != 0; }  // whether drive() does anything
+  // Between ticks: all that changes from tick to tick (state_bytes.h), the states of the objects after it.
+  void pass_state(StateBytes& bytes) noexcept;
   // Control thread, before step. `index` counts as in the catalog.
   ControlObject& object(std::uint32_t index) noexcept { return *objects_[index]; }
   void fill(Snapshot& snapshot) const noexcept;  // which sets and objects are active

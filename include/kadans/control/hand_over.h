@@ -34,19 +34,48 @@ struct Handed : T {
   std::int64_t handed = 0;
 };
 
+// Behavior thread: gets each value that a high level hands down, as bytes.
+class HandedDownSink {
+ public:
+  virtual void handed_down(std::uint32_t storage, std::int64_t number, std::span<const std::byte> value) noexcept = 0;
+
+ protected:
+  HandedDownSink() = default;
+  ~HandedDownSink() = default;
+  HandedDownSink(const HandedDownSink&) = default;
+  HandedDownSink& operator=(const HandedDownSink&) = default;
+};
+
 class DownStorage {
  public:
   virtual ~DownStorage() = default;
+  // Before the loop: all values that are published go there, too, under this number of the storage.
+  void tell(HandedDownSink* sink, std::uint32_t storage) noexcept {
+    sink_ = sink;
+    storage_ = storage;
+  }
   // Control thread: the number of the value that was read last.
   virtual std::int64_t taken() const noexcept = 0;
   // In a repeated run, where all is one thread: from now on values wait until they are let through by their number.
   virtual void hold() = 0;
   virtual void let_through(std::int64_t number) = 0;
+  // There, in a run that is repeated from a saved state and without its high levels: the value that was restored has
+  // this number; and another value comes down, to wait for let_through(). One that is older than the restored one is
+  // ignored. False: wrong size.
+  virtual void resume(std::int64_t number) noexcept = 0;
+  [[nodiscard]] virtual bool feed(std::int64_t number, std::span<const std::byte> value) = 0;
 
  protected:
   DownStorage() = default;
   DownStorage(const DownStorage&) = default;
   DownStorage& operator=(const DownStorage&) = default;
+  void told(std::int64_t number, std::span<const std::byte> value) const noexcept {
+    if (sink_ != nullptr) sink_->handed_down(storage_, number, value);
+  }
+
+ private:
+  HandedDownSink* sink_ = nullptr;
+  std::uint32_t storage_ = 0;
 };
 
 class UpStorage {
@@ -81,6 +110,7 @@ class HandDown final : public DownStorage {
 
   void publish(Handed<T>& value) noexcept {  // behavior thread
     value.handed = ++published_;
+    told(value.handed, std::as_bytes(std::span(&value, 1)));
     if (waiting_ == nullptr)
       latest_.publish(value);
     else
@@ -97,6 +127,19 @@ class HandDown final : public DownStorage {
       latest_.publish(waiting_->front());
       waiting_->pop_front();
     }
+  }
+  void resume(std::int64_t number) noexcept override {
+    Handed<T> value = latest_.newest();
+    value.handed = number;
+    latest_.replace(value);
+  }
+  bool feed(std::int64_t number, std::span<const std::byte> bytes) override {
+    if (bytes.size() != sizeof(Handed<T>)) return false;
+    if (waiting_ == nullptr || number <= taken()) return true;
+    Handed<T>& value = waiting_->emplace_back();
+    take_members(static_cast<T&>(value), bytes.data());
+    value.handed = number;
+    return true;
   }
 
  private:

@@ -45,6 +45,7 @@ class MotionProfile {
 
   void pass_state(auto& bytes) noexcept {
     bytes(phases_, phase_, time_s_, phase_start_, state_, target_, remaining_s_);
+    bytes.must(phase_ <= phase_count);
   }
 
   // Constant jerk for a time.

@@ -62,6 +62,11 @@ class UnheldJoints {
   // position to which it is drawn.
   void let_go(JointMask held, const JointStates& joints) noexcept;
   void forget() noexcept { unheld_ = 0; }
+  void pass_state(auto& bytes) noexcept {
+    bytes(unheld_);
+    for (std::size_t joint = 0; joint < laws_.size(); ++joint) bytes(position_rad_[joint]);
+    bytes.must(static_cast<std::size_t>(std::bit_width(unheld_)) <= laws_.size());
+  }
   // Each tick.
   void step(const JointStates& joints, ActuationFrame& actuation) const noexcept;
 

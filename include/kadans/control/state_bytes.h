@@ -15,8 +15,8 @@
 // no pointer. How many there are follows from the setup: measure once, before the loop. Nothing here allocates, locks
 // or throws.
 //
-// By the same function the state is hashed. Two objects with the same hash go on alike; so a state that comes from
-// outside, which must never be put into an object, can at least be compared.
+// By the same function the state is hashed. Two objects with the same hash go on alike; so a state can be compared
+// where it is not held. Bytes of a flight record come from outside: must() checks what could do harm.
 //
 // Threads: the control thread, between ticks. With Levels::both the behavior thread must stand still, too.
 #pragma once
@@ -72,10 +72,16 @@ class StateBytes {
     if (restores() && ok()) latest.replace(value);
   }
 
+  // Bytes may come from a file. What reads memory by them, an index or a count, must be right, and so says the function
+  // behind it: bytes(phase_); bytes.must(phase_ < phases). Otherwise the state is refused.
+  void must(bool holds) noexcept { refused_ = refused_ || (restores() && !holds); }
+
   bool restores() const noexcept { return from_ != nullptr; }
+  bool measures() const noexcept { return to_ == nullptr && from_ == nullptr && hash_ == nullptr; }
   std::size_t size() const noexcept { return size_; }
-  // False: there were too few bytes. Then not all is saved or restored.
-  bool ok() const noexcept { return (to_ == nullptr && from_ == nullptr) || size_ <= room_; }
+  // False: there were too few bytes, or they are refused. Then not all is saved or restored, and what got them must not
+  // be used.
+  bool ok() const noexcept { return !refused_ && ((to_ == nullptr && from_ == nullptr) || size_ <= room_); }
 
  private:
   template <typename T>
@@ -105,7 +111,7 @@ class StateBytes {
     const std::size_t at = size_;
     size_ += sizeof value;
     if (hash_ != nullptr) hash_->add(value);
-    if (!ok()) return;
+    if (size_ > room_) return;
     if (to_ != nullptr) std::memcpy(to_ + at, &value, sizeof value);
     if (from_ != nullptr) take_members(value, from_ + at);
   }
@@ -115,6 +121,7 @@ class StateBytes {
   const std::byte* from_ = nullptr;
   StateHash* hash_ = nullptr;
   std::size_t room_ = 0, size_ = 0;
+  bool refused_ = false;
 };
 
 }  // namespace kadans

@@ -35,6 +35,12 @@ class SwitchDwell {
   // The set that must wait longest of those that the switch to `set` would switch. `active`: the sets before it; where
   // they are not as in the last note(), an earlier switch of the same tick changed them.
   Dweller against(SetMask active, std::uint32_t set, std::int64_t time_ns) const noexcept;
+  void pass_state(auto& bytes) noexcept {
+    for (Stay& stay : sets_) bytes(stay.until_ns);
+    for (Stay& stay : objects_) bytes(stay.until_ns);
+    bytes(active_, running_, next_ns_, left_s_);
+    bytes.must(static_cast<std::size_t>(std::bit_width(active_)) <= sets_.size());
+  }
   // For how long the object, or a set with it, will still dwell in the next tick.
   double left_s(std::uint32_t object) const noexcept;
 

@@ -60,6 +60,11 @@ class Switchover {
   bool fading() const noexcept { return remaining_s_ > 0; }
   // The largest step that the last switch would have made without the offset, as a share of the joint's torque limit.
   const double& absorbed_share() const noexcept { return absorbed_share_; }
+  void pass_state(auto& bytes) noexcept {
+    bytes(remaining_s_, absorbed_share_);
+    for (std::size_t joint = 0; joint < drives_.size(); ++joint)
+      bytes(velocity_rad_s_[joint], acceleration_rad_s2_[joint], fades_[joint]);
+  }
 
  private:
   struct Foresight {  // where a joint is at the end of this tick and of the next

@@ -116,7 +116,10 @@ std::string list_text(const Json& items) {
     if (item.contains("joints")) row.push_back(joined(item.at("joints")));
     if (item.contains("objects")) row.push_back(joined(item.at("objects")));
     if (item.contains("objects")) row.emplace_back(item.value("active", false) ? "active" : "");
-    if (item.contains("lane")) row.push_back(behavior_text(item).substr(row.front().size()));
+    if (item.contains("lane")) {
+      const std::string told = behavior_text(item);
+      row.push_back(told.substr(std::min(told.size(), told.find_first_not_of(": ", row.front().size()))));
+    }
     if (item.contains("doc")) row.push_back(item.at("doc"));
     rows.push_back(std::move(row));
   }

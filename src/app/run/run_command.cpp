@@ -135,6 +135,7 @@ namespace {
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;
+constexpr double state_period_s = 2;  // between saved states of the control engine
 // Limits at the end of a run: for threads that were told to stop or stand still, for each other part, for a server, for
 // a record on a slow disk; and for virtual time that stands still.
 constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, service_ns = 5'000'000'000,
@@ -251,8 +252,8 @@ class WallClockRun {
     assembly_.record_to(&control_side_);
     record_side_.describe_with(robot_texts(assembly_));
     RecordPlan plan = record_plan(assembly_, options_.recording, !options_.virtual_time);
-    if (!options_.record.empty() && assembly_.robot().record.inputs) record_inputs(plan);
     const bool flies = plan.flight.kept_s > 0;
+    if (assembly_.robot().record.inputs && (flies || !options_.record.empty())) record_inputs(plan);
     plan.timing = {{"Control tick: takes", &control_.tick_cost()}};
     plan.fault_state = &assembly_.control().fault_state();
     record_side_.record_as(std::move(plan));
@@ -302,23 +303,44 @@ class WallClockRun {
   }
 
  private:
-  // What a repetition of this run needs.
+  // What a repetition of this run needs: of all of it in a record, of its last seconds in a flight record.
   void record_inputs(RecordPlan& plan) {
+    const bool recorded = !options_.record.empty();
     RunInputs inputs = inputs_of(options_, scenario_, assembly_);
+    if (recorded)
+      take_inputs(inputs);
+    else
+      taken_.emplace(RecordedInputs::FlightAlone());
+    const HandOvers hand_overs = assembly_.sets().hand_overs();
+    const std::vector<const DownStorage*> down(hand_overs.down.begin(), hand_overs.down.end());
+    InputLayout layout = layout_of(assembly_);
+    plan.inputs = {.pieces = std::make_unique<InputPieces>(parts_.control, layout, down),
+                   .behaviors = &*taken_,
+                   .in_files = recorded};
+    parts_.behaviors.take_inputs_by(&*taken_, recorded ? hand_overs.up : std::vector<UpStorage*>{});
+    if (process_ == nullptr && recorded) assembly_.host().take_inputs_by(&*taken_);
+    if (plan.flight.kept_s > 0) {
+      const double period_s = assembly_.robot().engine.control_period_s;
+      states_.emplace(parts_.control, down, static_cast<std::uint64_t>(std::ceil(state_period_s / period_s)));
+      for (std::uint32_t i = 0; i < hand_overs.down.size(); ++i) hand_overs.down[i]->tell(&*taken_, i);
+      layout.state_bytes = static_cast<std::uint32_t>(states_->bytes_max());
+      plan.flight.inputs = layout;
+      plan.inputs.states = &*states_;
+      inputs.pack();
+      std::size_t beside = states_->bytes_max() + (recorded ? 0 : RecordedInputs::flight_bytes);
+      for (const InputFile& file : inputs.files) beside += file.packed.size();
+      plan.flight.bytes -= std::min(beside, plan.flight.bytes / 2);  // all that it keeps is within its memory
+    }
+    record_side_.describe_with(std::move(inputs));
+  }
+
+  void take_inputs(const RunInputs& inputs) {
     std::vector<std::string> private_files;
     for (const PlacedName& pattern : assembly_.robot().record.private_files) private_files.push_back(pattern.name);
     taken_.emplace(project_root(scenario_.file).string(), std::move(private_files));
     for (const InputFile& file : inputs.files) {
       if (file.text) taken_->knows(file.path, *file.text);
     }
-    const HandOvers hand_overs = assembly_.sets().hand_overs();
-    plan.behavior_inputs = &*taken_;
-    plan.inputs =
-        std::make_unique<InputPieces>(parts_.control, layout_of(assembly_),
-                                      std::vector<const DownStorage*>(hand_overs.down.begin(), hand_overs.down.end()));
-    parts_.behaviors.take_inputs_by(&*taken_, hand_overs.up);
-    if (process_ == nullptr) assembly_.host().take_inputs_by(&*taken_);
-    record_side_.describe_with(std::move(inputs));
   }
 
   std::unique_ptr<JoystickTask> make_joystick() {
@@ -479,6 +501,7 @@ class WallClockRun {
     BehaviorEngine& behaviors;
   } parts_;
   std::optional<RecordedInputs> taken_;
+  std::optional<EngineStates> states_;
   std::unique_ptr<TruthTask> truth_;  // of a model, or nullptr
   std::unique_ptr<PlantTask> plant_;  // of a model, or nullptr
   std::unique_ptr<JoystickTask> joystick_;

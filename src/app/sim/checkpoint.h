@@ -7,8 +7,8 @@
 // point one process may split into many (run_branches.h).
 //
 // Of each control object a checkpoint holds the hash of its state (state_bytes.h), so that the object which came out
-// another way is named, also when no signal shows it yet. The state itself is not held: nothing from a file is put into
-// an object.
+// another way is named, also when no signal shows it yet. The state itself is not held: to run there again is as good
+// and needs no bytes from a file.
 //
 // The file is a record without messages: inputs as in run_inputs.h, metadata "checkpoint" and "control_objects".
 #pragma once

@@ -399,8 +399,8 @@ RunInputs read_front(const std::string& record) {
   const auto layout = reader.metadata().find(inputs_metadata);
   if (of_robot && layout == reader.metadata().end())
     refuse(
-        "holds no inputs of its ticks, so what went into the run cannot be had again: it is a flight record, was begun "
-        "while its run went on, or was made with record.inputs false or by an older kadans");
+        "holds no inputs of its ticks, so what went into the run cannot be had again: it was begun while its run went "
+        "on, or was made with record.inputs false or by an older kadans");
   if (of_robot && !InputLayout::of(layout->second))
     refuse("holds inputs that this kadans cannot read: they were recorded by kadans " + inputs.fact("kadans"));
   if (inputs.empty())
@@ -414,6 +414,15 @@ PluginGate plugins_beside(const fs::path& scenario, bool any_plugins) {
   return {.closed = true,
           .let_in = {},
           .remedy = "its project is not the one around the working directory; --allow-plugins loads what lies there"};
+}
+
+bool is_flight_record(const std::string& record) {
+  McapReader reader(record);
+  McapMessage message;
+  (void)reader.next(message);
+  const auto found = reader.metadata().find(inputs_metadata);
+  const auto layout = found == reader.metadata().end() ? std::nullopt : InputLayout::of(found->second);
+  return layout && layout->state_bytes > 0;
 }
 
 UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& record, bool any_plugins,

@@ -48,6 +48,8 @@ PluginGate plugins_beside(const std::filesystem::path& scenario, bool any_plugin
 
 // Reads the inputs at the front of a record. Throws InputError when the record cannot be run again.
 RunInputs read_front(const std::string& record);
+// Whether the record holds a run's last seconds, from saved states of the control engine on.
+bool is_flight_record(const std::string& record);
 
 // Finds the scenario of a record: at its recorded path, in the project around the working directory, or in the project
 // around the record. Throws InputError when it is in none of them.

@@ -16,6 +16,7 @@
 namespace kadans {
 namespace {
 
+constexpr std::int64_t waiting_values_max = 1000;  // of a high level, ahead of its low level
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 bool same_command(const Command& a, const Command& b) noexcept {
@@ -62,13 +63,15 @@ RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenar
       behaviors_(behaviors),
       assembly_(scenario, scenario.seed, log_, &link_),
       engine_(assembly_.sets(), assembly_.control().exchange(),
-              behaviors == Behaviors::none ? nullptr : &assembly_.host()),
+              behaviors <= Behaviors::none ? nullptr : &assembly_.host()),
       hand_overs_(assembly_.sets().hand_overs()),
       foreign_(assembly_.catalog().signals.size(), not_known),
       ticks_read_(record),
       compared_(record),
-      commands_read_(record),
+      commands_read_(record, behaviors == Behaviors::saved),
       behaviors_read_(record),
+      states_read_(record),
+      handed_read_(record, behaviors == Behaviors::saved),
       events_read_(record, {"/transitions", "/active", "/events"}) {
   assembly_.read_foreign_signals_from(foreign_, behaviors != Behaviors::tested);
   hashed_.assign(assembly_.catalog().signals.size(), true);
@@ -81,16 +84,55 @@ RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenar
 }
 
 void RepeatedRun::go(const std::function<bool()>& stop, const std::vector<RunObserver*>& observers) {
-  while (!stop() && ticks_read_.next(taken_)) {
-    if (ticks_ == 0 && taken_.tick != 0)
-      throw InputError({.file = compared_.file(),
-                        .message = "begins in tick " + std::to_string(taken_.tick) +
-                                   " of its run: only a record from the first tick on can be repeated"});
-    repeat_behaviors(taken_.tick);
+  for (bool more = begin(); more && !stop(); more = ticks_read_.next(taken_)) {
+    if (behaviors_ != Behaviors::saved) repeat_behaviors(taken_.tick);
     if (!repeat_tick(taken_)) return;
     show(observers);
+    if (behaviors_ == Behaviors::saved && !parting_.empty()) return;
     if (comparison_->parted() && behaviors_ != Behaviors::tested && observers.empty()) return;
   }
+}
+
+// To the first tick that is repeated. False: there is none.
+bool RepeatedRun::begin() {
+  if (!ticks_read_.next(taken_)) return false;
+  const auto refuse = [&](const std::string& why) { throw InputError({.file = compared_.file(), .message = why}); };
+  const bool flight = ticks_read_.layout().state_bytes > 0;
+  if (flight && behaviors_ != Behaviors::saved)
+    refuse("is a flight record: kadans replay repeats its control engine, and nothing else can be done with it");
+  if (!flight && taken_.tick != 0)
+    refuse("begins in tick " + std::to_string(taken_.tick) +
+           " of its run: only a record from the first tick on can be repeated");
+  if (flight) begin_from_state();
+  return true;
+}
+
+void RepeatedRun::begin_from_state() {
+  const auto refuse = [&](const std::string& why) { throw InputError({.file = compared_.file(), .message = why}); };
+  ControlEngine& control = assembly_.control();
+  StateBytes measuring(StateBytes::Levels::low);
+  control.pass_state(measuring);
+  if (measuring.size() != ticks_read_.layout().state_bytes)
+    refuse("its control engine was another one: it saved " + std::to_string(ticks_read_.layout().state_bytes) +
+           " bytes of state, this one " + std::to_string(measuring.size()) +
+           ". The kadans that recorded it repeats it, on the same architecture");
+  const EngineStates::Saved* saved = states_read_.get();
+  for (; saved != nullptr && saved->tick + 1 < taken_.tick; saved = states_read_.get()) states_read_.drop();
+  if (saved == nullptr) refuse("holds no state of its control engine with the ticks behind it");
+  if (saved->found.size() != hand_overs_.down.size() || !control.restore(saved->tick + 1, saved->bytes))
+    refuse("its state of the control engine after tick " + std::to_string(saved->tick) + " is damaged");
+  for (std::size_t i = 0; i < hand_overs_.down.size(); ++i) hand_overs_.down[i]->resume(saved->found[i]);
+  handed_.assign(saved->found.begin(), saved->found.end());
+  stepped_.assign(assembly_.sets().size(), false);
+  last_transaction_ = control.inbox().last_taken();
+  joystick_ = control.state().joystick;
+  seen_ = control.seen();
+  while (taken_.tick <= saved->tick) {
+    if (!ticks_read_.next(taken_))
+      refuse("ends with its state of the control engine after tick " + std::to_string(saved->tick));
+  }
+  begun_ns_ = taken_.time_ns;
+  states_read_.drop();
 }
 
 void RepeatedRun::show(const std::vector<RunObserver*>& observers) {
@@ -182,18 +224,80 @@ bool RepeatedRun::repeat_tick(const TickTaken& taken) {
     }
   }
   for (const auto& [id, number] : foreign_signals_) foreign_[id] = ticks_read_.row()[number];
+  for (std::size_t i = 0; behaviors_ == Behaviors::saved && i < taken.down.size(); ++i) {
+    if (!hand_down(i, taken.down[i])) return false;
+  }
   feed(taken);
   if (!feed_commands(taken.inputs.commands)) return false;
   ControlEngine& control = assembly_.control();
   control.tick(taken.time_ns, taken.inputs.dt_s, taken.inputs.missed);
   ++ticks_;
+  if (behaviors_ == Behaviors::saved) note_objects();
   compare(taken);
   for (std::size_t i = 0; i < hand_overs_.down.size() && i < taken.down.size(); ++i) {
     if (hand_overs_.down[i]->taken() != taken.down[i])
       part("a control object found value " + std::to_string(hand_overs_.down[i]->taken()) + " of its high level, not " +
            std::to_string(taken.down[i]));
   }
+  if (behaviors_ == Behaviors::saved) compare_state();
   return true;
+}
+
+// Of the values that high levels handed down, all up to this number. False: the record ends before.
+bool RepeatedRun::hand_down(std::size_t storage, std::int64_t number) {
+  if (storage >= handed_.size()) return true;
+  BehaviorInput input;
+  while (handed_[storage] < number) {
+    if (!handed_read_.next(input)) {
+      out_of_commands_ = true;
+      return false;
+    }
+    if (input.kind != BehaviorInput::Kind::handed_down || input.number >= handed_.size()) continue;
+    if (input.handed <= handed_[input.number]) continue;
+    handed_[input.number] = input.handed;
+    DownStorage& down = *hand_overs_.down[input.number];
+    if (input.handed - waiting_values_max > down.taken() || !down.feed(input.handed, input.bytes)) {
+      part("what a high level handed down has another size, or comes too early");
+      return false;
+    }
+  }
+  return true;
+}
+
+// An object that has not stepped since the state was restored shows no signals yet.
+void RepeatedRun::note_objects() {
+  const std::uint64_t tick = assembly_.control().ticks() - 1;
+  const Catalog& catalog = assembly_.catalog();
+  for (std::uint32_t i = 0; i < stepped_.size(); ++i) {
+    const bool steps = assembly_.sets().runs(i) && tick % catalog.objects[i].divisor == 0;
+    if (stepped_[i] || (!steps && ticks_ > 1)) continue;
+    stepped_[i] = steps;
+    const std::string prefix = "control." + catalog.objects[i].name + ".";
+    for (SignalId id = 0; id < catalog.signals.size(); ++id) {
+      if (catalog.signals.info(id).name.starts_with(prefix)) comparison_->leave_out(id, !steps);
+    }
+  }
+}
+
+// With the one that was saved after this tick.
+void RepeatedRun::compare_state() {
+  const EngineStates::Saved* const saved = states_read_.get();
+  if (saved == nullptr || saved->tick != taken_.tick) return;
+  for (std::size_t i = 0; i < hand_overs_.down.size() && i < saved->found.size(); ++i) {
+    if (hand_down(i, saved->found[i])) hand_overs_.down[i]->let_through(saved->found[i]);
+  }
+  ControlEngine& control = assembly_.control();
+  std::vector<std::byte> bytes(ticks_read_.layout().state_bytes);
+  StateBytes saving = StateBytes::saving(bytes, StateBytes::Levels::low);
+  control.pass_state(saving);
+  bytes.resize(std::min(bytes.size(), saving.size()));
+  const auto first = std::ranges::mismatch(bytes, saved->bytes);
+  if (first.in1 == bytes.end() && first.in2 == saved->bytes.end())
+    ++states_;
+  else
+    part("the state of " + control.part_of_state(static_cast<std::size_t>(first.in1 - bytes.begin())) +
+         " is another one than was saved");
+  states_read_.drop();
 }
 
 // With the file in which the tick lies.
@@ -234,12 +338,19 @@ bool RepeatedRun::feed_commands(std::uint32_t waiting) {
   return true;
 }
 
+// Of a flight record: it is in the state already.
+bool RepeatedRun::is_old(const BehaviorInput& input) const noexcept {
+  const std::uint32_t after = input.commands.front().sequence - last_transaction_;
+  return behaviors_ == Behaviors::saved && (after == 0 || after > std::numeric_limits<std::uint32_t>::max() / 2);
+}
+
 // The next batch of the record's commands.
 bool RepeatedRun::feed_next() {
   BehaviorInput input;
   do {
     if (!commands_read_.next(input)) return false;
-  } while (input.kind != BehaviorInput::Kind::sent);
+  } while (input.kind != BehaviorInput::Kind::sent || is_old(input));
+  if (behaviors_ == Behaviors::saved && input.commands.front().sequence != ++last_transaction_) return false;
   ++fed_;
   commands_ += input.commands.size() - 1;
   return assembly_.control().exchange().commands.try_push(input.commands);
@@ -289,14 +400,14 @@ void RepeatedRun::repeat_behavior_tick() {
       part("a value of a control object has another size");
   }
   for (const BehaviorInput& input : inputs) {
-    if (input.kind == BehaviorInput::Kind::asked && behaviors_ != Behaviors::none) ask_again(input);
-    if (input.kind == BehaviorInput::Kind::sent && !input.in_tick && behaviors_ != Behaviors::none) send_again(input);
+    if (input.kind == BehaviorInput::Kind::asked && behaviors_ > Behaviors::none) ask_again(input);
+    if (input.kind == BehaviorInput::Kind::sent && !input.in_tick && behaviors_ > Behaviors::none) send_again(input);
     if (input.kind == BehaviorInput::Kind::tick_begins) engine_.tick(input.time_ns);
   }
   ++behavior_ticks_;
   const auto more = std::find_if(inputs.begin() + static_cast<std::ptrdiff_t>(sent_), inputs.end(),
                                  [](const auto& input) { return input.kind == BehaviorInput::Kind::sent; });
-  if (more != inputs.end() && !behaviors_end_ && behaviors_ != Behaviors::none)
+  if (more != inputs.end() && !behaviors_end_ && behaviors_ > Behaviors::none)
     part("the behaviors do not send " + command_text(more->commands.back(), assembly_.catalog()));
   const std::vector<Command> commanded = take_all();
   (void)queue.try_push(waiting);
@@ -310,7 +421,7 @@ void RepeatedRun::repeat_behavior_tick() {
   sent_before_ += static_cast<std::uint64_t>(
       std::ranges::count(inputs, BehaviorInput::Kind::sent, [](const BehaviorInput& input) { return input.kind; }));
   if (led()) fed_ = sent_before_;
-  if (behaviors_ != Behaviors::none) compare_events();
+  if (behaviors_ > Behaviors::none) compare_events();
 }
 
 void RepeatedRun::write_files() {
@@ -407,12 +518,13 @@ std::string RepeatedRun::shortened() const {
   if (!ticks_read_.problem().empty()) return ticks_read_.problem();
   if (commands_read_.damaged() || behaviors_read_.damaged())
     return "what its behaviors took is damaged or not complete";
+  if (handed_read_.damaged()) return "what came down to its control engine is damaged or not complete";
   if (out_of_commands_) return "its last commands are missing";
   return "";
 }
 
 void RepeatedRun::sent(std::span<const Command> batch, bool) noexcept {
-  if (!next_behaviors_ || behaviors_ == Behaviors::none) return;
+  if (!next_behaviors_ || behaviors_ <= Behaviors::none) return;
   const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
   while (sent_ < inputs.size() && inputs[sent_].kind != BehaviorInput::Kind::sent) ++sent_;
   if (sent_ == inputs.size()) {

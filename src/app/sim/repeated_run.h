@@ -6,6 +6,10 @@
 // took lies in the file before or after the ticks that it saw. A control tick gets the commands that were recorded. The
 // behaviors that are repeated send theirs, which are compared with these.
 //
+// A flight record begins in the middle of its run: the control engine gets the oldest state that was saved. What came
+// down to it is taken from the record; behaviors and high levels are not repeated. Its signals are in single precision,
+// but each later state that was saved is compared byte by byte.
+//
 // A test of a record (a scenario that names one) is the same run to its end, whatever differs from the record: its
 // checks judge what this program does with what the robot saw then.
 #pragma once
@@ -56,6 +60,7 @@ class RepeatedRun final : private BehaviorInputs {
  public:
   // What is repeated beside the control engine.
   enum class Behaviors : std::uint8_t {
+    saved,     // nothing: of a flight record
     none,      // the high levels of control objects; commands are taken from the record
     compared,  // the behaviors, whose commands are compared with those of the record
     leading,   // the behaviors, and from where they first command otherwise that counts: a run with other files
@@ -84,6 +89,9 @@ class RepeatedRun final : private BehaviorInputs {
   std::uint64_t behavior_ticks() const noexcept { return behavior_ticks_; }
   std::uint64_t commands() const noexcept { return commands_; }
   std::uint64_t events() const noexcept { return events_; }
+  bool repeats_flight() const noexcept { return behaviors_ == Behaviors::saved; }
+  std::uint64_t states() const noexcept { return states_; }  // that were saved, and are the same
+  std::int64_t begun_ns() const noexcept { return begun_ns_; }
   // Over all computed signals of all ticks.
   std::uint64_t state_hash() const noexcept { return hash_.value(); }
   const std::vector<RunFault>& faults() const noexcept { return faults_; }
@@ -93,11 +101,17 @@ class RepeatedRun final : private BehaviorInputs {
   std::int64_t time_ns() const noexcept { return taken_.time_ns; }  // of the last tick
 
  private:
+  bool begin();
+  void begin_from_state();
   bool repeat_tick(const TickTaken& taken);
+  bool hand_down(std::size_t storage, std::int64_t number);
+  void compare_state();
+  void note_objects();
   void compare(const TickTaken& taken);
   void feed(const TickTaken& taken);
   bool feed_commands(std::uint32_t waiting);
   bool feed_next();
+  bool is_old(const BehaviorInput& input) const noexcept;
   void show(const std::vector<RunObserver*>& observers);
   void add_hash(std::span<const double> row) noexcept;
   void take_faults(const std::vector<RunObserver*>& observers, std::int64_t time_ns);
@@ -136,6 +150,14 @@ class RepeatedRun final : private BehaviorInputs {
   std::uint64_t compared_before_ = 0;  // ticks, in earlier files
   std::unique_ptr<RecordComparison> comparison_;
   BehaviorInputReader commands_read_, behaviors_read_;
+  // Of a flight record:
+  StateReader states_read_;
+  BehaviorInputReader handed_read_;
+  std::vector<std::int64_t> handed_;    // by storage: the last value that was read
+  std::vector<bool> stepped_;           // by object, since the state
+  std::uint32_t last_transaction_ = 0;  // that is in the state or was given to the engine
+  std::uint64_t states_ = 0;
+  std::int64_t begun_ns_ = 0;
   TopicReader events_read_;
   TickTaken taken_;
   std::optional<TakenByBehaviors> next_behaviors_;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -240,6 +241,14 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
                     run.comparison().gone().front());
   if (!run.shortened().empty()) notes.push_back("the record is not whole: " + run.shortened());
   if (run.ticks() == 0) notes.emplace_back("it holds no tick to compare");
+  if (run.repeats_flight()) {
+    notes.push_back(printed("repeated from the state of its control engine at %.3f s: ",
+                            1e-9 * static_cast<double>(run.begun_ns())) +
+                    plural(run.commands(), "command") + "; " + plural(run.states(), "later state") +
+                    " the same, bit for bit");
+    notes.emplace_back("a flight record: behaviors and the high levels of control objects are not repeated");
+    return notes;
+  }
   notes.push_back("repeated from its inputs: " + plural(run.behavior_ticks(), "tick") + " of the behaviors, " +
                   plural(run.commands(), "command") + ", " + plural(run.events(), "event"));
   if (with)
@@ -251,23 +260,80 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
   return notes;
 }
 
+// A stage of the tick, in the order of the stages, and what it is made of.
+struct Stage {
+  const char* signals;  // how their names begin
+  const char* fed;
+};
+constexpr Stage stages[] = {
+    {"imu.", "the samples of the tick"},
+    {"sensor.", "the samples of the tick"},
+    {"joint.", "the estimate, of the samples of its sensors"},
+    {"base.", "the estimate, of the IMU's samples"},
+    {"foot.", "the estimate, of the samples of its sole"},
+    {"support.", "the estimate, of feet and joints"},
+    {"odometry.", "the estimate, of feet, joints and IMU"},
+    {"safety.", "safety, of samples, estimate and what the control objects asked for in the tick before"},
+    {"actuation.", "what the control objects asked for in the tick before, within safety's limits"},
+    {"engine.", "the commands that came down"},
+    {"control.", ""},
+    {"composition.", "the control sets and their objects"},
+};
+
+// The control objects that have a share in the joint of an actuation's signal: "walk, posture".
+std::string writers_of(const std::string& signal, const Catalog& catalog, std::span<const double> row) {
+  const std::size_t first = signal.find('.') + 1;
+  const std::string joint = signal.substr(first, signal.rfind('.') - first);
+  const std::optional<SignalId> writers = catalog.signals.find("composition." + joint + ".writers");
+  std::string names;
+  for (std::size_t i = 0; writers && i < catalog.objects.size(); ++i) {
+    if ((static_cast<std::uint32_t>(row[*writers]) >> i & 1U) != 0)
+      names += (names.empty() ? "" : ", ") + catalog.objects[i].name;
+  }
+  return names.empty() ? "none" : names;
+}
+
+// The first one in the order of the tick, and what feeds it.
+std::string first_of(const std::vector<SignalDifference>& differences, Assembly& assembly) {
+  const Catalog& catalog = assembly.catalog();
+  for (const Stage& stage : stages) {
+    const auto found = std::ranges::find_if(
+        differences, [&](const SignalDifference& difference) { return difference.name.starts_with(stage.signals); });
+    if (found == differences.end()) continue;
+    const auto object = std::ranges::find_if(
+        catalog.objects, [&](const ObjectInfo& info) { return found->name.starts_with("control." + info.name + "."); });
+    std::string fed = stage.fed;
+    if (object != catalog.objects.end())
+      fed = "control object " + object->name + " (" + object->type + "), of the estimate";
+    if (found->name.starts_with("actuation."))
+      fed += "; its control objects are " + writers_of(found->name, catalog, assembly.control().row());
+    if (!fed.empty()) return "the first of them in the tick is " + found->name + ": from " + fed;
+  }
+  return "";
+}
+
 // A run on threads: its files come out of the record.
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
+  const bool flight = is_flight_record(options.record);
+  if (flight && !options.with.empty())
+    throw InputError(
+        {.file = "--with",
+         .message = "is for complete records; " + options.record +
+                    " is a flight record: behaviors are not repeated, and its state is that of its files"});
   const UnpackedRun run(inputs, options.record, options.allow_plugins, options.with);
   RepeatedRun repeated(options.record, run.scenario, run.files, inputs.fact("root"),
-                       !options.with.empty()                ? RepeatedRun::Behaviors::leading
+                       flight                               ? RepeatedRun::Behaviors::saved
+                       : !options.with.empty()              ? RepeatedRun::Behaviors::leading
                        : run.options.behaviors == "process" ? RepeatedRun::Behaviors::none
                                                             : RepeatedRun::Behaviors::compared);
   catch_interrupts();
   repeated.go(interrupted);
   if (interrupted()) return exit_interrupted;
-  const Findings findings{options,
-                          repeated.comparison(),
-                          repeated.compared_ticks(),
-                          repeated.same(),
-                          {},
-                          changed_program(inputs),
-                          notes_of(repeated, inputs, !options.with.empty())};
+  std::vector<std::string> notes = notes_of(repeated, inputs, !options.with.empty());
+  const std::string first = first_of(repeated.comparison().differences(), repeated.assembly());
+  if (!first.empty()) notes.insert(notes.begin(), first);
+  const Findings findings{options, repeated.comparison(),   repeated.compared_ticks(), repeated.same(),
+                          {},      changed_program(inputs), std::move(notes)};
   options.json ? print_json(findings) : print_comparison(findings);
   return findings.same ? exit_passed : exit_failed;
 }

@@ -104,7 +104,10 @@ class StepPlan {
   const State& state() const noexcept { return state_; }
   // Where the other foot's frame shall be, relative to the stance foot's frame.
   Vec3 other_foot(const Config& config) const noexcept;
-  void pass_state(auto& bytes) noexcept { bytes(state_, looked_); }
+  void pass_state(auto& bytes) noexcept {
+    bytes(state_, looked_);
+    bytes.must(state_.stance < 2);
+  }
 
  private:
   GroundPoint foot(std::size_t foot) const noexcept;

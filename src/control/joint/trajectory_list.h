@@ -56,6 +56,7 @@ class TrajectoryLaw {
   double remaining_s() const noexcept;
   void pass_state(StateBytes& bytes) noexcept {
     bytes(pid_, state_, segment_, reference_rad_, reference_rad_s_, commanded_);
+    bytes.must(commanded_.size() <= capacity);
     bytes.high_level(handed_);
   }
 

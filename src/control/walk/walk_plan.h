@@ -114,7 +114,10 @@ class WalkPlan {
   double other_yaw_rad(const Config& config) const noexcept;
 
   const State& state() const noexcept { return state_; }
-  void pass_state(auto& bytes) noexcept { bytes(state_, from_com_m_, step_time_s_); }
+  void pass_state(auto& bytes) noexcept {
+    bytes(state_, from_com_m_, step_time_s_);
+    bytes.must(state_.stance < 2);
+  }
 
  private:
   void follow_wanted(const Config& config, const Wanted& wanted, double dt_s) noexcept;

@@ -217,6 +217,29 @@ double SetpointMotions::remaining_s(std::uint32_t owner) const noexcept {
   return left_s;
 }
 
+// In the order in which they began.
+void SetpointMotions::pass_state(StateBytes& bytes) noexcept {
+  auto count = static_cast<std::uint32_t>(bytes.measures() ? motions_.size() : active_.size());
+  bytes(count);
+  bytes.must(count <= motions_.size());
+  if (!bytes.ok()) return;
+  if (bytes.restores()) {
+    for (Motion& motion : motions_) motion.kind = Motion::Kind::none;
+    active_.clear();
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    SetpointId id = bytes.restores() ? 0 : bytes.measures() ? i : active_[i];
+    bytes(id);
+    bytes.must(id < motions_.size() && motions_[id].kind == Motion::Kind::none && setpoints_[id].follows);
+    if (!bytes.ok()) return;
+    Motion& motion = motions_[id];
+    bytes(motion.kind, motion.led, motion.told, motion.planned, motion.time_s);
+    bytes(motion.minimum_jerk, motion.trapezoid, motion.spline);
+    bytes.must(motion.kind != Motion::Kind::none && motion.kind <= Motion::Kind::spline);
+    if (bytes.restores()) active_.push_back(id);
+  }
+}
+
 void SetpointMotions::fill(Snapshot& snapshot) const noexcept {
   snapshot.setpoint_count = static_cast<std::uint32_t>(shown_.size());
   SetpointStatus* status = snapshot.setpoints.data();

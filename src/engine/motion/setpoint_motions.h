@@ -56,6 +56,10 @@ class CubicSpline {
     double lowest = 0, highest = 0;
   };
   Range range() const noexcept;
+  void pass_state(auto& bytes) noexcept {
+    bytes(knots_, count_, duration_s_);
+    bytes.must(count_ <= points_max);
+  }
 
  private:
   struct Knot {
@@ -82,6 +86,8 @@ class SetpointMotions {
   void cancel(SetpointId id) noexcept;
   // Each tick, after the commands and before the objects.
   void step(double dt_s) noexcept;
+  // Between ticks: all that changes from tick to tick (kadans/control/state_bytes.h), of the motions under way.
+  void pass_state(StateBytes& bytes) noexcept;
   // Writes into the snapshot where all set-points are, and how long their objects still move.
   void fill(Snapshot& snapshot) const noexcept;
   // Until the last set-point of the object is reached, motions of its own among them.

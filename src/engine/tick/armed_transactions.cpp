@@ -127,6 +127,30 @@ bool ArmedTransactions::due(std::size_t index, std::int64_t time_ns) noexcept {
   return !std::exchange(slot.was_true, now) && now;
 }
 
+void ArmedTransactions::pass_state(StateBytes& bytes) noexcept {
+  bytes(ended_, status_);
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    bytes(slot.ended);
+    bytes.must(status_[i].state <= ArmedState::taken_back);
+    if (status_[i].state != ArmedState::waits && !bytes.measures()) continue;
+    bytes(slot.condition_count, slot.command_count, slot.expected_conditions, slot.options, slot.armed_ns,
+          slot.expires_ns, slot.was_true);
+    bytes.must(slot.condition_count <= max_armed_conditions && slot.command_count <= max_armed_commands);
+    if (!bytes.ok()) return;
+    for (std::size_t k = 0; k < (bytes.measures() ? max_armed_conditions : slot.condition_count); ++k) {
+      Command& condition = slot.conditions[k];
+      bytes(condition);
+      bytes.must(judge(condition) == RefusalReason::none);
+      const auto kind = static_cast<ConditionKind>(condition.count);
+      if (bytes.restores() && (kind == ConditionKind::above || kind == ConditionKind::below))
+        condition.index = catalog_.signals.find_key(condition.time_ns).value_or(0);
+    }
+    for (std::size_t k = 0; k < (bytes.measures() ? max_armed_commands : slot.command_count); ++k)
+      bytes(slot.commands[k]);  // judged when they are carried out
+  }
+}
+
 void ArmedTransactions::note(std::size_t index, std::uint64_t tick, RefusalReason refused) noexcept {
   ArmedStatus& status = status_[index];
   if (refused != RefusalReason::none) {

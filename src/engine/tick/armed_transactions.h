@@ -54,6 +54,8 @@ class ArmedTransactions {
     }
   }
   std::uint32_t waiting() const noexcept;
+  // Between ticks: all that changes from tick to tick (kadans/control/state_bytes.h), of those that wait.
+  void pass_state(StateBytes& bytes) noexcept;
   void fill(Snapshot& snapshot) const noexcept { snapshot.armed = status_; }
 
  private:

@@ -277,6 +277,22 @@ void CommandInbox::execute_all(const Command& header, const ControlInput& input,
   notify_owners();
 }
 
+void CommandInbox::pass_state(StateBytes& bytes) noexcept {
+  for (ParameterId id = 0; id < catalog_.parameters.size(); ++id) {
+    double value = catalog_.parameters.get(id);
+    bytes(value);
+    if (bytes.restores() && bytes.ok()) bytes.must(catalog_.parameters.set(id, value));
+  }
+  for (std::uint32_t i = 0; bytes.restores() && i < sets_.size(); ++i) sets_.object(i).parameters_changed();
+  for (std::size_t joint = 0; joint < catalog_.model->joints.size(); ++joint) {
+    bytes(drive_requests_[joint]);
+    bytes.must(drive_requests_[joint].order <= last_drive_order);
+  }
+  bytes(odometry_resets_, state_, last_taken_, transactions_refused_, refusals_);
+  motions_.pass_state(bytes);
+  armed_.pass_state(bytes);
+}
+
 void CommandInbox::carry_out_armed(std::uint64_t tick, const ControlInput& input, Safety& safety) noexcept {
   armed_.step(tick, input.time_ns, [&](std::uint32_t sequence, std::span<const Command> commands) {
     const auto count = static_cast<std::uint32_t>(commands.size());
@@ -321,6 +337,7 @@ void CommandInbox::apply(std::uint64_t tick, const ControlInput& input, Safety& 
       refuse(header, refusal, tick, safety);
     }
     share -= header.count;
+    last_taken_ = header.sequence;
     queue_.drop(header.count + 1);
     waiting -= header.count + 1;
   }

@@ -49,6 +49,11 @@ class CommandInbox {
   };
   const State& state() const noexcept { return state_; }
   std::uint32_t arrived() const noexcept { return arrived_; }  // that waited at the last apply(), headers included
+  // The number of the last transaction that arrived and waits no more, whether it was applied or refused.
+  std::uint32_t last_taken() const noexcept { return last_taken_; }
+  // Between ticks: all that changes from tick to tick (kadans/control/state_bytes.h), the parameters' values among it,
+  // but not what waits in the queue. Restoring tells the objects of their parameters.
+  void pass_state(StateBytes& bytes) noexcept;
   // Writes into the snapshot which transactions were applied and which refused.
   void fill(Snapshot& snapshot) const noexcept;
   SetpointMotions& motions() noexcept { return motions_; }
@@ -88,7 +93,7 @@ class CommandInbox {
   bool odometry_resets_ = false;
   JointMask ordered_ = 0;  // joints whose drives were ordered in this tick
   State state_;
-  std::uint32_t arrived_ = 0;
+  std::uint32_t arrived_ = 0, last_taken_ = 0;
   std::uint32_t transactions_refused_ = 0;
   std::array<Refusal, refusals_shown> refusals_{};
   std::array<bool, max_objects + 1> retuned_{};  // by owner; the last one: parameters of control sets

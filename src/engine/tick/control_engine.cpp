@@ -18,6 +18,7 @@ ControlEngine::ControlEngine(const EngineSettings& settings, Plant& plant, Estim
       exchange_(exchange),
       inbox_(exchange.commands, catalog, sets, settings.commands_per_tick_max, settings.command_age_max_ns()),
       fault_state_(sets, catalog),
+      catalog_(catalog),
       signals_(catalog.signals),
       rehearsal_(settings.control_period_s, estimator, safety, *catalog.model) {
   actuation_.joint_count = static_cast<std::uint32_t>(catalog.model->joints.size());
@@ -142,6 +143,60 @@ void ControlEngine::publish(std::int64_t time_ns) noexcept {
   inputs_.commands = inbox_.arrived();
   inputs_.stop = safety_.heard();
   if (sink_ != nullptr) sink_->record(tick_, time_ns, row_);
+}
+
+void ControlEngine::pass_own_state(StateBytes& bytes) noexcept {
+  bytes(stopped_, snapshot_.control_sets, snapshot_.status.safety, snapshot_.joystick, snapshot_.ball, seen_,
+        snapshot_.seen, snapshot_.power, sensors_.imu);
+  bytes.must(seen_.count <= max_seen && snapshot_.seen.count <= max_seen);
+  for (ActuationFrame* frame : {&actuation_, &written_}) {
+    for (std::size_t joint = 0; joint < frame->joint_count; ++joint) {
+      bytes(frame->joints[joint], frame->drives[joint]);
+      bytes.must(frame->joints[joint].mode <= last_actuation_mode);
+    }
+  }
+  fault_state_.pass_state(bytes);
+}
+
+void ControlEngine::pass_state(StateBytes& bytes) noexcept {
+  pass_own_state(bytes);
+  inbox_.pass_state(bytes);
+  estimator_.pass_state(bytes);
+  safety_.pass_state(bytes);
+  sets_.pass_state(bytes);
+}
+
+bool ControlEngine::restore(std::uint64_t ticks, std::span<const std::byte> state) noexcept {
+  StateBytes restoring = StateBytes::restoring(state, StateBytes::Levels::low);
+  pass_state(restoring);
+  tick_ = ticks;
+  return restoring.ok() && restoring.size() == state.size();
+}
+
+// By the sizes of the parts in front: where a part begins, what is in front of it has been passed.
+std::string ControlEngine::part_of_state(std::size_t offset) {
+  std::vector<std::byte> bytes(offset);
+  StateBytes saving = StateBytes::saving(bytes, StateBytes::Levels::low);
+  pass_own_state(saving);
+  if (saving.size() > offset) return "the control engine itself";
+  inbox_.pass_state(saving);
+  if (saving.size() > offset) return "commands, parameters and motions of set-points";
+  estimator_.pass_state(saving);
+  if (saving.size() > offset) return "the estimate";
+  safety_.pass_state(saving);
+  if (saving.size() > offset) return "safety";
+  StateBytes all = StateBytes::saving(bytes, StateBytes::Levels::low), objects = all;
+  sets_.pass_state(all);
+  for (std::uint32_t i = 0; i < sets_.size(); ++i) sets_.object(i).pass_state(objects);
+  std::size_t end = saving.size() + all.size() - objects.size();  // the objects' states are the last
+  if (end > offset) return "the control sets";
+  for (std::uint32_t i = 0; i < sets_.size(); ++i) {
+    StateBytes object = StateBytes::saving(bytes, StateBytes::Levels::low);
+    sets_.object(i).pass_state(object);
+    end += object.size();
+    if (end > offset) return "control object " + catalog_.objects[i].name;
+  }
+  return "its end";
 }
 
 void ControlEngine::declare_signals(Catalog& catalog) {

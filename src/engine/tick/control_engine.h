@@ -5,7 +5,10 @@
 // Lua, and makes no system call but the plant's.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "command_inbox.h"
@@ -84,6 +87,15 @@ class ControlEngine {
   // Control thread, in the wait before a tick: goes through it on copies (Rehearsal). Changes nothing that counts.
   void rehearse() noexcept;
 
+  // Between ticks, or in the sink of the tick: all by which the next ticks depend on those before and that is not their
+  // input, without what waits in the storages and in the queue. Another engine of the same files that gets it goes on
+  // bit for bit (kadans/control/state_bytes.h); there `ticks` are over. False: it is damaged or of another robot; then
+  // the engine must not be used.
+  void pass_state(StateBytes& bytes) noexcept;
+  [[nodiscard]] bool restore(std::uint64_t ticks, std::span<const std::byte> state) noexcept;
+  // What the byte at `offset` of the state belongs to: "safety", "control object posture".
+  std::string part_of_state(std::size_t offset);
+
   std::uint64_t ticks() const noexcept { return tick_; }
   std::span<const double> row() const noexcept { return row_; }  // signals of the last tick
   const Snapshot& state() const noexcept { return snapshot_; }
@@ -104,6 +116,7 @@ class ControlEngine {
   void heed_stop() noexcept;
   void tell_drives() noexcept;
   void publish(std::int64_t time_ns) noexcept;
+  void pass_own_state(StateBytes& bytes) noexcept;
   void declare_signals(Catalog& catalog);
 
   Plant& plant_;
@@ -113,6 +126,7 @@ class ControlEngine {
   EngineExchange& exchange_;
   CommandInbox inbox_;
   FaultState fault_state_;
+  const Catalog& catalog_;
   const SignalTable& signals_;
   RecordSink* sink_ = nullptr;
 

@@ -28,6 +28,7 @@ class FaultState {
     level_ = level;
     if (rises) keep(tick);
   }
+  void pass_state(auto& bytes) noexcept { bytes(level_); }  // what was kept is none
   // "tick", and "object NAME" for each object: its bytes as hexadecimal digits. Empty: there was no fault yet. A fault
   // that comes during this call is not kept.
   TextMap facts() const;

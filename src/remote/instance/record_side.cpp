@@ -26,7 +26,8 @@ void RecordSide::record_as(RecordPlan plan) {
 void RecordSide::make_recorder() {
   if (recorder_) return;
   recorder_ = std::make_unique<Recorder>(instance_.catalog().signals, plan_.settings, plan_.flight);
-  if (plan_.inputs) recorder_->record_inputs(std::move(plan_.inputs), *plan_.behavior_inputs);
+  inputs_in_files_ = plan_.inputs.pieces != nullptr && plan_.inputs.in_files;
+  if (plan_.inputs.pieces) recorder_->record_inputs(std::move(plan_.inputs));
   told_.store(recorder_.get(), std::memory_order_release);
 }
 
@@ -39,7 +40,8 @@ void RecordSide::begin() {
 
 // A record, or what the flight recorder writes.
 void RecordSide::describe(RecordWriter& record, std::int64_t time_ns) const {
-  const bool repeats = !inputs_.empty() && &record == &recorder_->file();  // the other holds no inputs of ticks
+  const bool holds_inputs = &record == &recorder_->file() ? inputs_in_files_ : recorder_->flight()->takes_inputs();
+  const bool repeats = !inputs_.empty() && holds_inputs;
   if (!repeats)
     (void)record.describe("run", inputs_.run);
   else

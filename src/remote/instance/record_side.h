@@ -28,12 +28,11 @@ namespace kadans {
 struct RecordPlan {
   RecorderSettings settings = {};
   FlightSettings flight = {};
-  std::vector<TimingSource> timing = {};      // must outlive the record
-  const FaultState* fault_state = nullptr;    // for the dumps of the flight recorder; must outlive them
-  std::uint64_t file_bytes = 0;               // at which a record that nobody named goes on in a new file; 0: never
-  std::uint64_t folder_bytes = 0;             // of all records of this robot that nobody named; 0: no bound
-  std::unique_ptr<InputPieces> inputs = {};   // with which the run can be repeated; nullptr: they are not recorded
-  RecordedInputs* behavior_inputs = nullptr;  // the same of the behavior thread; must outlive the record
+  std::vector<TimingSource> timing = {};    // must outlive the record
+  const FaultState* fault_state = nullptr;  // for the dumps of the flight recorder; must outlive them
+  std::uint64_t file_bytes = 0;             // at which a record that nobody named goes on in a new file; 0: never
+  std::uint64_t folder_bytes = 0;           // of all records of this robot that nobody named; 0: no bound
+  Recorder::Inputs inputs = {};             // with which the run can be repeated; what it names must outlive it
 };
 
 class RecordSide final : public Task, public LineSink {
@@ -114,8 +113,9 @@ class RecordSide final : public Task, public LineSink {
   std::atomic<LineSink*> events_{nullptr};  // its events, for the behavior thread; nullptr: nothing is recorded
   std::string file_;                        // "": none is open
   std::string lost_;                        // why an earlier file of this record is not complete
-  bool unnamed_ = false;                    // nobody named the open file
-  bool others_ = false;                     // the open file is that of leave_to()
+  bool inputs_in_files_ = false;
+  bool unnamed_ = false;  // nobody named the open file
+  bool others_ = false;   // the open file is that of leave_to()
   Latest<RecordStatus, 2> status_;
 };
 

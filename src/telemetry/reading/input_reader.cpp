@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "kadans/signal/input_error.h"
 #include "signal/number_text.h"
@@ -161,6 +162,11 @@ std::optional<std::uint64_t> TickReader::bits(std::uint64_t tick, std::uint32_t 
   return std::bit_cast<std::uint64_t>(rows_[tick - first_][signal]);
 }
 
+const EngineStates::Saved* StateReader::get() {
+  if (!std::exchange(read_, true)) there_ = reader_.next(message_) && take_state(message_.payload, found_, saved_);
+  return there_ ? &saved_ : nullptr;
+}
+
 bool BehaviorInputReader::next(BehaviorInput& input) {
   while (at_ == message_.size()) {
     McapMessage message;
@@ -171,6 +177,7 @@ bool BehaviorInputReader::next(BehaviorInput& input) {
   began_ = at_;
   const std::span<const std::byte> all = message_;
   ByteReader bytes(all.subspan(at_));
+  if (std::exchange(any_first_, false)) expected_ = number_of_behavior_input(bytes);
   damaged_ = !take_behavior_input(bytes, expected_, input);
   at_ = damaged_ ? message_.size() : message_.size() - bytes.left();
   return !damaged_;

@@ -14,6 +14,7 @@
 
 #include "telemetry/mcap/mcap_reader.h"
 #include "telemetry/record/input_stream.h"
+#include "telemetry/record/recorded_inputs.h"
 
 namespace kadans {
 
@@ -83,10 +84,28 @@ class TickReader final : private SignalBits {
   std::string problem_;
 };
 
+// The saved states of the control engine in a flight record, in their order.
+class StateReader {
+ public:
+  explicit StateReader(const std::string& record) : reader_(record, {states_topic}) {}
+  // The state that waits; nullptr: there is none, or it is damaged.
+  const EngineStates::Saved* get();
+  void drop() noexcept { read_ = false; }
+
+ private:
+  TopicReader reader_;
+  McapMessage message_;
+  std::vector<std::int64_t> found_;
+  EngineStates::Saved saved_;
+  bool read_ = false, there_ = false;
+};
+
 // What the behavior thread took, event by event.
 class BehaviorInputReader {
  public:
-  explicit BehaviorInputReader(const std::string& record) : reader_(record, {behavior_inputs_topic}) {}
+  // `any_first`: of a flight record, whose events begin with any number.
+  explicit BehaviorInputReader(const std::string& record, bool any_first = false)
+      : reader_(record, {behavior_inputs_topic}), any_first_(any_first) {}
   [[nodiscard]] bool next(BehaviorInput& input);
   std::span<const std::byte> bytes() const noexcept;  // of the event that next() gave, as it is stored
   bool damaged() const noexcept { return damaged_; }
@@ -96,7 +115,7 @@ class BehaviorInputReader {
   std::vector<std::byte> message_;
   std::size_t began_ = 0, at_ = 0;
   std::uint32_t expected_ = 0;
-  bool damaged_ = false;
+  bool any_first_, damaged_ = false;
 };
 
 }  // namespace kadans

@@ -254,6 +254,8 @@ class CutInputs {
       throw InputError({.file = record.file,
                         .message = "begins in tick " + std::to_string(tick_.tick) +
                                    " of its run: only inputs from the first tick on can be repeated"});
+    if (ticks_.layout().state_bytes > 0)
+      throw InputError({.file = record.file, .message = "is a flight record: its inputs are not cut"});
     std::vector<bool> known;
     TextMap facts = ticks_.layout().facts();
     for (const std::string& name : ticks_.signals()) {
@@ -315,7 +317,9 @@ class CutInputs {
   bool more_ = false, waits_ = false, written_ = true;
 };
 
-bool is_input(const RecordTopic& topic) { return topic.name == inputs_topic || topic.name == behavior_inputs_topic; }
+bool is_input(const RecordTopic& topic) {
+  return topic.name == inputs_topic || topic.name == behavior_inputs_topic || topic.name == states_topic;
+}
 
 class Cutting {
  public:

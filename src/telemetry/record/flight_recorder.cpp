@@ -44,6 +44,13 @@ const std::byte* take_column(const std::byte* from, std::size_t rows, Take take)
   return from + rows * sizeof(T);
 }
 
+// What inputs need beside the packed blocks: the encoder's, and a block before it is packed, and packed.
+std::size_t input_bytes(const FlightSettings& settings) {
+  if (!settings.inputs) return 0;
+  const std::size_t needed = 2 * (InputEncoder::bytes_max(*settings.inputs) + settings.inputs->state_bytes);
+  return std::min(needed, settings.bytes / 2);
+}
+
 }  // namespace
 
 void FlightMemory::ZstdDelete::operator()(ZSTD_CCtx_s* context) const noexcept { ZSTD_freeCCtx(context); }
@@ -52,10 +59,11 @@ FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
     : signals_(signals),
       kept_ns_(std::llround(settings.kept_s * 1e9)),
       zstd_(ZSTD_createCCtx()),
-      store_(settings.bytes),
+      store_(settings.bytes - input_bytes(settings)),
       planes_(block_rows * (signals * sizeof(float) + 2 * sizeof(std::uint64_t))),
       packed_(ZSTD_compressBound(planes_.size())) {
   if (zstd_ == nullptr) throw std::bad_alloc();
+  if (settings.inputs) encoder_ = std::make_unique<InputEncoder>(*settings.inputs, std::vector<bool>{});
   ticks_.reserve(block_rows);
   times_.reserve(block_rows);
   values_.reserve(block_rows * signals);
@@ -63,39 +71,66 @@ FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
 
 FlightMemory::~FlightMemory() = default;
 
-void FlightMemory::add(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
+void FlightMemory::add(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row,
+                       std::span<const std::uint64_t> inputs) {
+  if (encoder_ != nullptr && !encoder_->add(tick, time_ns, inputs, {})) {
+    seal();
+    (void)encoder_->add(tick, time_ns, inputs, {});
+  }
   ticks_.push_back(tick);
   times_.push_back(static_cast<std::uint64_t>(time_ns));
   for (const double value : row.first(signals_)) values_.push_back(static_cast<float>(value));
   if (ticks_.size() == block_rows) seal();
 }
 
+void FlightMemory::add_state(const EngineStates::Saved& state) {
+  state_.clear();
+  put_state(state, state_);
+  states_.put(static_cast<std::uint32_t>(state_.size()));
+  states_.put(state_.bytes());
+}
+
 void FlightMemory::seal() {
   const std::size_t rows = ticks_.size();
-  if (rows == 0) return;
+  if (rows == 0 && behaviors_.size() + states_.size() == 0) return;
+  if (encoder_ != nullptr && rows > 0) encoder_->encode(inputs_);
+  if (rows > 0) last_ns_ = static_cast<std::int64_t>(times_.back());
+  const std::size_t rows_bytes = rows * (signals_ * sizeof(float) + 2 * sizeof(std::uint64_t));
+  planes_.resize(std::max(planes_.size(), rows_bytes + inputs_.size() + behaviors_.size() + states_.size()));
   std::byte* to = put_column<std::uint64_t>(planes_.data(), rows, [&](std::size_t row) { return ticks_[row]; });
   to = put_column<std::uint64_t>(to, rows, [&](std::size_t row) { return times_[row]; });
   for (std::size_t i = 0; i < signals_; ++i) {
     to = put_column<std::uint32_t>(
         to, rows, [&](std::size_t row) { return std::bit_cast<std::uint32_t>(values_[row * signals_ + i]); });
   }
+  Block block{.offset = head_,
+              .size = 0,
+              .rows = rows,
+              .last_ns = last_ns_,
+              .inputs = static_cast<std::uint32_t>(inputs_.size()),
+              .behaviors = static_cast<std::uint32_t>(behaviors_.size()),
+              .states = static_cast<std::uint32_t>(states_.size())};
+  for (ByteWriter* part : {&inputs_, &behaviors_, &states_}) {
+    to = std::ranges::copy(part->bytes(), to).out;
+    part->clear();
+  }
   const auto size = static_cast<std::size_t>(to - planes_.data());
+  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(size)));
   const std::size_t packed =
       ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), planes_.data(), size, compression_level);
-  const auto last_ns = static_cast<std::int64_t>(times_.back());
   ticks_.clear();
   times_.clear();
   values_.clear();
-  while (!blocks_.empty() && blocks_.front().last_ns < last_ns - kept_ns_) blocks_.pop_front();
+  while (!blocks_.empty() && blocks_.front().last_ns < block.last_ns - kept_ns_) blocks_.pop_front();
   ++end_;
-  if (ZSTD_isError(packed) != 0 || packed > store_.size()) {  // out of memory
-    blocks_.push_back({head_, 0, rows, last_ns});
-    return;
+  if (ZSTD_isError(packed) == 0 && packed <= store_.size()) {  // else it is out of memory, or too large
+    make_room(packed);
+    std::copy_n(packed_.begin(), packed, store_.begin() + static_cast<std::ptrdiff_t>(head_));
+    block.offset = head_;
+    block.size = packed;
+    head_ += packed;
   }
-  make_room(packed);
-  std::copy_n(packed_.begin(), packed, store_.begin() + static_cast<std::ptrdiff_t>(head_));
-  blocks_.push_back({head_, packed, rows, last_ns});
-  head_ += packed;
+  blocks_.push_back(block);
 }
 
 // The oldest stand behind the head, in their order, then those at the front of the store. Lost blocks are in nobody's
@@ -119,9 +154,10 @@ bool FlightMemory::read(std::uint64_t block, Rows& rows) const {
   if (block < first() || block >= end_) return false;
   const Block& found = blocks_[static_cast<std::size_t>(block - first())];
   if (found.size == 0) return false;
-  std::vector<std::byte> planes(planes_.size());
+  const std::size_t behind = std::size_t{found.inputs} + found.behaviors + found.states;
+  std::vector<std::byte> planes(found.rows * (signals_ * sizeof(float) + 2 * sizeof(std::uint64_t)) + behind);
   const std::size_t size = ZSTD_decompress(planes.data(), planes.size(), store_.data() + found.offset, found.size);
-  if (ZSTD_isError(size) != 0) return false;
+  if (size != planes.size()) return false;
   rows.ticks.resize(found.rows);
   rows.times_ns.resize(found.rows);
   rows.values.resize(found.rows * signals_);
@@ -134,6 +170,15 @@ bool FlightMemory::read(std::uint64_t block, Rows& rows) const {
     from = take_column<std::uint32_t>(from, found.rows, [&](std::size_t row, std::uint32_t bits) {
       rows.values[row * signals_ + i] = static_cast<double>(std::bit_cast<float>(bits));
     });
+  }
+  rows.inputs.assign(from, from + found.inputs);
+  from += found.inputs;
+  rows.behaviors.assign(from, from + found.behaviors);
+  ByteReader states({from + found.behaviors, found.states});
+  rows.states.clear();
+  while (states.left() > 0) {
+    const std::span<const std::byte> state = states.take_bytes(states.take<std::uint32_t>());
+    rows.states.emplace_back(state.begin(), state.end());
   }
   return true;
 }
@@ -167,6 +212,7 @@ FlightRecorder::FlightRecorder(const SignalTable& signals, const FlightSettings&
     : signals_(signals),
       record_(dump_settings(record)),
       kept_ns_(std::llround(settings.kept_s * 1e9)),
+      layout_(settings.inputs),
       memory_(signals.size(), settings) {
   for (SignalId id = 0; id < signals.size(); ++id) {
     const std::string& name = signals.info(id).name;
@@ -174,8 +220,9 @@ FlightRecorder::FlightRecorder(const SignalTable& signals, const FlightSettings&
   }
 }
 
-void FlightRecorder::row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
-  memory_.add(tick, time_ns, row);
+void FlightRecorder::row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row,
+                         std::span<const std::uint64_t> inputs) {
+  memory_.add(tick, time_ns, row, inputs);
   last_ns_ = time_ns;
   for (Level& level : levels_) watch(time_ns, std::exchange(level.now, row[level.signal]), row[level.signal]);
 }
@@ -216,6 +263,7 @@ bool FlightRecorder::begin(const std::string& file) {
     ++dumps_;
     return false;
   }
+  if (layout_) dump_->add_inputs(*layout_);
   to_write_ = happenings_;
   next_block_ = memory_.first();
   end_block_ = memory_.end();
@@ -236,6 +284,7 @@ void FlightRecorder::step() {
       (void)dump_->row(rows_.ticks[row], rows_.times_ns[row],
                        std::span<const double>(rows_.values).subspan(row * signals, signals));
     }
+    if (layout_) write_inputs();
   }
   if (next_block_ < end_block_) return;
   write_happenings(std::numeric_limits<std::int64_t>::max());
@@ -245,6 +294,14 @@ void FlightRecorder::step() {
   dump_.reset();
   rows_ = {};
   ++dumps_;
+}
+
+// Behind the rows of their ticks.
+void FlightRecorder::write_inputs() {
+  const std::int64_t time_ns = rows_.times_ns.empty() ? last_ns_ : rows_.times_ns.back();
+  if (!rows_.inputs.empty()) (void)dump_->inputs(rows_.inputs, time_ns);
+  if (!rows_.behaviors.empty()) (void)dump_->behavior_inputs(rows_.behaviors, time_ns);
+  for (const std::vector<std::byte>& state : rows_.states) (void)dump_->state(state, time_ns);
 }
 
 void FlightRecorder::write_happenings(std::int64_t until_ns) {

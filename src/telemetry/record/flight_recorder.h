@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "input_stream.h"
 #include "record_writer.h"
 
 struct ZSTD_CCtx_s;
@@ -26,10 +27,15 @@ namespace kadans {
 // compresses them: 30 s of TULip's 220 signals at 1 kHz take 7 MB, a third of a record. Packed blocks lie in a ring
 // buffer of bytes, and the oldest blocks are dropped. Ticks and times keep all their bits.
 //
+// With inputs a block also holds what its ticks took from outside, what came down from the behavior thread, and the
+// state of the control engine when one was saved (input_stream.h), so that what is kept can be repeated. They share the
+// bytes.
+//
 // One thread at a time.
 struct FlightSettings {
   double kept_s = 0;                          // 0: no flight recorder
-  std::size_t bytes = std::size_t{8} << 20U;  // for packed rows; when they do not suffice, less than kept_s is kept
+  std::size_t bytes = std::size_t{8} << 20U;  // for all of it; when they do not suffice, less than kept_s is kept
+  std::optional<InputLayout> inputs = {};     // of a flight record
 };
 
 class FlightMemory {
@@ -38,6 +44,9 @@ class FlightMemory {
     std::vector<std::uint64_t> ticks;
     std::vector<std::int64_t> times_ns;
     std::vector<double> values;  // row by row
+    // With inputs, as messages of a record: of the ticks, of the behavior thread, and states.
+    std::vector<std::byte> inputs, behaviors;
+    std::vector<std::vector<std::byte>> states;
   };
 
   // Allocates its memory in the constructor.
@@ -46,8 +55,11 @@ class FlightMemory {
   FlightMemory(const FlightMemory&) = delete;
   FlightMemory& operator=(const FlightMemory&) = delete;
 
-  void add(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
-  void seal();  // ends the block
+  void add(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row,
+           std::span<const std::uint64_t> inputs = {});
+  void add_behavior_inputs(std::span<const std::byte> events) { behaviors_.put(events); }
+  void add_state(const EngineStates::Saved& state);
+  void seal();  // ends the block, which may hold no rows, only what came down after them
 
   // Blocks are numbered from 0; those in [first(), end()) are stored.
   std::uint64_t first() const noexcept { return end_ - blocks_.size(); }
@@ -63,6 +75,7 @@ class FlightMemory {
   struct Block {
     std::size_t offset, size, rows;  // size 0: its rows are lost, only their number is known
     std::int64_t last_ns;
+    std::uint32_t inputs, behaviors, states;  // bytes of each, behind the rows
   };
   struct ZstdDelete {
     void operator()(ZSTD_CCtx_s* context) const noexcept;
@@ -75,10 +88,13 @@ class FlightMemory {
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
   std::vector<std::byte> store_, planes_, packed_;
   std::size_t head_ = 0;  // offset of the next block
+  std::int64_t last_ns_ = 0;
   std::deque<Block> blocks_;
   std::uint64_t end_ = 0;
   std::vector<std::uint64_t> ticks_, times_;  // of the open block
   std::vector<float> values_;                 // row by row
+  std::unique_ptr<InputEncoder> encoder_;     // nullptr: without inputs
+  ByteWriter inputs_, behaviors_, states_, state_;
 };
 
 // The recorder gets every row and event that the recorder drains, also when no record is open. When the safety.level
@@ -93,7 +109,11 @@ class FlightRecorder {
   // must outlive this object.
   FlightRecorder(const SignalTable& signals, const FlightSettings& settings, const RecorderSettings& record);
 
-  void row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
+  void row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row,
+           std::span<const std::uint64_t> inputs = {});
+  bool takes_inputs() const noexcept { return layout_.has_value(); }
+  void behavior_inputs(std::span<const std::byte> events) { memory_.add_behavior_inputs(events); }
+  void state(const EngineStates::Saved& state) { memory_.add_state(state); }
   void event(const Event& event);
   void fault(const Fault& fault, std::int64_t time_ns);
 
@@ -126,11 +146,13 @@ class FlightRecorder {
 
   void keep(Happening happening);
   void watch(std::int64_t time_ns, double before, double level) noexcept;
+  void write_inputs();
   void write_happenings(std::int64_t until_ns);
 
   const SignalTable& signals_;
   RecorderSettings record_;
   std::int64_t kept_ns_;
+  std::optional<InputLayout> layout_;
   FlightMemory memory_;
   std::deque<Happening> happenings_;
   struct Level {

@@ -4,12 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <functional>
 #include <limits>
 
-#include "run_inputs.h"
-#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -52,7 +48,7 @@ std::optional<std::uint32_t> count_in(const TextMap& facts, const char* name, st
   return number && *number <= max ? number : std::nullopt;
 }
 
-constexpr std::uint32_t down_max = 1024;
+constexpr std::uint32_t down_max = 1024, state_bytes_max = 1U << 24U;
 
 // Bytes from outside become values that these types have.
 void make_sound(TickTaken& taken) noexcept {
@@ -114,6 +110,7 @@ TextMap InputLayout::facts() const {
                 {"channels", std::to_string(channels)},
                 {"down", std::to_string(down)}};
   if (seen > 0) facts["seen"] = std::to_string(seen);
+  if (state_bytes > 0) facts["state_bytes"] = std::to_string(state_bytes);
   return facts;
 }
 
@@ -122,9 +119,11 @@ std::optional<InputLayout> InputLayout::of(const TextMap& facts) {
   const auto joints = count_in(facts, "joints", max_joints), feet = count_in(facts, "feet", max_feet),
              channels = count_in(facts, "channels", max_channels), down = count_in(facts, "down", down_max);
   const auto seen = facts.contains("seen") ? count_in(facts, "seen", max_seen) : std::optional<std::uint32_t>(0);
+  const auto state_bytes =
+      facts.contains("state_bytes") ? count_in(facts, "state_bytes", state_bytes_max) : std::optional<std::uint32_t>(0);
   const bool known = format != facts.end() && format->second == inputs_format;
-  if (!known || !joints || !feet || !channels || !down || !seen) return std::nullopt;
-  return InputLayout{*joints, *feet, *channels, *down, *seen};
+  if (!known || !joints || !feet || !channels || !down || !seen || !state_bytes) return std::nullopt;
+  return InputLayout{*joints, *feet, *channels, *down, *seen, *state_bytes};
 }
 
 void unpack(std::span<const std::uint64_t> words, const InputLayout& layout, TickTaken& taken) {
@@ -173,7 +172,7 @@ std::span<const std::span<const double>> InputPieces::gather() noexcept {
 }
 
 InputEncoder::InputEncoder(const InputLayout& layout, std::vector<bool> exact)
-    : exact_(std::move(exact)), columns_(1 + layout.words()) {
+    : alone_(layout.state_bytes > 0), exact_(std::move(exact)), columns_(1 + layout.words()) {
   values_.reserve(ticks_max * columns_.size());
   rows_.reserve((lag_max + ticks_max) * exact_.size());
 }
@@ -200,6 +199,11 @@ bool InputEncoder::add(std::uint64_t tick, std::int64_t time_ns, std::span<const
 void InputEncoder::encode(ByteWriter& message) {
   message.put(first_tick_);
   message.put(static_cast<std::uint32_t>(ticks_));
+  for (std::size_t c = 0; alone_ && c < columns_.size(); ++c) {
+    Column& column = columns_[c];
+    column.before = column.last = values_[c];
+    message.put(column.last);
+  }
   column_.resize(ticks_);
   for (std::uint32_t c = 0; c < columns_.size(); ++c) {
     for (std::size_t t = 0; t < ticks_; ++t) column_[t] = values_[t * columns_.size() + c];
@@ -210,6 +214,12 @@ void InputEncoder::encode(ByteWriter& message) {
   past_ = kept;
   ticks_ = 0;
   values_.clear();
+}
+
+std::size_t InputEncoder::bytes_max(const InputLayout& layout) noexcept {
+  constexpr std::size_t head = 32;  // of a column, at most
+  const std::size_t columns = 1 + layout.words();
+  return 2 * columns * ticks_max * sizeof(std::uint64_t) + columns * (sizeof(std::uint64_t) + head);
 }
 
 std::uint64_t InputEncoder::signal_bits(std::uint32_t signal, std::size_t tick, std::size_t lag) const noexcept {
@@ -428,6 +438,8 @@ bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& 
   const auto first_tick = reader.take<std::uint64_t>();
   const auto count = reader.take<std::uint32_t>();
   if (!reader.ok() || count == 0 || count > InputEncoder::ticks_max) return false;
+  for (std::size_t c = 0; layout_.state_bytes > 0 && c < columns_.size(); ++c)
+    columns_[c].before = columns_[c].last = reader.take<std::uint64_t>();
   std::vector<std::uint64_t> values(count * columns_.size());
   for (std::uint32_t c = 0; c < columns_.size(); ++c) {
     Column& column = columns_[c];
@@ -488,155 +500,24 @@ bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& 
   return true;
 }
 
-namespace {
-
-constexpr std::size_t event_head = 2 * sizeof(std::uint32_t);  // bytes behind the head, number
-
-}  // namespace
-
-RecordedInputs::RecordedInputs(std::string root, std::vector<std::string> private_files)
-    : root_(std::move(root)), private_files_(std::move(private_files)), ring_(std::make_unique<Bytes>()) {
-  event_.reserve(std::size_t{64} << 10U);
+void put_state(const EngineStates::Saved& saved, ByteWriter& message) {
+  message.put(saved.tick);
+  message.put(static_cast<std::uint32_t>(saved.found.size()));
+  message.put(std::as_bytes(saved.found));
+  message.put(saved.bytes);
 }
 
-void RecordedInputs::begin(BehaviorInput::Kind kind) {
-  event_.clear();
-  event_.put(std::uint32_t{0});
-  event_.put(number_++);
-  event_.put(static_cast<std::uint8_t>(kind));
-}
-
-void RecordedInputs::push() noexcept {
-  event_.set(0, static_cast<std::uint32_t>(event_.size() - event_head));
-  if (!ring_->try_push(event_.bytes())) dropped_.fetch_add(1, std::memory_order_relaxed);
-}
-
-void RecordedInputs::tick_begins(const Snapshot& snapshot, std::int64_t time_ns) {
-  BehaviorInputs::tick_begins(snapshot, time_ns);
-  begin(BehaviorInput::Kind::tick_begins);
-  event_.put(snapshot.time_ns == 0 ? std::uint64_t{0} : snapshot.tick + 1);
-  event_.put(time_ns);
-  push();
-}
-
-void RecordedInputs::tick_ends() {
-  BehaviorInputs::tick_ends();
-  begin(BehaviorInput::Kind::tick_ends);
-  push();
-}
-
-void RecordedInputs::sent(std::span<const Command> batch, bool in_tick) noexcept {
-  begin(BehaviorInput::Kind::sent);
-  event_.put(static_cast<std::uint8_t>(in_tick));
-  event_.put(std::as_bytes(batch));
-  push();
-}
-
-void RecordedInputs::found_newer(std::uint32_t storage, std::span<const std::byte> value) {
-  begin(BehaviorInput::Kind::newer);
-  event_.put(storage);
-  event_.put(value);
-  push();
-}
-
-double RecordedInputs::parameter(double newest) noexcept {
-  begin(BehaviorInput::Kind::parameter);
-  event_.put(newest);
-  push();
-  return newest;
-}
-
-bool RecordedInputs::time_is_over(bool (*over)(void*) noexcept, void* budget) noexcept {
-  ++looks_;
-  if (!over(budget)) return false;
-  begin(BehaviorInput::Kind::time_over);
-  event_.put(looks_);
-  push();
+bool take_state(std::span<const std::byte> message, std::vector<std::int64_t>& found, EngineStates::Saved& saved) {
+  ByteReader reader(message);
+  saved.tick = reader.take<std::uint64_t>();
+  const auto count = reader.take<std::uint32_t>();
+  if (!reader.ok() || count > down_max) return false;
+  found.resize(count);
+  for (std::int64_t& number : found) number = reader.take<std::int64_t>();
+  if (!reader.ok()) return false;
+  saved.found = found;
+  saved.bytes = reader.take_bytes(reader.left());
   return true;
-}
-
-void RecordedInputs::file_read(const std::string& path, std::string_view text) {
-  const std::filesystem::path below = std::filesystem::path(path).lexically_relative(root_);
-  const std::string name = below.empty() || *below.begin() == ".." ? path : below.generic_string();
-  const std::size_t hash = std::hash<std::string_view>()(text);
-  const auto [known, added] = hash_of_.try_emplace(name, hash);
-  if (!added && known->second == hash) return;
-  known->second = hash;
-  const bool left_out =
-      std::ranges::any_of(private_files_, [&](const std::string& pattern) { return matches(pattern, name); });
-  begin(left_out ? BehaviorInput::Kind::private_file : BehaviorInput::Kind::file);
-  event_.put_string(name);
-  event_.put_string(left_out ? content_hash(text) : text);
-  push();
-}
-
-void RecordedInputs::asked(Asked kind, std::span<const std::byte> bytes) {
-  BehaviorInputs::asked(kind, bytes);
-  begin(BehaviorInput::Kind::asked);
-  event_.put(static_cast<std::uint8_t>(kind));
-  event_.put(bytes);
-  push();
-}
-
-void RecordedInputs::take(ByteWriter& message) {
-  const std::size_t waiting = ring_->size();
-  const std::span<std::byte> to = message.grow(waiting);
-  for (std::size_t i = 0; i < waiting; ++i) to[i] = ring_->peek(i);
-  ring_->drop(waiting);
-}
-
-bool take_behavior_input(ByteReader& message, std::uint32_t& expected, BehaviorInput& input) {
-  const auto size = message.take<std::uint32_t>();
-  const auto number = message.take<std::uint32_t>();
-  ByteReader bytes(message.take_bytes(size));
-  if (!message.ok() || number != expected++) return false;
-  const auto kind = bytes.take<std::uint8_t>();
-  if (!bytes.ok() || kind > static_cast<std::uint8_t>(BehaviorInput::last_kind)) return false;
-  input = {.kind = static_cast<BehaviorInput::Kind>(kind)};
-  const auto rest = [&bytes] {
-    const std::span<const std::byte> all = bytes.take_bytes(bytes.left());
-    return std::vector<std::byte>(all.begin(), all.end());
-  };
-  switch (input.kind) {
-    case BehaviorInput::Kind::tick_begins:
-      input.snapshot = bytes.take<std::uint64_t>();
-      input.time_ns = bytes.take<std::int64_t>();
-      break;
-    case BehaviorInput::Kind::tick_ends:
-      break;
-    case BehaviorInput::Kind::sent: {
-      input.in_tick = bytes.take<std::uint8_t>() != 0;
-      const std::size_t count = bytes.left() / sizeof(Command);
-      if (count == 0 || count > max_transaction || bytes.left() % sizeof(Command) != 0) return false;
-      const std::span<const std::byte> from = bytes.take_bytes(bytes.left());
-      input.commands.resize(count);
-      std::memcpy(input.commands.data(), from.data(), from.size());
-      break;
-    }
-    case BehaviorInput::Kind::newer:
-      input.number = bytes.take<std::uint32_t>();
-      input.bytes = rest();
-      break;
-    case BehaviorInput::Kind::parameter:
-      input.value = bytes.take<double>();
-      break;
-    case BehaviorInput::Kind::time_over:
-      input.number = bytes.take<std::uint32_t>();
-      break;
-    case BehaviorInput::Kind::file:
-    case BehaviorInput::Kind::private_file:
-      input.path = bytes.take_string();
-      input.text = bytes.take_string();
-      break;
-    case BehaviorInput::Kind::asked: {
-      const auto how = bytes.take<std::uint8_t>();
-      if (how > static_cast<std::uint8_t>(BehaviorInputs::Asked::note)) return false;
-      input.how = static_cast<BehaviorInputs::Asked>(how);
-      input.bytes = rest();
-      break;
-    }
-  }
-  return bytes.ok() && bytes.left() == 0;
 }
 
 }  // namespace kadans

@@ -16,32 +16,32 @@
 // So a message is read after the rows of its ticks, and after the messages before it. Channel /inputs/behaviors: a
 // message holds events one after the other, each with a number, so that one that is missing is noticed.
 //
+// A flight record begins in the middle of a run and may lack any part before. Each of its messages therefore also holds
+// the words of its first tick as they are, and its layout says so. Channel /inputs/states: a message holds the state of
+// the control engine after a tick (engine/tick/engine_states.h).
+//
 // Everything that is read is from outside: a length must fit the bytes, a number its range.
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
-#include <unordered_map>
 #include <vector>
 
-#include "engine/behavior_inputs.h"
 #include "engine/tick/control_engine.h"
+#include "engine/tick/engine_states.h"
 #include "kadans/control/hand_over.h"
-#include "kadans/exchange/ring.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
 
 inline constexpr const char* inputs_topic = "/inputs";
 inline constexpr const char* behavior_inputs_topic = "/inputs/behaviors";
+inline constexpr const char* states_topic = "/inputs/states";
 inline constexpr const char* inputs_metadata = "tick_inputs";  // the layout, and all signals by their numbers
 inline constexpr const char* inputs_format = "2";
 
@@ -50,6 +50,8 @@ struct InputLayout {
   std::uint32_t joints = 0, feet = 0, channels = 0;
   std::uint32_t down = 0;  // storages from high to low levels
   std::uint32_t seen = 0;  // entries of the world model
+  // Of a flight record: the most bytes that a state of the control engine may have; each message stands alone.
+  std::uint32_t state_bytes = 0;
 
   std::size_t words() const noexcept;
   TextMap facts() const;
@@ -105,6 +107,8 @@ class InputEncoder {
   std::int64_t time_ns() const noexcept { return last_time_ns_; }
   // Empties it.
   void encode(ByteWriter& message);
+  // What it holds, and the largest message.
+  static std::size_t bytes_max(const InputLayout& layout) noexcept;
 
  private:
   static constexpr std::uint32_t none = 0xffffffff;
@@ -143,6 +147,7 @@ class InputEncoder {
   bool encode_known(std::uint32_t c, Values values, ByteWriter& message);
   void encode_rest(Column& column, Values values, ByteWriter& message);
 
+  bool alone_;
   std::vector<bool> exact_;
   std::vector<Column> columns_;  // the time, then the words
   std::size_t ticks_ = 0;
@@ -178,71 +183,9 @@ class InputDecoder {
   std::vector<Column> columns_;
 };
 
-// An event of the behavior thread.
-struct BehaviorInput {
-  enum class Kind : std::uint8_t {
-    tick_begins,
-    tick_ends,
-    sent,
-    newer,
-    parameter,
-    time_over,
-    file,
-    asked,
-    private_file  // its text is the hash of its content
-  };
-  static constexpr Kind last_kind = Kind::private_file;
-
-  Kind kind = Kind::tick_begins;
-  std::uint64_t snapshot = 0;       // tick_begins: 1 + the control tick whose snapshot it sees; 0: there was none yet
-  std::int64_t time_ns = 0;         // tick_begins
-  bool in_tick = false;             // sent: by a behavior
-  std::vector<Command> commands{};  // sent, behind their header
-  std::uint32_t number = 0;         // newer: of the storage; time_over: of the look at the clock
-  double value = 0;                 // parameter
-  std::string path{}, text{};       // file, private_file
-  BehaviorInputs::Asked how{};      // asked
-  std::vector<std::byte> bytes{};   // newer, asked
-};
-// The next event of a message; `expected` counts them. False: damaged, or one is missing.
-[[nodiscard]] bool take_behavior_input(ByteReader& message, std::uint32_t& expected, BehaviorInput& input);
-
-// Writes what the behavior thread takes. The ring is emptied by the record thread; what does not fit is missing in the
-// record, which says so.
-class RecordedInputs final : public BehaviorInputs {
- public:
-  // Paths of files start at the project's root. Of files that these patterns name only the hash is recorded.
-  explicit RecordedInputs(std::string root, std::vector<std::string> private_files = {});
-
-  // Before the loop: a file whose text the record has already.
-  void knows(const std::string& path, std::string_view text) { hash_of_[path] = std::hash<std::string_view>()(text); }
-
-  void tick_begins(const Snapshot& snapshot, std::int64_t time_ns) override;
-  void tick_ends() override;
-  void sent(std::span<const Command> batch, bool in_tick) noexcept override;
-  void found_newer(std::uint32_t storage, std::span<const std::byte> value) override;
-  double parameter(double newest) noexcept override;
-  bool time_is_over(bool (*over)(void*) noexcept, void* budget) noexcept override;
-  void file_read(const std::string& path, std::string_view text) override;
-  void asked(Asked kind, std::span<const std::byte> bytes) override;
-
-  // Record thread: moves what waits to the end of `message`.
-  void take(ByteWriter& message);
-  std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
-
- private:
-  using Bytes = Ring<std::byte, std::size_t{1} << 20U>;
-
-  void begin(BehaviorInput::Kind kind);
-  void push() noexcept;
-
-  std::string root_;
-  std::vector<std::string> private_files_;
-  std::unordered_map<std::string, std::size_t> hash_of_;
-  ByteWriter event_;
-  std::uint32_t number_ = 0;
-  std::unique_ptr<Bytes> ring_;
-  std::atomic<std::uint32_t> dropped_{0};
-};
+// What the control thread saved, as a message, and back. False: damaged. The spans point into the message.
+void put_state(const EngineStates::Saved& saved, ByteWriter& message);
+[[nodiscard]] bool take_state(std::span<const std::byte> message, std::vector<std::int64_t>& found,
+                              EngineStates::Saved& saved);
 
 }  // namespace kadans

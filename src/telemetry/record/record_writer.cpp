@@ -178,6 +178,7 @@ void RecordWriter::add_inputs(const InputLayout& layout) {
   (void)file_.add_metadata(inputs_metadata, facts);
   inputs_ = file_.add_channel(inputs_topic, "", schema);
   behavior_inputs_ = file_.add_channel(behavior_inputs_topic, "", schema);
+  if (layout.state_bytes > 0) states_ = file_.add_channel(states_topic, "", schema);
 }
 
 bool RecordWriter::inputs(std::span<const std::byte> message, std::int64_t time_ns) {
@@ -186,6 +187,10 @@ bool RecordWriter::inputs(std::span<const std::byte> message, std::int64_t time_
 
 bool RecordWriter::behavior_inputs(std::span<const std::byte> message, std::int64_t time_ns) {
   return file_.write(behavior_inputs_, 0, time_ns, message);
+}
+
+bool RecordWriter::state(std::span<const std::byte> message, std::int64_t time_ns) {
+  return file_.write(states_, 0, time_ns, message);
 }
 
 bool RecordWriter::timing(const std::string& json, std::int64_t time_ns) {

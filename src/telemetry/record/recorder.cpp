@@ -30,22 +30,22 @@ bool Recorder::open(const std::string& path) {
   return begin_file(path);
 }
 
-void Recorder::record_inputs(std::unique_ptr<InputPieces> pieces, RecordedInputs& behaviors) {
-  pieces_ = std::move(pieces);
-  behavior_inputs_ = &behaviors;
-  word_count_ = pieces_->layout().words();
+void Recorder::record_inputs(Inputs inputs) {
+  inputs_ = std::move(inputs);
+  word_count_ = inputs_.pieces->layout().words();
   words_.resize(word_count_);
+  pushed_.reserve(2 + inputs_.pieces->gather().size());
   stride_ = 1;
-  inputs_ring_ = std::make_unique<Rows>();
+  if (inputs_.in_files) inputs_ring_ = std::make_unique<Rows>();
 }
 
 bool Recorder::begin_file(const std::string& path) {
   if (!file_->open(path)) return false;
-  if (!pieces_) return true;
-  file_->add_inputs(pieces_->layout());
+  if (!inputs_ring_) return true;
+  file_->add_inputs(inputs_.pieces->layout());
   std::vector<bool> exact(signal_count_, settings_.precision == Precision::full);
   for (std::size_t i = 0; i < settings_.every_ticks.size(); ++i) exact[i] = exact[i] && settings_.every_ticks[i] == 1;
-  encoder_ = std::make_unique<InputEncoder>(pieces_->layout(), std::move(exact));
+  encoder_ = std::make_unique<InputEncoder>(inputs_.pieces->layout(), std::move(exact));
   return true;
 }
 
@@ -62,20 +62,37 @@ void Recorder::record(std::uint64_t tick, std::int64_t time_ns, std::span<const 
   std::array<double, head_size> head{};
   std::memcpy(&head[0], &tick, sizeof tick);
   std::memcpy(&head[1], &time_ns, sizeof time_ns);
-  bool fits = row.size() == signal_count_;
-  if (pieces_ != nullptr)  // both or none
-    fits = fits && ring_->free() >= head_size + signal_count_ && inputs_ring_->try_push_all(pieces_->gather());
-  if (!fits || !ring_->try_push(head, row)) dropped_.fetch_add(1, std::memory_order_relaxed);
+  if (row.size() != signal_count_ || !push(head, row)) dropped_.fetch_add(1, std::memory_order_relaxed);
+  if (inputs_.states != nullptr) inputs_.states->save_if_due(tick);
+}
+
+// A row and its inputs: both or none.
+bool Recorder::push(std::span<const double> head, std::span<const double> row) noexcept {
+  if (inputs_.pieces == nullptr) return ring_->try_push(head, row);
+  const std::span<const std::span<const double>> pieces = inputs_.pieces->gather();
+  if (inputs_ring_ != nullptr) {
+    return ring_->free() >= head.size() + row.size() && inputs_ring_->try_push_all(pieces) &&
+           ring_->try_push(head, row);
+  }
+  pushed_.assign({head, row});  // within what is reserved
+  pushed_.insert(pushed_.end(), pieces.begin(), pieces.end());
+  return ring_->try_push_all(pushed_);
 }
 
 bool Recorder::drain() {
-  const std::size_t row_size = head_size + signal_count_;
+  const bool behind = inputs_.pieces != nullptr && inputs_ring_ == nullptr;
+  const std::size_t row_size = head_size + signal_count_ + (behind ? word_count_ : 0);
   for (std::size_t waiting = ring_->size() / row_size; waiting > 0; --waiting) {
     take_row();
     ring_->drop(row_size);
-    if (pieces_) inputs_ring_->drop(word_count_);
+    if (inputs_ring_) inputs_ring_->drop(word_count_);
   }
-  if (behavior_inputs_ != nullptr) take_behavior_inputs();
+  if (inputs_.behaviors != nullptr) take_behavior_inputs();
+  EngineStates::Saved saved;
+  if (inputs_.states != nullptr && inputs_.states->take(saved)) {
+    flight_->state(saved);
+    inputs_.states->done();
+  }
   take_events(end_of_time_ns);
   take_faults();
   report_drops();
@@ -93,15 +110,18 @@ void Recorder::take_row() {
   if (tick > last_tick_) period_ns_ = (time_ns - last_time_ns_) / static_cast<std::int64_t>(tick - last_tick_);
   last_tick_ = tick;
   last_time_ns_ = time_ns;
-  if (flight_) flight_->row(tick, time_ns, row_);
+  const bool behind = inputs_ring_ == nullptr;
+  const Rows& from = behind ? *ring_ : *inputs_ring_;
+  const std::size_t first = behind ? head_size + signal_count_ : 0;
+  for (std::size_t i = 0; i < word_count_; ++i) std::memcpy(&words_[i], &from.peek(first + i), sizeof words_[i]);
+  if (flight_) flight_->row(tick, time_ns, row_, words_);
   if (!opened_ || (!is_open() && error().empty())) return;  // closed, or not yet
   ++rows_;
   if (!file_->row(tick, time_ns, row_)) ++lost_;
-  if (pieces_) take_inputs(tick, time_ns);
+  if (encoder_) take_inputs(tick, time_ns);
 }
 
 void Recorder::take_inputs(std::uint64_t tick, std::int64_t time_ns) {
-  for (std::size_t i = 0; i < word_count_; ++i) std::memcpy(&words_[i], &inputs_ring_->peek(i), sizeof words_[i]);
   if (!encoder_->add(tick, time_ns, words_, row_)) {
     put_inputs();
     (void)encoder_->add(tick, time_ns, words_, row_);
@@ -118,9 +138,14 @@ void Recorder::put_inputs() {
 }
 
 void Recorder::take_behavior_inputs() {
+  const bool flies = flight_ && flight_->takes_inputs();
   message_.clear();
-  behavior_inputs_->take(message_);
-  if (message_.size() > 0 && is_open()) (void)file_->behavior_inputs(message_.bytes(), last_time_ns_);
+  for_file_.clear();
+  for_flight_.clear();
+  inputs_.behaviors->take(message_);
+  sorter_.sort(message_.bytes(), inputs_.in_files ? &for_file_ : nullptr, flies ? &for_flight_ : nullptr);
+  if (for_file_.size() > 0 && is_open()) (void)file_->behavior_inputs(for_file_.bytes(), last_time_ns_);
+  if (for_flight_.size() > 0) flight_->behavior_inputs(for_flight_.bytes());
 }
 
 void Recorder::take_events(std::int64_t until_ns) {

@@ -25,6 +25,7 @@
 #include "input_stream.h"
 #include "kadans/exchange/ring.h"
 #include "record_writer.h"
+#include "recorded_inputs.h"
 
 namespace kadans {
 
@@ -35,8 +36,14 @@ class Recorder final : public RecordSink {
                     const FlightSettings& flight = {});
   explicit Recorder(SignalTable&&, const RecorderSettings& = {}, const FlightSettings& = {}) = delete;
 
-  // Before the first row: files hold the inputs of the run, too. `behaviors` must outlive the recorder.
-  void record_inputs(std::unique_ptr<InputPieces> pieces, RecordedInputs& behaviors);
+  // Before the first row: the inputs of the run are kept, too. `behaviors` and `states` must outlive the recorder.
+  struct Inputs {
+    std::unique_ptr<InputPieces> pieces = {};  // nullptr: they are not kept
+    RecordedInputs* behaviors = nullptr;
+    bool in_files = true;
+    EngineStates* states = nullptr;  // for the flight recorder, if its settings want inputs
+  };
+  void record_inputs(Inputs inputs);
 
   // Replaces an existing file. False: error() says why. After close() another file may be opened.
   [[nodiscard]] bool open(const std::string& path);
@@ -78,6 +85,7 @@ class Recorder final : public RecordSink {
   bool open_new(const std::string& path);
   bool begin_file(const std::string& path);
   void take_row();
+  bool push(std::span<const double> head, std::span<const double> row) noexcept;
   void take_inputs(std::uint64_t tick, std::int64_t time_ns);
   void put_inputs();
   void take_behavior_inputs();
@@ -91,14 +99,16 @@ class Recorder final : public RecordSink {
   RecorderSettings settings_;
   std::unique_ptr<RecordWriter> file_;
   std::unique_ptr<FlightRecorder> flight_;
-  std::uint64_t stride_ = 0;             // ticks between two rows that are needed; 0: none
-  std::unique_ptr<InputPieces> pieces_;  // nullptr: inputs are not recorded
-  RecordedInputs* behavior_inputs_ = nullptr;
+  std::uint64_t stride_ = 0;  // ticks between two rows that are needed; 0: none
+  Inputs inputs_;
+  EventSorter sorter_;
   std::unique_ptr<InputEncoder> encoder_;  // of the open file
   std::size_t word_count_ = 0;
   std::vector<std::uint64_t> words_;
-  ByteWriter message_;
-  std::unique_ptr<Rows> ring_, inputs_ring_;  // the second: while inputs are recorded
+  ByteWriter message_, for_file_, for_flight_;
+  // The second is there when files hold inputs; for the flight recorder alone they stand behind the rows.
+  std::unique_ptr<Rows> ring_, inputs_ring_;
+  std::vector<std::span<const double>> pushed_;  // a row with its inputs
   std::atomic<std::uint32_t> dropped_{0};
   EventLog events_;
   Ring<Fault, 256> faults_;

@@ -27,6 +27,7 @@ std::vector<std::byte> packed(const std::string& text) {
   std::vector<std::byte> bytes(ZSTD_compressBound(text.size()));
   const std::size_t size = ZSTD_compress(bytes.data(), bytes.size(), text.data(), text.size(), text_compression_level);
   bytes.resize(ZSTD_isError(size) != 0 ? 0 : size);
+  bytes.shrink_to_fit();
   return bytes;
 }
 
@@ -54,6 +55,13 @@ std::string RunInputs::fact(const std::string& name) const {
   return found == run.end() ? "" : found->second;
 }
 
+void RunInputs::pack() {
+  for (InputFile& file : files) {
+    if (file.text) file.packed = kadans::packed(*file.text);
+    file.text.reset();
+  }
+}
+
 std::string content_hash(std::string_view text) {
   StateHash hash;
   for (const char c : text) hash.add(static_cast<unsigned char>(c));
@@ -67,9 +75,9 @@ bool write_inputs(McapWriter& file, const RunInputs& inputs) {
   for (const InputFile& input : inputs.files) {
     hashes[input.path] = input.hash;
     if (input.left_out) left_out[input.path] = "yes";
-    if (!input.text) continue;
+    if (!input.text && input.packed.empty()) continue;
     const std::string name = std::string(prefix) + input.path + std::string(suffix);
-    written = written && file.attach(name, "application/zstd", 0, packed(*input.text));
+    written = written && file.attach(name, "application/zstd", 0, input.text ? packed(*input.text) : input.packed);
   }
   if (!left_out.empty()) written = written && file.add_metadata("private", left_out);
   return written && file.add_metadata("inputs", hashes);

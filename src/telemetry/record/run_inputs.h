@@ -22,7 +22,8 @@ struct InputFile {
   std::string path;  // from the project's root; "beside/x" from the scenario's folder; absolute elsewhere
   std::string hash;  // of its content, 16 hexadecimal digits
   std::optional<std::string> text;
-  bool left_out = false;  // it is private: whoever runs the record again has to have it
+  bool left_out = false;               // it is private: whoever runs the record again has to have it
+  std::vector<std::byte> packed = {};  // the text, for a run that keeps it in memory until a record is written
 };
 
 struct RunInputs {
@@ -33,6 +34,7 @@ struct RunInputs {
   bool empty() const noexcept { return files.empty(); }
   // A fact of the run; "" when there is no fact of this name.
   std::string fact(const std::string& name) const;
+  void pack();  // the texts
 };
 
 // The hash of a text, as text.
