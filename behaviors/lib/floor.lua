@@ -58,6 +58,24 @@ function floor.up(base)
   return { x = -math.sin(base.pitch_rad), y = flat * math.sin(base.roll_rad), z = flat * math.cos(base.roll_rad) }
 end
 
+-- Where the centre of mass is, from the ankles, and how far the soles are pitched, in the plane in which the legs bend.
+function floor.com(lean, hip, knee, ankle, arm)
+  local thigh, shank, foot = lean + hip, lean + hip + knee, lean + hip + knee + ankle
+  local sin, cos = math.sin, math.cos
+  local function at(parts)
+    local x, z = 0, 0
+    for _, p in ipairs(parts) do x, z = x + p[1] * sin(p[2]), z + p[1] * cos(p[2]) end
+    return x, z
+  end
+  -- masses: torso 6, hips 1.6, thighs 2.7, shanks 1.7, feet 1, arms 1
+  local m = 14
+  local x, z = at {
+    { (0.275 * 11.3 + 0.155 * 1.7) / m, shank }, { (0.275 * 8.6 + 0.155 * 2.7) / m, thigh },
+    { (0.258 * 7 + 0.132 * 1) / m, lean }, { -0.18 / m, lean + arm },
+  }
+  return x, z, foot
+end
+
 -- Whether the torso lies, on whichever side.
 function floor.lies(base) return base.posture ~= "upright" and base.posture ~= "falling" end
 
@@ -87,6 +105,15 @@ local function arms(pose, joints)
   return turns
 end
 
+-- The legs swung to the side in the world's plane, whichever way the torso leans.
+local function sideways(pose, lean, aside, wide)
+  local cos, sin = math.cos(lean), math.sin(lean)
+  aside, wide = aside or 0, wide or 0
+  pose.l_hip_roll, pose.r_hip_roll = (wide - aside) * cos, (-wide - aside) * cos
+  pose.l_hip_yaw, pose.r_hip_yaw = (wide - aside) * sin, (-wide - aside) * sin
+  return pose
+end
+
 local function even(frame)
   return poses.both {
     l_hip_yaw = 0, l_hip_roll = 0,
@@ -104,14 +131,29 @@ end
 local function timed(pose, time_s) return { pose, time_s = time_s } end
 
 -- Straight legs; the arms stay where they are.
-function floor.lying() return poses.with(lie, {}) end
+function floor.lying(spread, joints)
+  local pose = poses.with(lie, { l_hip_roll = spread or 0, r_hip_roll = -(spread or 0) })
+  if joints then
+    for _, joint in ipairs { "l_shoulder_pitch", "r_shoulder_pitch" } do
+      local at = joints[joint].position_rad
+      local whole = turn * math.floor(at / turn + 0.5)
+      local rest = at - whole
+      if math.abs(rest) < math.pi / 2 then pose[joint] = whole + 0.2 elseif rest < 0 then pose[joint] = whole - math.pi end
+    end
+  end
+  return pose
+end
 
 -- From the face onto hands and feet: { pose, time_s = }, one motion each, in `pace` times their time, and the turns of
 -- the arms.
-function floor.fold(joints, pace)
+function floor.fold(joints, pace, aside, wide)
   local turns = arms(even(fold[1]), joints)
   local steps = {}
-  for i, frame in ipairs(fold) do steps[i] = timed(turned(even(frame), turns), frame[1] * (pace or 1)) end
+  for i, frame in ipairs(fold) do
+    local pose = turned(even(frame), turns)
+    if i > 2 then sideways(pose, 2.3, aside, wide) end
+    steps[i] = timed(pose, frame[1] * (pace or 1))
+  end
   return steps, turns
 end
 
@@ -120,14 +162,19 @@ local function leaning(frame, lean)
 end
 
 -- Weight over the feet, the hands just bear; `lean` rad further back in the ankles.
-function floor.bear(turns, lean) return timed(turned(leaning(bear, lean), turns), bear[1]) end
+function floor.bear(turns, lean, aside, wide)
+  local pose = turned(leaning(bear, lean), turns)
+  return timed(sideways(pose, 2.1, aside, wide), bear[1])
+end
 
 -- From there to standing: points of one smooth curve, the last one without `lean`, in `pace` times its time. An arm that
 -- came the other way round goes down in front.
-function floor.rise(turns, lean, pace)
+function floor.rise(turns, lean, pace, ahead, aside, wide, from, over)
   local points = {}
   for i, frame in ipairs(rise) do
-    local pose = leaning(frame, i < #rise and lean or 0)
+    local still = (from or 0) * math.max(0, 1 - i / (over or 3))
+    local pose = leaning(frame, (i < #rise and lean or 0) - (ahead or 0) - still)
+    sideways(pose, -(frame[2] + frame[3] + frame[4]), aside, wide)
     for joint, offset in pairs(turns) do
       local first, last = bear[5] + offset, rise[#rise][5]
       pose[joint] = first + (last - first) * i / #rise

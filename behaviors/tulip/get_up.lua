@@ -12,6 +12,30 @@ local P = k.params {
   still_rad_s = { 0.5, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
   patience_s  = { 2.0, min = 0.1, max = 20, unit = "s", doc = "longest wait to lie still" },
   bear_s      = { 0.05, min = 0, max = 2, unit = "s", doc = "time to come to rest on hands and feet" },
+  bear_min_s      = { 0, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  bear_max_s      = { 3, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  ahead_s      = { 0.2, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  foot_rad      = { 0.15, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  near_m      = { 0.06, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  rear_m      = { 0.07, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  flat      = { 1, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  b_hip      = { -2.38, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  b_knee      = { 0.15, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  b_ankle      = { 0.15, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  b_sh      = { -0.4, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  flat_move_s      = { 0.25, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  bear2_s      = { 0.5, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  wide      = { 0.06, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  sf      = { 0, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  kick      = { 1, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  least_s      = { 0.75, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  from      = { 0, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  over      = { 3, min = 0, max = 14, unit = "s", doc = "time to come to rest on hands and feet" },
+  sx0      = { 0, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  sx      = { 1, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  sy      = { 1, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  spread     = { 0.25, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  arms     = { 1, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
   tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
@@ -49,6 +73,13 @@ local function fell_forward(s)
   return up.x < 0 and up.z > P.folded
 end
 
+local function caught(s)
+  for _, leg in ipairs { "l", "r" } do
+    if s.joints[leg .. "_knee"].position_rad > 0.3 or math.abs(s.joints[leg .. "_hip_pitch"].position_rad) > 0.2 then return true end
+  end
+  return false
+end
+
 local function is(posture) return function(s) return s.base.posture == posture end end
 
 local function play(m, steps)
@@ -71,28 +102,65 @@ local function roll(over)
   }
 end
 
+local function com(s)
+  local up, j = floor.up(s.base), s.joints
+  local lean = math.atan2(-up.x, up.z)
+  local hip = (j.l_hip_pitch.position_rad + j.r_hip_pitch.position_rad) / 2
+  local knee = (j.l_knee.position_rad + j.r_knee.position_rad) / 2
+  local ankle = (j.l_ankle_pitch.position_rad + j.r_ankle_pitch.position_rad) / 2
+  local arm = (j.l_shoulder_pitch.position_rad + j.r_shoulder_pitch.position_rad) / 2
+  return floor.com(lean, hip, knee, ankle, arm)
+end
+
+local function note(what, s)
+  local up, j = floor.up(s.base), s.joints
+  local lean = math.atan2(-up.x, up.z)
+  local l = lean + j.l_hip_pitch.position_rad + j.l_knee.position_rad + j.l_ankle_pitch.position_rad
+  local r = lean + j.r_hip_pitch.position_rad + j.r_knee.position_rad + j.r_ankle_pitch.position_rad
+  local x, z = com(s)
+  k.log.info(string.format("%s com %.3f %.2f up %.2f %.2f %.2f lean %.2f feet %.2f %.2f  l %.0f %.3f r %.0f %.3f hip %.2f %.2f kn %.2f %.2f an %.2f %.2f sh %.2f %.2f w %.2f roll %.2f %.2f yaw %.2f %.2f aroll %.2f %.2f", what, x, z, up.x, up.y, up.z, lean, l, r, s.feet.left.force_N, s.feet.left.cop_x_m, s.feet.right.force_N, s.feet.right.cop_x_m,
+   j.l_hip_pitch.position_rad, j.r_hip_pitch.position_rad, j.l_knee.position_rad, j.r_knee.position_rad, j.l_ankle_pitch.position_rad,j.r_ankle_pitch.position_rad,j.l_shoulder_pitch.position_rad,j.r_shoulder_pitch.position_rad, s.base.angular_velocity_rad_s.y, j.l_hip_roll.position_rad, j.r_hip_roll.position_rad, j.l_hip_yaw.position_rad, j.r_hip_yaw.position_rad, j.l_ankle_roll.position_rad, j.r_ankle_roll.position_rad))
+end
+
+local function rears(s, m)
+  local x, z, foot = com(s)
+  local to = x + P.ahead_s * z * s.base.angular_velocity_rad_s.y
+  return x < P.near_m and to < P.rear_m and to > -0.1 and floor.up(s.base).z < 0 and math.abs(foot + m.vars.slope_x) < P.foot_rad
+end
+
 return k.behavior "get_up" {
   controls = "balanced",
-  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, rolls = 0, turned = false },
+  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, slope_x = 0, slope_y = 0, rolls = 0, turned = false },
   initial  = "lie",
 
   k.state "at_once" { { after = 0, to = "up" } },
   k.final "up"      { outcome = "done" },
 
   k.state "lie" {
-    enter = function(m)
+    enter = function(m, s)
       m:clear_faults()
       m.vars.still_s, m.vars.rolls = 0, 0
       m.posture:set_gains("get_up")
       m.balance:set_parameter("share", 0)
       m.stance:set_parameter("share", 0)
-      m.posture:move(floor.lying(), { time_s = 0.4 })
+      m.posture:move(floor.lying(P.spread, P.arms > 0 and s.joints), { time_s = 0.4 })
     end,
     during = function(m, s)
       m.vars.still_s = rate(s) < P.still_rad_s and m.vars.still_s + 0.01 or 0
     end,
-    { when = function(_, m) return m.vars.still_s >= P.still_s end, to = "look" },
+    { when = function(s, m) return m.vars.still_s >= P.still_s and m.time_s > P.least_s and P.kick > 0 and caught(s) end, to = "free" },
+    { when = function(_, m) return m.vars.still_s >= P.still_s and m.time_s > P.least_s end, to = "look" },
     { after = P.patience_s, to = "look" },
+  },
+  k.state "free" {
+    run = function(m, s)
+      local pose = floor.lying(P.spread, s.joints)
+      pose.l_knee, pose.r_knee = 0.9, 0.9
+      m.posture:move(pose, { time_s = 0.3 }):wait()
+      m.posture:move(floor.lying(P.spread, s.joints), { time_s = 0.3 }):wait()
+      m:wait(0.15)
+    end,
+    { on = "run.done", to = "look" },
   },
   k.state "look" {
     enter = function(m)
@@ -107,19 +175,53 @@ return k.behavior "get_up" {
   k.state "roll_right" (roll "right"),
   k.state "fold" {
     run = function(m, s)
-      local steps, turns = floor.fold(s.joints, P.fold_pace)
+      note("lying", s)
+      local up = floor.up(s.base)
+      m.vars.slope_x = math.max(-0.1, math.min(0.1, up.z))
+      m.vars.slope_y = math.max(-0.1, math.min(0.1, up.y))
+      local steps, turns = floor.fold(s.joints, P.fold_pace, P.sf * m.vars.slope_y, P.wide)
       m.vars.arms = turns
       play(m, steps)
       m:wait(P.bear_s)
-      play(m, { floor.bear(turns, P.lean_rad + m.vars.learnt_rad) })
     end,
-    { on = "run.done", when = bears, to = "rise" },
-    { on = "run.done", to = "again", why = "not on hands and feet" },
+    { on = "run.done", to = "bear" },
+  },
+  k.state "bear" {
+    run = function(m, s)
+      note("folded", s)
+      local step = floor.bear(m.vars.arms, P.lean_rad + m.vars.learnt_rad - P.sx0 * m.vars.slope_x, P.sy * m.vars.slope_y, P.wide)
+      m.posture:move(step[1], { time_s = step.time_s }):wait()
+      if P.flat <= 0 then return end
+      while true do
+        note("flat", s)
+        local up, j = floor.up(s.base), s.joints
+        local lean = math.atan2(-up.x, up.z)
+        local l = lean + j.l_hip_pitch.position_rad + j.l_knee.position_rad
+        local r = lean + j.r_hip_pitch.position_rad + j.r_knee.position_rad
+        local pose = {}
+        for n, v in pairs(step[1]) do pose[n] = v end
+        pose.l_ankle_pitch = math.max(-0.9, math.min(0.7, -l - m.vars.slope_x))
+        pose.r_ankle_pitch = math.max(-0.9, math.min(0.7, -r - m.vars.slope_x))
+        pose.l_hip_pitch, pose.r_hip_pitch = P.b_hip, P.b_hip
+        pose.l_knee, pose.r_knee = P.b_knee, P.b_knee
+        m.posture:move(pose, { time_s = P.flat_move_s }):wait()
+        note("flat2", s)
+        pose.l_ankle_pitch, pose.r_ankle_pitch = P.b_ankle, P.b_ankle
+        for _, n in ipairs { "l_shoulder_pitch", "r_shoulder_pitch" } do pose[n] = pose[n] + (pose[n] > 0 and 1 or 1) * P.b_sh end
+        m.posture:move(pose, { time_s = P.bear2_s }):wait()
+      end
+    end,
+    { when = function(s, m) return m.time_s >= P.bear_min_s and bears(s) and rears(s, m) end, to = "rise" },
+    { after = P.bear_max_s, when = bears, to = "rise" },
+    { after = P.bear_max_s, to = "again", why = "not on hands and feet" },
   },
   k.state "rise" {
-    run = function(m)
+    run = function(m, s)
+      note("rise", s)
       m.posture:set_gains("rise")
-      local motion = m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad, P.rise_pace))
+      local x, z = com(s)
+      local from = P.from * (x - 0.03) / z
+      local motion = m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad, P.rise_pace, P.sx * m.vars.slope_x, P.sy * m.vars.slope_y, P.wide, from, P.over))
       m:wait(P.flat_s)
       m.balance:set_parameter("share", 1)
       motion:wait()
@@ -129,6 +231,7 @@ return k.behavior "get_up" {
   },
   k.state "steady" {
     initial = "sways",
+    enter = function(m, s) note("steady", s) end,
     { when = function(s) return s.base.tilt_rad > 0.8 end, to = "fell" },
     k.state "sways" {
       { when = stands, to = "stands" },
@@ -142,6 +245,7 @@ return k.behavior "get_up" {
   },
   k.state "fell" {
     enter = function(m, s)
+      note("fell", s)
       m.vars.learnt_rad = m.vars.learnt_rad + (fell_forward(s) and P.learn_rad or -P.learn_rad)
     end,
     { after = 0, to = "again" },
