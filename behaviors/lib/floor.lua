@@ -79,6 +79,8 @@ end
 -- Whether the torso lies, on whichever side.
 function floor.lies(base) return base.posture ~= "upright" and base.posture ~= "falling" end
 
+local function timed(pose, time_s) return { pose, time_s = time_s } end
+
 -- The whole turn to add to a shoulder's `target` so that it is nearest to where the arm is, within its limits.
 function floor.nearest_turn(target, position)
   local best = 0
@@ -128,20 +130,35 @@ local function side(letter, v)
   }
 end
 
-local function timed(pose, time_s) return { pose, time_s = time_s } end
 
 -- Straight legs; the arms stay where they are.
-function floor.lying(spread, joints)
-  local pose = poses.with(lie, { l_hip_roll = spread or 0, r_hip_roll = -(spread or 0) })
-  if joints then
-    for _, joint in ipairs { "l_shoulder_pitch", "r_shoulder_pitch" } do
-      local at = joints[joint].position_rad
-      local whole = turn * math.floor(at / turn + 0.5)
-      local rest = at - whole
-      if math.abs(rest) < math.pi / 2 then pose[joint] = whole + 0.2 elseif rest < 0 then pose[joint] = whole - math.pi end
-    end
+function floor.lying() return poses.with(lie, {}) end
+
+-- On the face: the legs a little apart, and the arms beside the body, or overhead when they lie there.
+function floor.prone(joints)
+  local pose = poses.with(lie, { l_hip_roll = 0.25, r_hip_roll = -0.25 })
+  for _, joint in ipairs { "l_shoulder_pitch", "r_shoulder_pitch" } do
+    local whole = turn * math.floor(joints[joint].position_rad / turn + 0.5)
+    local rest = joints[joint].position_rad - whole
+    pose[joint] = whole + (rest < -math.pi / 2 and -math.pi or 0.2)
   end
   return pose
+end
+
+-- Whether a leg lies otherwise than in that pose, under the other one for example.
+function floor.caught(joints)
+  for joint, target in pairs(floor.prone(joints)) do
+    local far = joint:find("ankle", 1, true) and 0.3 or joint:find("shoulder", 1, true) and 10 or 0.15
+    if math.abs(joints[joint].position_rad - target) > far then return true end
+  end
+  return false
+end
+
+-- Frees it: feet off the ground and apart, then straight again.
+function floor.freeing(joints)
+  return {
+    timed(poses.with(floor.prone(joints), { l_knee = 1.3, r_knee = 1.3 }), 0.4), timed(floor.prone(joints), 0.3),
+  }
 end
 
 -- From the face onto hands and feet: { pose, time_s = }, one motion each, in `pace` times their time, and the turns of

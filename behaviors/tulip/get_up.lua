@@ -6,8 +6,8 @@ local k = require "kadans"
 local floor = require "floor"
 
 local P = k.params {
-  tries       = { 3, min = 1, max = 10, doc = "how often it tries" },
-  rolls       = { 2, min = 1, max = 10, doc = "how often it rolls in one try" },
+  tries       = { 5, min = 1, max = 10, doc = "how often it tries" },
+  rolls       = { 4, min = 1, max = 10, doc = "how often it rolls in one try" },
   still_s     = { 0.35, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins: torque is back by then" },
   still_rad_s = { 0.5, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
   patience_s  = { 2.0, min = 0.1, max = 20, unit = "s", doc = "longest wait to lie still" },
@@ -27,22 +27,23 @@ local P = k.params {
   bear2_s      = { 0.5, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   wide      = { 0.06, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   sf      = { 0, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  kick      = { 1, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   least_s      = { 0.75, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   from      = { 0, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   over      = { 3, min = 0, max = 14, unit = "s", doc = "time to come to rest on hands and feet" },
+  face_s      = { 0.8, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  frees      = { 2, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  prone_s      = { 0.2, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  calm_s      = { 0.1, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   sx0      = { 0, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   sx      = { 1, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   sy      = { 1, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  spread     = { 0.25, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  arms     = { 1, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
   steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
   tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
   lean_rad    = { 0.0, min = -0.2, max = 0.2, unit = "rad", doc = "how far back it leans in the ankles while it rises" },
   learn_rad   = { 0.03, min = 0, max = 0.2, unit = "rad", doc = "change of that after a fall, away from where it fell" },
   folded      = { -1, min = -1, max = 1, doc = "up, along its height, below which it is still folded when it falls" },
-  straight_s  = { 0.22, min = 0.02, max = 2, unit = "s", doc = "time to stretch the legs after a roll" },
+  straight_s  = { 0.28, min = 0.02, max = 2, unit = "s", doc = "time to stretch the legs after a roll" },
   turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
   face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
   flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
@@ -73,13 +74,6 @@ local function fell_forward(s)
   return up.x < 0 and up.z > P.folded
 end
 
-local function caught(s)
-  for _, leg in ipairs { "l", "r" } do
-    if s.joints[leg .. "_knee"].position_rad > 0.3 or math.abs(s.joints[leg .. "_hip_pitch"].position_rad) > 0.2 then return true end
-  end
-  return false
-end
-
 local function is(posture) return function(s) return s.base.posture == posture end end
 
 local function play(m, steps)
@@ -89,14 +83,15 @@ end
 local function roll(over)
   return {
     run = function(m, s)
+      m:clear_faults()
       m.vars.rolls = m.vars.rolls + 1
       m.vars.turned = false
-      play(m, floor.roll(over, s.joints, m.vars.rolls == 1 and P.roll_way > 1.5 and 2 or 1))
+      play(m, floor.roll(over, s.joints, m.vars.rolls % 2 == 1 and P.roll_way or 3 - P.roll_way))
       m.posture:move(floor.lying(), { time_s = P.straight_s }):wait()
       m.vars.turned = true
       m:wait(P.turn_s)
     end,
-    { when = function(s, m) return m.vars.turned and floor.up(s.base).x < P.face end, to = "fold" },
+    { when = function(s, m) return m.vars.turned and floor.up(s.base).x < P.face end, to = "face" },
     { on = "run.done", when = function(_, m) return m.vars.rolls < P.rolls end, to = "look", why = "did not roll over" },
     { on = "run.done", to = "again", why = "did not roll over" },
   }
@@ -143,31 +138,38 @@ return k.behavior "get_up" {
       m.posture:set_gains("get_up")
       m.balance:set_parameter("share", 0)
       m.stance:set_parameter("share", 0)
-      m.posture:move(floor.lying(P.spread, P.arms > 0 and s.joints), { time_s = 0.4 })
+      m.posture:move(floor.up(s.base).x < -0.9 and floor.prone(s.joints) or floor.lying(), { time_s = 0.4 })
     end,
     during = function(m, s)
       m.vars.still_s = rate(s) < P.still_rad_s and m.vars.still_s + 0.01 or 0
     end,
-    { when = function(s, m) return m.vars.still_s >= P.still_s and m.time_s > P.least_s and P.kick > 0 and caught(s) end, to = "free" },
     { when = function(_, m) return m.vars.still_s >= P.still_s and m.time_s > P.least_s end, to = "look" },
     { after = P.patience_s, to = "look" },
   },
-  k.state "free" {
+  k.state "face" {
     run = function(m, s)
-      local pose = floor.lying(P.spread, s.joints)
-      pose.l_knee, pose.r_knee = 0.9, 0.9
-      m.posture:move(pose, { time_s = 0.3 }):wait()
-      m.posture:move(floor.lying(P.spread, s.joints), { time_s = 0.3 }):wait()
-      m:wait(0.15)
+      m:clear_faults()
+      for i = 0, P.frees do
+        m.posture:move(floor.prone(s.joints), { time_s = P.prone_s })
+        local waited, still = 0, 0
+        while waited < P.face_s and still < P.calm_s do
+          m:wait(0.02)
+          waited, still = waited + 0.02, rate(s) < P.still_rad_s and floor.up(s.base).x < -0.97 and still + 0.02 or 0
+        end
+        if i == P.frees or not floor.caught(s.joints) then return end
+        note("caught", s)
+        play(m, floor.freeing(s.joints))
+      end
     end,
-    { on = "run.done", to = "look" },
+    { on = "run.done", to = "fold" },
   },
   k.state "look" {
     enter = function(m)
       if m.vars.rolls == 0 then m.vars.tried = m.vars.tried + 1 end
     end,
     { when = stands, to = "steady" },
-    { when = is "prone", to = "fold" },
+    { when = function(s) return floor.up(s.base).x < -0.97 and not floor.caught(s.joints) end, to = "fold" },
+    { when = is "prone", to = "face" },
     { when = function(s) return s.base.posture == "left" or floor.up(s.base).y <= 0 end, to = "roll_left" },
     { after = 0, to = "roll_right" },
   },
@@ -175,10 +177,13 @@ return k.behavior "get_up" {
   k.state "roll_right" (roll "right"),
   k.state "fold" {
     run = function(m, s)
+      m:clear_faults()
       note("lying", s)
       local up = floor.up(s.base)
-      m.vars.slope_x = math.max(-0.1, math.min(0.1, up.z))
-      m.vars.slope_y = math.max(-0.1, math.min(0.1, up.y))
+      if up.x < -0.98 then
+        m.vars.slope_x = math.max(-0.1, math.min(0.1, up.z))
+        m.vars.slope_y = math.max(-0.1, math.min(0.1, up.y))
+      end
       local steps, turns = floor.fold(s.joints, P.fold_pace, P.sf * m.vars.slope_y, P.wide)
       m.vars.arms = turns
       play(m, steps)
@@ -188,6 +193,7 @@ return k.behavior "get_up" {
   },
   k.state "bear" {
     run = function(m, s)
+      m:clear_faults()
       note("folded", s)
       local step = floor.bear(m.vars.arms, P.lean_rad + m.vars.learnt_rad - P.sx0 * m.vars.slope_x, P.sy * m.vars.slope_y, P.wide)
       m.posture:move(step[1], { time_s = step.time_s }):wait()
@@ -212,11 +218,13 @@ return k.behavior "get_up" {
       end
     end,
     { when = function(s, m) return m.time_s >= P.bear_min_s and bears(s) and rears(s, m) end, to = "rise" },
+    { when = function(s, m) return m.time_s > 0.3 and (floor.up(s.base).z > 0 or math.abs(floor.up(s.base).y) > 0.75) end, to = "again", why = "fell over" },
     { after = P.bear_max_s, when = bears, to = "rise" },
     { after = P.bear_max_s, to = "again", why = "not on hands and feet" },
   },
   k.state "rise" {
     run = function(m, s)
+      m:clear_faults()
       note("rise", s)
       m.posture:set_gains("rise")
       local x, z = com(s)
