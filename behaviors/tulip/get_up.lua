@@ -1,5 +1,9 @@
 -- Gets up from any position: waits until the robot lies still, finds out how it lies, rolls onto the face if needed,
--- folds onto hands and feet, and rises. When something goes wrong, it lies down again and begins anew, a few times.
+-- folds onto hands and feet, and rises as soon as its centre of mass is over its soles. When something goes wrong, it lies
+-- down again and begins anew, a few times. The ground may slope: it is felt when the robot lies on its face.
+--
+-- A joint that is knocked faster than its drive is a fault, and the safety layer only damps it from then on. So each phase
+-- begins with clear_faults.
 --
 -- When the first try succeeds, it passes through "at_once" on its way to "up": sweeps count that state, number 1.
 local k = require "kadans"
@@ -8,35 +12,16 @@ local floor = require "floor"
 local P = k.params {
   tries       = { 5, min = 1, max = 10, doc = "how often it tries" },
   rolls       = { 4, min = 1, max = 10, doc = "how often it rolls in one try" },
-  still_s     = { 0.35, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins: torque is back by then" },
+  still_s     = { 0.35, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins" },
+  least_s     = { 0.75, min = 0, max = 5, unit = "s", doc = "least time to lie: torque is back by then" },
   still_rad_s = { 0.5, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
   patience_s  = { 2.0, min = 0.1, max = 20, unit = "s", doc = "longest wait to lie still" },
+  calm_s      = { 0.1, min = 0, max = 2, unit = "s", doc = "time to lie still on its face after a roll" },
+  flat_max_s  = { 0.8, min = 0, max = 5, unit = "s", doc = "longest wait for that" },
+  frees       = { 2, min = 0, max = 10, doc = "how often it frees a leg that lies under the other one" },
   bear_s      = { 0.05, min = 0, max = 2, unit = "s", doc = "time to come to rest on hands and feet" },
-  bear_min_s      = { 0, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  bear_max_s      = { 3, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  ahead_s      = { 0.2, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  foot_rad      = { 0.15, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  near_m      = { 0.06, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  rear_m      = { 0.07, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  flat      = { 1, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  b_hip      = { -2.38, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  b_knee      = { 0.15, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  b_ankle      = { 0.15, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  b_sh      = { -0.4, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  flat_move_s      = { 0.25, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  bear2_s      = { 0.5, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  wide      = { 0.06, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  sf      = { 0, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  least_s      = { 0.75, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  from      = { 0, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  over      = { 3, min = 0, max = 14, unit = "s", doc = "time to come to rest on hands and feet" },
-  face_s      = { 0.8, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  frees      = { 2, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  prone_s      = { 0.2, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  calm_s      = { 0.1, min = 0, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  sx0      = { 0, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  sx      = { 1, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
-  sy      = { 1, min = -4, max = 4, unit = "s", doc = "time to come to rest on hands and feet" },
+  haul_s      = { 3.0, min = 0, max = 10, unit = "s", doc = "longest time on hands and feet until it rises anyway" },
+  near_m      = { 0.06, min = -0.05, max = 0.2, unit = "m", doc = "how far ahead of the ankles the mass may be to rise" },
   steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
   tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
@@ -47,7 +32,7 @@ local P = k.params {
   turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
   face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
   flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
-  roll_way    = { 1, min = 1, max = 2, doc = "how it rolls first in a try, 2: as soft springs want it; then as 1" },
+  roll_way    = { 1, min = 1, max = 2, doc = "how it rolls first in a try, 2: as soft springs want it; then in turn" },
   fold_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it folds onto hands and feet in" },
   rise_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rises in; soft springs want more" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
@@ -74,6 +59,14 @@ local function fell_forward(s)
   return up.x < 0 and up.z > P.folded
 end
 
+-- It has fallen over on its way onto hands and feet.
+local function tipped(s)
+  local up = floor.up(s.base)
+  return up.z > 0 or math.abs(up.y) > 0.75
+end
+
+local function on_face(s) return floor.up(s.base).x < -0.97 end
+
 local function is(posture) return function(s) return s.base.posture == posture end end
 
 local function play(m, steps)
@@ -97,35 +90,9 @@ local function roll(over)
   }
 end
 
-local function com(s)
-  local up, j = floor.up(s.base), s.joints
-  local lean = math.atan2(-up.x, up.z)
-  local hip = (j.l_hip_pitch.position_rad + j.r_hip_pitch.position_rad) / 2
-  local knee = (j.l_knee.position_rad + j.r_knee.position_rad) / 2
-  local ankle = (j.l_ankle_pitch.position_rad + j.r_ankle_pitch.position_rad) / 2
-  local arm = (j.l_shoulder_pitch.position_rad + j.r_shoulder_pitch.position_rad) / 2
-  return floor.com(lean, hip, knee, ankle, arm)
-end
-
-local function note(what, s)
-  local up, j = floor.up(s.base), s.joints
-  local lean = math.atan2(-up.x, up.z)
-  local l = lean + j.l_hip_pitch.position_rad + j.l_knee.position_rad + j.l_ankle_pitch.position_rad
-  local r = lean + j.r_hip_pitch.position_rad + j.r_knee.position_rad + j.r_ankle_pitch.position_rad
-  local x, z = com(s)
-  k.log.info(string.format("%s com %.3f %.2f up %.2f %.2f %.2f lean %.2f feet %.2f %.2f  l %.0f %.3f r %.0f %.3f hip %.2f %.2f kn %.2f %.2f an %.2f %.2f sh %.2f %.2f w %.2f roll %.2f %.2f yaw %.2f %.2f aroll %.2f %.2f", what, x, z, up.x, up.y, up.z, lean, l, r, s.feet.left.force_N, s.feet.left.cop_x_m, s.feet.right.force_N, s.feet.right.cop_x_m,
-   j.l_hip_pitch.position_rad, j.r_hip_pitch.position_rad, j.l_knee.position_rad, j.r_knee.position_rad, j.l_ankle_pitch.position_rad,j.r_ankle_pitch.position_rad,j.l_shoulder_pitch.position_rad,j.r_shoulder_pitch.position_rad, s.base.angular_velocity_rad_s.y, j.l_hip_roll.position_rad, j.r_hip_roll.position_rad, j.l_hip_yaw.position_rad, j.r_hip_yaw.position_rad, j.l_ankle_roll.position_rad, j.r_ankle_roll.position_rad))
-end
-
-local function rears(s, m)
-  local x, z, foot = com(s)
-  local to = x + P.ahead_s * z * s.base.angular_velocity_rad_s.y
-  return x < P.near_m and to < P.rear_m and to > -0.1 and floor.up(s.base).z < 0 and math.abs(foot + m.vars.slope_x) < P.foot_rad
-end
-
 return k.behavior "get_up" {
   controls = "balanced",
-  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, slope_x = 0, slope_y = 0, rolls = 0, turned = false },
+  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, slope = { ahead = 0, left = 0 }, rolls = 0, turned = false },
   initial  = "lie",
 
   k.state "at_once" { { after = 0, to = "up" } },
@@ -138,53 +105,47 @@ return k.behavior "get_up" {
       m.posture:set_gains("get_up")
       m.balance:set_parameter("share", 0)
       m.stance:set_parameter("share", 0)
-      m.posture:move(floor.up(s.base).x < -0.9 and floor.prone(s.joints) or floor.lying(), { time_s = 0.4 })
+      m.posture:move(on_face(s) and floor.prone(s.joints) or floor.lying(), { time_s = 0.4 })
     end,
     during = function(m, s)
       m.vars.still_s = rate(s) < P.still_rad_s and m.vars.still_s + 0.01 or 0
     end,
-    { when = function(_, m) return m.vars.still_s >= P.still_s and m.time_s > P.least_s end, to = "look" },
+    { when = function(_, m) return m.vars.still_s >= P.still_s and m.time_s >= P.least_s end, to = "look" },
     { after = P.patience_s, to = "look" },
-  },
-  k.state "face" {
-    run = function(m, s)
-      m:clear_faults()
-      for i = 0, P.frees do
-        m.posture:move(floor.prone(s.joints), { time_s = P.prone_s })
-        local waited, still = 0, 0
-        while waited < P.face_s and still < P.calm_s do
-          m:wait(0.02)
-          waited, still = waited + 0.02, rate(s) < P.still_rad_s and floor.up(s.base).x < -0.97 and still + 0.02 or 0
-        end
-        if i == P.frees or not floor.caught(s.joints) then return end
-        note("caught", s)
-        play(m, floor.freeing(s.joints))
-      end
-    end,
-    { on = "run.done", to = "fold" },
   },
   k.state "look" {
     enter = function(m)
       if m.vars.rolls == 0 then m.vars.tried = m.vars.tried + 1 end
     end,
     { when = stands, to = "steady" },
-    { when = function(s) return floor.up(s.base).x < -0.97 and not floor.caught(s.joints) end, to = "fold" },
+    { when = function(s) return on_face(s) and not floor.caught(s.joints) end, to = "fold" },
     { when = is "prone", to = "face" },
     { when = function(s) return s.base.posture == "left" or floor.up(s.base).y <= 0 end, to = "roll_left" },
     { after = 0, to = "roll_right" },
   },
   k.state "roll_left"  (roll "left"),
   k.state "roll_right" (roll "right"),
+  k.state "face" {
+    run = function(m, s)
+      m:clear_faults()
+      for tries = 0, P.frees do
+        m.posture:move(floor.prone(s.joints), { time_s = 0.2 })
+        local waited_s, calm_s = 0, 0
+        while waited_s < P.flat_max_s and calm_s < P.calm_s do
+          m:wait(0.02)
+          waited_s, calm_s = waited_s + 0.02, on_face(s) and rate(s) < P.still_rad_s and calm_s + 0.02 or 0
+        end
+        if tries == P.frees or not floor.caught(s.joints) then return end
+        play(m, floor.freeing(s.joints))
+      end
+    end,
+    { on = "run.done", to = "fold" },
+  },
   k.state "fold" {
     run = function(m, s)
       m:clear_faults()
-      note("lying", s)
-      local up = floor.up(s.base)
-      if up.x < -0.98 then
-        m.vars.slope_x = math.max(-0.1, math.min(0.1, up.z))
-        m.vars.slope_y = math.max(-0.1, math.min(0.1, up.y))
-      end
-      local steps, turns = floor.fold(s.joints, P.fold_pace, P.sf * m.vars.slope_y, P.wide)
+      m.vars.slope = floor.slope(s.base) or m.vars.slope
+      local steps, turns = floor.fold(s.joints, P.fold_pace)
       m.vars.arms = turns
       play(m, steps)
       m:wait(P.bear_s)
@@ -194,42 +155,21 @@ return k.behavior "get_up" {
   k.state "bear" {
     run = function(m, s)
       m:clear_faults()
-      note("folded", s)
-      local step = floor.bear(m.vars.arms, P.lean_rad + m.vars.learnt_rad - P.sx0 * m.vars.slope_x, P.sy * m.vars.slope_y, P.wide)
-      m.posture:move(step[1], { time_s = step.time_s }):wait()
-      if P.flat <= 0 then return end
-      while true do
-        note("flat", s)
-        local up, j = floor.up(s.base), s.joints
-        local lean = math.atan2(-up.x, up.z)
-        local l = lean + j.l_hip_pitch.position_rad + j.l_knee.position_rad
-        local r = lean + j.r_hip_pitch.position_rad + j.r_knee.position_rad
-        local pose = {}
-        for n, v in pairs(step[1]) do pose[n] = v end
-        pose.l_ankle_pitch = math.max(-0.9, math.min(0.7, -l - m.vars.slope_x))
-        pose.r_ankle_pitch = math.max(-0.9, math.min(0.7, -r - m.vars.slope_x))
-        pose.l_hip_pitch, pose.r_hip_pitch = P.b_hip, P.b_hip
-        pose.l_knee, pose.r_knee = P.b_knee, P.b_knee
-        m.posture:move(pose, { time_s = P.flat_move_s }):wait()
-        note("flat2", s)
-        pose.l_ankle_pitch, pose.r_ankle_pitch = P.b_ankle, P.b_ankle
-        for _, n in ipairs { "l_shoulder_pitch", "r_shoulder_pitch" } do pose[n] = pose[n] + (pose[n] > 0 and 1 or 1) * P.b_sh end
-        m.posture:move(pose, { time_s = P.bear2_s }):wait()
-      end
+      local bear = floor.bear(m.vars.arms, P.lean_rad + m.vars.learnt_rad, m.vars.slope)
+      play(m, { bear })
+      while true do play(m, floor.haul(bear[1], s, m.vars.slope)) end
     end,
-    { when = function(s, m) return m.time_s >= P.bear_min_s and bears(s) and rears(s, m) end, to = "rise" },
-    { when = function(s, m) return m.time_s > 0.3 and (floor.up(s.base).z > 0 or math.abs(floor.up(s.base).y) > 0.75) end, to = "again", why = "fell over" },
-    { after = P.bear_max_s, when = bears, to = "rise" },
-    { after = P.bear_max_s, to = "again", why = "not on hands and feet" },
+    { when = function(s, m) return bears(s) and floor.over_soles(s, m.vars.slope, P.near_m) end, to = "rise" },
+    { when = function(s, m) return m.time_s > 0.3 and tipped(s) end, to = "again", why = "tipped over" },
+    { after = P.haul_s, when = bears, to = "rise" },
+    { after = P.haul_s, to = "again", why = "not on hands and feet" },
   },
   k.state "rise" {
-    run = function(m, s)
+    run = function(m)
       m:clear_faults()
-      note("rise", s)
       m.posture:set_gains("rise")
-      local x, z = com(s)
-      local from = P.from * (x - 0.03) / z
-      local motion = m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad, P.rise_pace, P.sx * m.vars.slope_x, P.sy * m.vars.slope_y, P.wide, from, P.over))
+      local lean_rad = P.lean_rad + m.vars.learnt_rad
+      local motion = m.posture:move_through(floor.rise(m.vars.arms, lean_rad, P.rise_pace, m.vars.slope))
       m:wait(P.flat_s)
       m.balance:set_parameter("share", 1)
       motion:wait()
@@ -239,7 +179,6 @@ return k.behavior "get_up" {
   },
   k.state "steady" {
     initial = "sways",
-    enter = function(m, s) note("steady", s) end,
     { when = function(s) return s.base.tilt_rad > 0.8 end, to = "fell" },
     k.state "sways" {
       { when = stands, to = "stands" },
@@ -253,7 +192,6 @@ return k.behavior "get_up" {
   },
   k.state "fell" {
     enter = function(m, s)
-      note("fell", s)
       m.vars.learnt_rad = m.vars.learnt_rad + (fell_forward(s) and P.learn_rad or -P.learn_rad)
     end,
     { after = 0, to = "again" },
