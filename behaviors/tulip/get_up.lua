@@ -14,7 +14,7 @@ local P = k.params {
   rolls       = { 4, min = 1, max = 10, doc = "how often it rolls in one try" },
   still_s     = { 0.35, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins" },
   least_s     = { 0.75, min = 0, max = 5, unit = "s", doc = "least time to lie: torque is back by then" },
-  still_rad_s = { 0.5, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
+  still_rad_s = { 0.16, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
   patience_s  = { 2.0, min = 0.1, max = 20, unit = "s", doc = "longest wait to lie still" },
   calm_s      = { 0.1, min = 0, max = 2, unit = "s", doc = "time to lie still on its face after a roll" },
   flat_max_s  = { 0.8, min = 0, max = 5, unit = "s", doc = "longest wait for that" },
