@@ -12,6 +12,11 @@ describe("get_up", function()
     run:set_sensor("feet.left.contact", true)
     run:set_sensor("feet.right.contact", true)
   end
+  -- On hands and feet, the torso 2.1 rad from upright: the centre of mass is over the soles then.
+  local function folded()
+    run:set_sensor("base.roll_rad", math.pi)
+    run:set_sensor("base.pitch_rad", math.pi - 2.1)
+  end
   local function stands()
     run:set_sensor("base.pitch_rad", 0)
     run:set_sensor("base.roll_rad", 0)
@@ -21,15 +26,25 @@ describe("get_up", function()
 
   it("lies still before it begins", function()
     lies(0, 1.5)
-    run:advance(0.3)
+    run:advance(0.7)
     expect(run.state).to_equal "lie"
     run:advance(0.2)
     expect(run.state).to_equal "fold"
   end)
 
+  it("frees a leg that lies across before it folds", function()
+    lies(0, 1.5)
+    run:set_sensor("joints.l_hip_roll.position_rad", -0.2)
+    run:advance(0.9)
+    expect(run.state).to_equal "face"
+    run:advance_to("fold")
+  end)
+
   it("folds onto hands and feet from its face, rises, and is up after two seconds of standing", function()
     run:set_parameter("flat_s", 2)  -- sensors that are set by hand tell the balance nothing
     lies(0, 1.5)
+    run:advance_to("bear")
+    folded()
     run:advance_to("rise")
     expect(run.joints.l_hip_pitch.position_rad).to_be_near(-2.3, 0.05)
     run:advance(0.9)
@@ -42,9 +57,27 @@ describe("get_up", function()
     expect(run.states).to_contain "stands at_once up"
   end)
 
+  it("waits on hands and feet until its mass is over its soles, but not for ever", function()
+    lies(0, 1.5)
+    run:advance_to("bear")
+    lies(math.pi, 1.5)  -- the torso as low as on the face
+    run:advance(2.9)
+    expect(run.state).to_equal "bear"
+    run:advance(0.2)
+    expect(run.state).to_equal "rise"
+  end)
+
+  it("does not rise when it has tipped over", function()
+    lies(0, 1.5)
+    run:advance_to("bear")
+    lies(1.5, 0)
+    run:advance(0.4)
+    expect(run.states).to_contain "bear again"
+  end)
+
   it("rolls onto its face first, over the side that it lies on", function()
     lies(0, -1.5)
-    run:advance(0.7)
+    run:advance(0.9)
     expect(run.state).to_contain "roll"
     run:advance(0.5)
     lies(0, 1.5)
@@ -54,15 +87,20 @@ describe("get_up", function()
 
   it("rolls over the right side when it lies there", function()
     lies(1.5, 0)
-    run:advance(0.7)
+    run:advance(0.9)
     expect(run.state).to_equal "roll_right"
   end)
 
   it("tries again when it falls, and says so at the end", function()
     lies(0, 1.5)
+    run:advance_to("bear")
+    folded()
     run:advance_to("rise")
+    lies(0, 1.5)
     run:advance(1.2)
     expect(run.state).to_equal "lie"
+    run:advance_to("bear")
+    folded()
     run:advance_to("rise")
     run:advance(0.9)
     stands()
