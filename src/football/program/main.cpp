@@ -1,0 +1,98 @@
+// kadans-football: matches of robots on the SDK alone, as a program of anybody could be built.
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+
+#include "kadans/signal/input_error.h"
+#include "match_report.h"
+
+namespace {
+
+using namespace kadans;
+using namespace kadans::football;
+
+constexpr int exit_passed = 0, exit_failed = 1, exit_usage = 2, exit_internal = 3;
+
+constexpr const char* usage =
+    "usage: kadans-football match FILE [--seed N] [--json] [--verbose]\n"
+    "  FILE        a match, such as config/matches/striker_drill.json\n"
+    "  --seed N    seed of all random numbers (default: the file's)\n"
+    "  --json      print the result and all decisions of the referee as one JSON object\n"
+    "  --verbose   tell on stderr what is decided and said while it goes on\n";
+
+struct Options {
+  std::string file;
+  std::optional<std::uint64_t> seed;
+  bool json = false, verbose = false;
+};
+
+int refuse_usage(const std::string& why) {
+  std::fprintf(stderr, "error: %s\n%s", why.c_str(), usage);
+  return exit_usage;
+}
+
+std::string read_options(int argc, char** argv, Options& options) {
+  if (argc < 2) return "what shall it do? 'match'";
+  if (std::strcmp(argv[1], "match") != 0) return "unknown command '" + std::string(argv[1]) + "', did you mean 'match'?";
+  for (int i = 2; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--json") {
+      options.json = true;
+    } else if (word == "--verbose" || word == "-v") {
+      options.verbose = true;
+    } else if (word == "--seed") {
+      const std::string number = i + 1 < argc ? argv[++i] : "";
+      std::uint64_t seed = 0;
+      const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), seed);
+      if (number.empty() || error != std::errc{} || end != number.data() + number.size())
+        return "--seed needs a whole number, not '" + number + "'";
+      options.seed = seed;
+    } else if (word.starts_with("-") && word != "-") {
+      return "unknown option '" + word + "'";
+    } else if (options.file.empty()) {
+      options.file = word;
+    } else {
+      return "one match at a time: '" + options.file + "' and '" + word + "'";
+    }
+  }
+  return options.file.empty() ? "which match? It is a file" : "";
+}
+
+int play(const Options& options) {
+  const MatchConfig match = read_match(options.file);
+  PlayedMatch played(match, options.seed.value_or(match.seed));
+  const auto began = std::chrono::steady_clock::now();
+  for (bool goes_on = true; goes_on;) {
+    goes_on = played.step();
+    for (const std::string& line : played.take_lines()) {
+      if (options.verbose) std::fprintf(stderr, "%s\n", line.c_str());
+    }
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began;
+  const MatchResult& result = played.result();
+  const std::string text = options.json ? json_of(result, match) : text_of(result, match);
+  std::printf("%s\n", text.c_str());
+  if (!options.json) std::printf("  %.1f times real time\n", result.simulated_s / wall.count());
+  return ended_by_itself(result) ? exit_passed : exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  if (argc == 2 && (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0))
+    return std::fputs(usage, stdout) < 0 ? exit_failed : exit_passed;
+  const std::string wrong = read_options(argc, argv, options);
+  if (!wrong.empty()) return refuse_usage(wrong);
+  try {
+    const int code = play(options);
+    return std::fflush(stdout) == 0 ? code : exit_failed;
+  } catch (const InputError& error) {
+    for (const InputProblem& problem : error.problems()) std::fprintf(stderr, "error: %s\n", problem.text().c_str());
+    return exit_usage;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return exit_internal;
+  }
+}
