@@ -18,7 +18,7 @@ end
 function ready.play(m, s, pose)
   local place = ready.place(s)
   local last = s.seen.game.secondary_s - s.seen.game.age_s < stand_s
-  if last or field.distance(pose, place) < 0.2 and math.abs(pose.heading_rad) < 0.3 then return legs.stand(m) end
+  if last or field.distance(pose, place) < 0.2 and math.abs(pose.heading_rad) < 0.3 then return legs.stand(m, s) end
   legs.go(m, s, pose, place, { x_m = place.x_m + 5, y_m = place.y_m })
 end
 

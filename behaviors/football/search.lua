@@ -14,7 +14,7 @@ function search.play(m, s, pose)
   end
   vars.searched_s = s.time_s
   local since_s = (s.time_s - vars.searches_s) % (turns_s + walks_s)
-  if since_s < turns_s or not pose then return legs.turn(m, 0.6 * vars.search_side) end
+  if since_s < turns_s or not pose then return legs.turn(m, s, 0.6 * vars.search_side) end
   local round = math.floor((s.time_s - vars.searches_s) / (turns_s + walks_s)) % 2
   local place = { x_m = (round == 0 and 0.25 or -0.25) * s.seen.me.length_m, y_m = 0 }
   legs.go(m, s, pose, place, { x_m = 0, y_m = 0 })

@@ -15,7 +15,7 @@ local P = k.params {
   tell_s = { 1, min = 0.1, max = 60, unit = "s", doc = "how often it tells its mates while it plays" },
 }
 
-k.events {
+local events = {
   ["robot.tell"] = {
     "what a mate knows and does",
     number = { "", min = 1, max = 20 }, role = k.text, plays = k.flag, far_s = { "s", min = -10, max = 1000 },
@@ -23,6 +23,8 @@ k.events {
     ball_x_m = { "m", min = -20, max = 20, optional = true }, ball_y_m = { "m", min = -20, max = 20, optional = true },
   },
 }
+for name, order in pairs(require "foot_orders") do events[name] = order end
+k.events(events)
 
 local plays = { striker = striker.play, supporter = supporter.play, keeper = keeper.play }
 
@@ -55,7 +57,7 @@ end
 local function play(m, s)
   game.listen(m, s)
   local pose = field.pose(s)
-  if not pose then return legs.stand(m) end
+  if not pose then return legs.stand(m, s) end
   local ball = game.ball(m, s, pose)
   note_kick_off(m, s, ball)
   m.vars.role = roles.pick(m, s, pose, ball)
@@ -65,14 +67,14 @@ end
 
 local function stand(m, s)
   game.listen(m, s)
-  legs.stand(m)
+  legs.stand(m, s)
 end
 
 local function go_to_place(m, s)
   game.listen(m, s)
   local pose = field.pose(s)
   m.vars.kick_off_ours = false
-  if pose then ready.play(m, s, pose) else legs.stand(m) end
+  if pose then ready.play(m, s, pose) else legs.stand(m, s) end
 end
 
 local function is(phase) return function(s, m) return game.phase(s, m) == phase end end
@@ -84,7 +86,6 @@ return k.decisions "team" {
   always  = { { on = "robot.tell", action = hear } },
 
   k.state "wait" {
-    enter = function(m) if not m:plays("footwork") then m:replace("footwork") end end,
     during = stand,
     { when = is "ready", to = "ready" },
     { when = is "play", to = "play" },

@@ -4,6 +4,7 @@
 local k = require "kadans"
 local ball = require "ball"
 local floor = require "floor"
+local orders = require "foot_orders"
 local walk = require "walking"
 
 local P = k.params {
@@ -13,21 +14,7 @@ local P = k.params {
   after_s    = { 0.6, min = 0, max = 10, unit = "s", doc = "time in place after a kick" },
 }
 
-k.events {
-  ["foot.go"] = {
-    "walk to a place, and stand there",
-    x_m = { "m", min = -30, max = 30 }, y_m = { "m", min = -30, max = 30 },
-    heading_rad = { "rad", min = -7, max = 7, doc = "how it stands there, from where it points now" },
-    most_m_s = { "m/s", min = 0.05, max = 0.5, optional = true },
-  },
-  ["foot.kick"] = {
-    "go to the ball, around it, and kick it toward a place",
-    x_m = { "m", min = -30, max = 30 }, y_m = { "m", min = -30, max = 30 },
-    beyond_m = { "m", min = 0, max = 4, optional = true, doc = "how far beyond the place it would roll" },
-  },
-  ["foot.turn"] = { "turn on the spot", rad_s = { "rad/s", min = -0.8, max = 0.8 } },
-  ["foot.stand"] = { "stand where it is" },
-}
+k.events(orders)
 
 -- A place that is given from where the robot is, in the frame of walk.at.
 local function from_here(m, data)
@@ -41,7 +28,7 @@ local function from_here(m, data)
 end
 
 local function hear(m, s)
-  local data = s.event.data
+  local data = s.event.data or {}
   local order = { what = s.event.name, heard_s = s.time_s, rad_s = data.rad_s, most_m_s = data.most_m_s, beyond_m = data.beyond_m }
   if data.x_m then order.place = from_here(m, data) end
   m.vars.order = order
@@ -84,6 +71,7 @@ return k.behavior "footwork" {
   controls = "walking",
   vars     = { known = {}, side = 1, armed = false, kicked_s = -10 },
   initial  = "set_out",
+  always   = { { on = "foot.*", action = hear } },
 
   k.state "set_out" {
     run = function(m) walk.set_out(m, P.settle_s) end,
@@ -93,7 +81,6 @@ return k.behavior "footwork" {
   k.state "obeys" {
     endless = true,
     during = obey,
-    { on = "foot.*", action = hear },
     { when = lies, to = "fallen", why = "lies" },
   },
   k.state "fallen" {

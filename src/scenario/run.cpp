@@ -44,9 +44,7 @@ void RunSteps::step() {
   }
 }
 
-RunMark RunSteps::mark() const noexcept {
-  return {parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()};
-}
+RunMark RunSteps::mark() const noexcept { return {parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()}; }
 
 namespace {
 

@@ -38,10 +38,10 @@ class Simulation {
 
   // One control period of all robots, then the world's. Throws std::runtime_error when the model fails.
   void step();
-  std::int64_t time_ns() const noexcept;           // at which the next step begins
-  std::int64_t period_ns() const noexcept;         // of a step
-  std::uint64_t state_hash() const noexcept;       // over all steps
-  std::vector<SaidLine> take_lines();              // since the last call; call it in each step
+  std::int64_t time_ns() const noexcept;      // at which the next step begins
+  std::int64_t period_ns() const noexcept;    // of a step
+  std::uint64_t state_hash() const noexcept;  // over all steps
+  std::vector<SaidLine> take_lines();         // since the last call; call it in each step
 
   World& world() noexcept;
   std::size_t object(std::string_view name) const;  // throws std::invalid_argument where there is none
@@ -49,9 +49,9 @@ class Simulation {
   // Robots by number: 0 is the scenario's own, then `robots` in their order. Throws std::out_of_range.
   std::size_t robots() const noexcept;
   WorldRobot& robot(std::size_t number);
-  const Catalog& catalog(std::size_t number) const;                // its model, signals, and entries of the world model
-  double signal(std::size_t number, SignalId id) const;            // as of its last control tick
-  const RobotStatus& status(std::size_t number) const;             // what it knows of itself; the same
+  const Catalog& catalog(std::size_t number) const;      // its model, signals, and entries of the world model
+  double signal(std::size_t number, SignalId id) const;  // as of its last control tick
+  const RobotStatus& status(std::size_t number) const;   // what it knows of itself; the same
   // To its world model, in the next tick of its supervisor. Throws std::invalid_argument where it has none.
   void observe(std::size_t number, const Observation& observation);
   // The entry of its world model with this name. Throws std::invalid_argument.

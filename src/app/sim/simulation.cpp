@@ -10,42 +10,40 @@
 namespace kadans {
 namespace {
 
-class Lines final : public LineSink {
- public:
-  std::vector<SaidLine> kept;
-
- private:
-  void tell(const Line& line) override {
-    constexpr SaidLine::Kind kinds[] = {SaidLine::Kind::info, SaidLine::Kind::warning, SaidLine::Kind::error};
-    if (line.transition == nullptr) {
-      kept.push_back({line.time_ns, kinds[static_cast<std::size_t>(line.severity)], std::string(line.behavior),
-                      std::string(line.text)});
-      return;
-    }
-    const Transition& change = *line.transition;
-    const std::string why = change.why.empty() ? "" : " (" + change.why + ")";
-    kept.push_back(
-        {line.time_ns, SaidLine::Kind::transition, change.behavior, change.from + " -> " + change.to + why});
-  }
-};
-
-constexpr std::size_t lines_kept = 1000;
+constexpr std::size_t simulation_lines_kept = 1000;
 
 }  // namespace
 
 class Simulation::Stepped {
  public:
+  class Lines final : public LineSink {
+   public:
+    std::vector<SaidLine> kept;
+
+   private:
+    void tell(const Line& line) override {
+      constexpr SaidLine::Kind kinds[] = {SaidLine::Kind::info, SaidLine::Kind::warning, SaidLine::Kind::error};
+      if (line.transition == nullptr) {
+        kept.push_back({line.time_ns, kinds[static_cast<std::size_t>(line.severity)], std::string(line.behavior),
+                        std::string(line.text)});
+        return;
+      }
+      const Transition& change = *line.transition;
+      const std::string why = change.why.empty() ? "" : " (" + change.why + ")";
+      kept.push_back(
+          {line.time_ns, SaidLine::Kind::transition, change.behavior, change.from + " -> " + change.to + why});
+    }
+  };
+
   Stepped(const std::string& text, const std::filesystem::path& file, std::uint64_t seed)
       : scenario(read_scenario_config_text(text, file.string())),
-        log({&lines}, lines_kept),
+        log({&lines}, simulation_lines_kept),
         assembly(scenario, seed, log),
         steps(assembly.parts()) {
     refuse_faulty_behaviors(assembly);
   }
 
-  const Assembly& of(std::size_t number) const {
-    return number == 0 ? assembly : *assembly.others().at(number - 1);
-  }
+  const Assembly& of(std::size_t number) const { return number == 0 ? assembly : *assembly.others().at(number - 1); }
   const RunParts& parts(std::size_t number) const {
     return number == 0 ? steps.parts() : steps.parts().others.at(number - 1);
   }

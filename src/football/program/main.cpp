@@ -34,7 +34,8 @@ int refuse_usage(const std::string& why) {
 
 std::string read_options(int argc, char** argv, Options& options) {
   if (argc < 2) return "what shall it do? 'match'";
-  if (std::strcmp(argv[1], "match") != 0) return "unknown command '" + std::string(argv[1]) + "', did you mean 'match'?";
+  if (std::strcmp(argv[1], "match") != 0)
+    return "unknown command '" + std::string(argv[1]) + "', did you mean 'match'?";
   for (int i = 2; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--json") {

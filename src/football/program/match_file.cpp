@@ -20,7 +20,8 @@ void read_rules(InputObject& f, MatchRules& rules) {
   f.number("stop_s", rules.stop_s, {1, 60, "s"}, "of a stop for a free kick");
   f.number("set_play_s", rules.set_play_s, {5, 120, "s"}, "to take a free kick");
   f.number("removal_s", rules.removal_s, {1, 600, "s"}, "of a penalty at the touchline");
-  f.number("hidden_playing_s", rules.hidden_playing_s, {0, 60, "s"}, "so long the packets hide playing after the whistle");
+  f.number("hidden_playing_s", rules.hidden_playing_s, {0, 60, "s"},
+           "so long the packets hide playing after the whistle");
   std::uint64_t mercy = static_cast<std::uint64_t>(rules.mercy_difference), messages = rules.messages;
   f.whole("mercy_difference", mercy, 1, 1000, "lead that ends the match");
   f.whole("messages", messages, 0, 65'535, "messages of a team in a game");
@@ -43,7 +44,8 @@ void read_team(InputObject& f, TeamSetup& team, unsigned least) {
   f.text("name", team.name, "what the team is called");
   if (f.path("team", team.folder, "the folder of the team, with its team.lua, from the project root", least > 0)) {
     std::string decisions = team.folder + "/team.lua";
-    if (!f.is_file(decisions)) f.refuse("team", "team: the folder '" + team.folder + "' has no team.lua, a k.decisions");
+    if (!f.is_file(decisions))
+      f.refuse("team", "team: the folder '" + team.folder + "' has no team.lua, a k.decisions");
   }
   if (!f.path("robot", team.robot, "the configuration of its robots") && team.robot.empty()) team.robot = "?";
   f.whole("players", team.players, least, team_players_max, "robots of the team", least > 0);
@@ -88,9 +90,10 @@ std::string world_model() {
           "length_m": { "unit": "m" , "what": "of the field" }, "width_m": { "unit": "m", "what": "of the field" },
           "goal_m": { "unit": "m", "what": "width of the goals" }, "circle_m": { "unit": "m", "what": "radius of the centre circle" } } })";
   for (std::size_t i = 1; i <= robots_told; ++i) {
-    text += ",\n      \"robot_" + std::to_string(i) +
-            "\": { \"what\": \"a robot that it sees, the nearest first\", \"place\": \"point\", \"within_m\": 20, "
-            "\"forget_s\": 1.5, \"fields\": { \"mate\": { \"what\": \"1 of its own team\", \"min\": 0, \"max\": 1 } } }";
+    text +=
+        ",\n      \"robot_" + std::to_string(i) +
+        "\": { \"what\": \"a robot that it sees, the nearest first\", \"place\": \"point\", \"within_m\": 20, "
+        "\"forget_s\": 1.5, \"fields\": { \"mate\": { \"what\": \"1 of its own team\", \"min\": 0, \"max\": 1 } } }";
   }
   return text + " }";
 }
@@ -98,11 +101,11 @@ std::string world_model() {
 std::string robot_fields(const MatchConfig& match, RobotId id) {
   const TeamSetup& team = match.team(id.side);
   const Pose2 at = world_pose(place_before(match, id), id.side == Side::home ? -1 : 1);
-  std::string text = "\"robot\": " + quoted(team.robot) + ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " +
-                     number(at.x_m) + ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " +
-                     number(at.theta_rad) + " },\n    \"supervisor\": { \"decisions\": " +
-                     quoted(team.folder + "/team.lua") + ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " +
-                     world_model();
+  std::string text = "\"robot\": " + quoted(team.robot) +
+                     ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
+                     ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) +
+                     " },\n    \"supervisor\": { \"decisions\": " + quoted(team.folder + "/team.lua") +
+                     ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
   std::string peers;
   for (unsigned number = 1; number <= team.players; ++number) {
     const RobotId mate{id.side, static_cast<std::uint8_t>(number)};
@@ -112,11 +115,12 @@ std::string robot_fields(const MatchConfig& match, RobotId id) {
     text += ",\n    \"messages\": { \"name\": " + quoted(robot_name(id)) + ", \"peers\": [" + peers +
             "], \"messages_per_minute\": 300, \"bytes_per_minute\": 150000 }";
   const SensesConfig& senses = match.senses;
-  text += " },\n    \"perception\": [{ \"entry\": \"ball\", \"object\": \"ball\", \"rate_Hz\": " + number(senses.rate_Hz) +
-          ", \"latency_s\": " + number(senses.latency_s) + ", \"distance_noise\": " + number(senses.distance_noise) +
-          ", \"bearing_noise_rad\": " + number(senses.bearing_noise_rad) + ", \"missed\": " + number(senses.missed) +
-          ", \"view_rad\": " + number(senses.view_rad) + ", \"far_m\": " + number(senses.far_m) +
-          ", \"imagined\": " + number(senses.imagined) + ", \"hidden\": true }]";
+  text +=
+      " },\n    \"perception\": [{ \"entry\": \"ball\", \"object\": \"ball\", \"rate_Hz\": " + number(senses.rate_Hz) +
+      ", \"latency_s\": " + number(senses.latency_s) + ", \"distance_noise\": " + number(senses.distance_noise) +
+      ", \"bearing_noise_rad\": " + number(senses.bearing_noise_rad) + ", \"missed\": " + number(senses.missed) +
+      ", \"view_rad\": " + number(senses.view_rad) + ", \"far_m\": " + number(senses.far_m) +
+      ", \"imagined\": " + number(senses.imagined) + ", \"hidden\": true }]";
   return text;
 }
 
@@ -143,9 +147,7 @@ std::string goals(const Field& field) {
 
 }  // namespace
 
-std::string robot_name(RobotId id) {
-  return (id.side == Side::home ? "home_" : "away_") + std::to_string(id.number);
-}
+std::string robot_name(RobotId id) { return (id.side == Side::home ? "home_" : "away_") + std::to_string(id.number); }
 
 std::vector<RobotId> MatchConfig::robots() const {
   std::vector<RobotId> all;
@@ -184,8 +186,9 @@ MatchConfig read_match(const std::filesystem::path& file) {
     }
     f.whole("seed", match.seed, 0, 9'007'199'254'740'992, "seed of all random numbers");
     f.object("rules", "times that differ from the rules of 2026", [&](InputObject& e) { read_rules(e, match.rules); });
-    f.object("home", "the team that defends the left goal first, and kicks off",
-             [&](InputObject& e) { read_team(e, match.teams[0], 1); }, true);
+    f.object(
+        "home", "the team that defends the left goal first, and kicks off",
+        [&](InputObject& e) { read_team(e, match.teams[0], 1); }, true);
     match.teams[1].players = 0;
     f.object("away", "the other team; without one the goal is empty",
              [&](InputObject& e) { read_team(e, match.teams[1], 1); });
@@ -224,10 +227,10 @@ std::string scenario_of(const MatchConfig& match) {
             robot_fields(match, robots[i]) + " }";
   }
   text += "],\n  \"network\": { \"delay_s\": " + number(match.delay_s) + ", \"jitter_s\": " + number(match.jitter_s) +
-          ", \"lost\": " + number(match.lost) + " },\n  \"world\": [\n    { \"kind\": \"ball\", \"name\": \"ball\", \"radius_m\": " +
-          number(ball.radius_m) + ", \"mass_kg\": " + number(ball.mass_kg) + ", \"rolling_friction_m\": " +
-          number(match.rolling_friction_m) + ", \"restitution\": 0.6, \"position_m\": [0, 0, " + number(ball.radius_m) +
-          "] }" + goals(field) + "]\n}\n";
+          ", \"lost\": " + number(match.lost) +
+          " },\n  \"world\": [\n    { \"kind\": \"ball\", \"name\": \"ball\", \"radius_m\": " + number(ball.radius_m) +
+          ", \"mass_kg\": " + number(ball.mass_kg) + ", \"rolling_friction_m\": " + number(match.rolling_friction_m) +
+          ", \"restitution\": 0.6, \"position_m\": [0, 0, " + number(ball.radius_m) + "] }" + goals(field) + "]\n}\n";
   return text;
 }
 

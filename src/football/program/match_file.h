@@ -1,8 +1,8 @@
 // A match in one JSON file: two teams by their folders, field, times, what robots perceive and how they hear each other
 // (docs/football.md). And the scenario of several robots that it is played in.
 //
-// A team is a folder with a `team.lua`, a k.decisions. All it knows comes by the world model, whose entries are those of
-// `world_model_of`; all it does it does by playing behaviors and by messages.
+// A team is a folder with a `team.lua`, a k.decisions. All it knows comes by the world model, whose entries are those
+// of `world_model_of`; all it does it does by playing behaviors and by messages.
 #pragma once
 
 #include <array>

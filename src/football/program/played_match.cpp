@@ -8,11 +8,11 @@ namespace {
 
 constexpr std::int64_t referee_step_ns = 20'000'000, packet_every_ns = 500'000'000;
 constexpr double step_s = 1e-9 * static_cast<double>(referee_step_ns);
-constexpr double upright_up = 0.6;          // z of the trunk's axis: less is no longer on its feet
-constexpr double tries_rad_s = 0.3;         // joints that move so fast on the ground: it tries to get up
-constexpr double holds_m = 0.12;            // a ball so near to the middle of the robot is within it
+constexpr double upright_up = 0.6;   // z of the trunk's axis: less is no longer on its feet
+constexpr double tries_rad_s = 0.3;  // joints that move so fast on the ground: it tries to get up
+constexpr double holds_m = 0.12;     // a ball so near to the middle of the robot is within it
 constexpr double still_m = 0.05, still_rad = 0.15;
-constexpr double touching_far_m = 1.2;      // robots that touch each other are nearer
+constexpr double touching_far_m = 1.2;  // robots that touch each other are nearer
 
 Pose2 pose_of(const Pose& base) {
   const Quat& q = base.orientation;
@@ -44,7 +44,9 @@ LinkSet arms_of(const RobotModel& model) {
 
 std::string text_of(const SaidLine& line, const std::string& first) {
   const std::string who = line.who.find('.') == std::string::npos ? first + "." + line.who : line.who;
-  const char* mark = line.kind == SaidLine::Kind::error ? "error: " : line.kind == SaidLine::Kind::warning ? "warning: " : "";
+  const char* mark = line.kind == SaidLine::Kind::error     ? "error: "
+                     : line.kind == SaidLine::Kind::warning ? "warning: "
+                                                            : "";
   std::array<char, 32> time{};
   std::snprintf(time.data(), time.size(), "%9.2f s  ", 1e-9 * static_cast<double>(line.time_ns));
   return time.data() + who + ": " + mark + line.text;
@@ -234,7 +236,8 @@ bool PlayedMatch::step() {
   }
   for (const SaidLine& line : simulation_.take_lines()) {
     for (Player& player : players_) {
-      const bool own = line.who.starts_with(player.told.name + ".") || (&player == &players_.front() && line.who.find('.') == std::string::npos);
+      const bool own = line.who.starts_with(player.told.name + ".") ||
+                       (&player == &players_.front() && line.who.find('.') == std::string::npos);
       if (own && line.kind == SaidLine::Kind::error) ++player.told.errors;
     }
     lines_.push_back(text_of(line, players_.front().told.name));

@@ -95,10 +95,11 @@ void RobotSenses::hear(Bytes packet) {
   }
   penalty_ = penalty;
   const double ours = control.kicking_team == no_team ? -1 : control.kicking_team == team_number_ ? 1 : 0;
-  tell(game_entry_, simulation_.time_ns() - simulation_.period_ns(),
-       {static_cast<double>(control.state), static_cast<double>(control.set_play), ours, control.stopped ? 1.0 : 0.0,
-        static_cast<double>(penalty), static_cast<double>(control.remaining_s),
-        static_cast<double>(control.secondary_s), static_cast<double>(own->score) - static_cast<double>(others->score)});
+  tell(
+      game_entry_, simulation_.time_ns() - simulation_.period_ns(),
+      {static_cast<double>(control.state), static_cast<double>(control.set_play), ours, control.stopped ? 1.0 : 0.0,
+       static_cast<double>(penalty), static_cast<double>(control.remaining_s), static_cast<double>(control.secondary_s),
+       static_cast<double>(own->score) - static_cast<double>(others->score)});
 }
 
 void RobotSenses::hear_whistle() {
