@@ -17,7 +17,7 @@ bool InputObject::number(std::string_view name, double& value, Range range, std:
 
 bool InputObject::whole(std::string_view name, std::uint64_t& value, std::uint64_t min, std::uint64_t max,
                         std::string_view doc, bool required) {
-  return fields_->integer(name, value, {min, max}, doc, need(required));
+  return fields_->integer(name, value, {min, max, {}}, doc, need(required));
 }
 
 bool InputObject::text(std::string_view name, std::string& value, std::string_view doc, bool required) {

@@ -3,8 +3,10 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/output_file.h"
 #include "match_report.h"
 
 namespace {
@@ -15,14 +17,15 @@ using namespace kadans::football;
 constexpr int exit_passed = 0, exit_failed = 1, exit_usage = 2, exit_internal = 3;
 
 constexpr const char* usage =
-    "usage: kadans-football match FILE [--seed N] [--json] [--verbose]\n"
+    "usage: kadans-football match FILE [--seed N] [--json] [--report FOLDER] [--verbose]\n"
     "  FILE        a match, such as config/matches/striker_drill.json\n"
     "  --seed N    seed of all random numbers (default: the file's)\n"
     "  --json      print the result and all decisions of the referee as one JSON object\n"
+    "  --report    write there the result (.json), all that was said (.txt) and where all were (.csv)\n"
     "  --verbose   tell on stderr what is decided and said while it goes on\n";
 
 struct Options {
-  std::string file;
+  std::string file, report;
   std::optional<std::uint64_t> seed;
   bool json = false, verbose = false;
 };
@@ -42,6 +45,9 @@ std::string read_options(int argc, char** argv, Options& options) {
       options.json = true;
     } else if (word == "--verbose" || word == "-v") {
       options.verbose = true;
+    } else if (word == "--report") {
+      if (i + 1 >= argc) return "--report needs a folder";
+      options.report = argv[++i];
     } else if (word == "--seed") {
       const std::string number = i + 1 < argc ? argv[++i] : "";
       std::uint64_t seed = 0;
@@ -62,16 +68,26 @@ std::string read_options(int argc, char** argv, Options& options) {
 
 int play(const Options& options) {
   const MatchConfig match = read_match(options.file);
-  PlayedMatch played(match, options.seed.value_or(match.seed));
+  const std::uint64_t seed = options.seed.value_or(match.seed);
+  PlayedMatch played(match, seed);
+  std::string said;
   const auto began = std::chrono::steady_clock::now();
   for (bool goes_on = true; goes_on;) {
     goes_on = played.step();
     for (const std::string& line : played.take_lines()) {
       if (options.verbose) std::fprintf(stderr, "%s\n", line.c_str());
+      if (!options.report.empty()) said += line + "\n";
     }
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began;
   const MatchResult& result = played.result();
+  if (!options.report.empty()) {
+    const std::string stem =
+        (std::filesystem::path(options.report) / (match.name + "-" + std::to_string(seed))).string();
+    write_output_file(stem + ".json", json_of(result, match) + "\n");
+    write_output_file(stem + ".txt", said);
+    write_output_file(stem + ".csv", played.track());
+  }
   const std::string text = options.json ? json_of(result, match) : text_of(result, match);
   std::printf("%s\n", text.c_str());
   if (!options.json) std::printf("  %.1f times real time\n", result.simulated_s / wall.count());

@@ -7,7 +7,8 @@
 namespace kadans::football {
 namespace {
 
-constexpr double team_y_gap_m = 1.0, post_radius_share = 1.0;
+constexpr double beside_gap_m = 1.0;  // between robots that stand beside the field
+constexpr std::string_view name_letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
 const std::array<std::string, 3> division_names{"small", "middle", "large"};
 const std::array<std::string, 2> start_names{"touchline", "field"};
 
@@ -134,7 +135,7 @@ std::string box(const std::string& name, const Point& at, double z_m, double x_m
 std::string goals(const Field& field) {
   std::string text;
   const Goal& goal = field.goal;
-  const double post_m = goal.post_m * post_radius_share, y_m = (goal.width_m + post_m) / 2;
+  const double post_m = goal.post_m, y_m = (goal.width_m + post_m) / 2;
   for (const double end : {-1.0, 1.0}) {
     const std::string name = end < 0 ? "right" : "left";  // as the game controller sees it
     const double x_m = end * (field.goal_line_x_m());
@@ -161,7 +162,7 @@ std::vector<RobotId> MatchConfig::robots() const {
 Pose2 place_before(const MatchConfig& match, RobotId id) {
   const Field field = match.field();
   if (match.start_on_field) return {-1.2 - 1.3 * (id.number - 1), id.number % 2 == 0 ? 0.8 : 0, 0};
-  const double y_m = field.width_m / 2 + 0.3, x_m = -field.length_m / 2 + 1.2 + team_y_gap_m * (id.number - 1);
+  const double y_m = field.width_m / 2 + 0.3, x_m = -field.length_m / 2 + 1.2 + beside_gap_m * (id.number - 1);
   return {x_m, id.side == Side::home ? -y_m : y_m, (id.side == Side::home ? 1 : -1) * std::numbers::pi / 2};
 }
 
@@ -171,8 +172,9 @@ MatchConfig read_match(const std::filesystem::path& file) {
   MatchConfig match;
   match.file = file.string();
   read_input_object(file, [&](InputObject& f) {
-    std::string schema;
-    f.text("name", match.name, "the match's name", true);
+    f.text("name", match.name, "the match's name, which reports are called by", true);
+    if (match.name.empty() || match.name.find_first_not_of(name_letters) != std::string::npos)
+      f.refuse("name", "name must be small letters, digits and '_', such as two_against_two");
     f.text("doc", match.doc, "what it shows, one or two sentences");
     auto division = static_cast<std::size_t>(match.division), size = static_cast<std::size_t>(match.field_size);
     f.choice("division", division, division_names, "the robots' division: it gives ball and goals");

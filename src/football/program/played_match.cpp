@@ -7,6 +7,7 @@ namespace kadans::football {
 namespace {
 
 constexpr std::int64_t referee_step_ns = 20'000'000, packet_every_ns = 500'000'000;
+constexpr std::int64_t track_every_ns = 200'000'000;
 constexpr double step_s = 1e-9 * static_cast<double>(referee_step_ns);
 constexpr double upright_up = 0.6;   // z of the trunk's axis: less is no longer on its feet
 constexpr double tries_rad_s = 0.3;  // joints that move so fast on the ground: it tries to get up
@@ -42,14 +43,13 @@ LinkSet arms_of(const RobotModel& model) {
   return arms;
 }
 
-std::string text_of(const SaidLine& line, const std::string& first) {
-  const std::string who = line.who.find('.') == std::string::npos ? first + "." + line.who : line.who;
+std::string text_of(const SaidLine& line) {
   const char* mark = line.kind == SaidLine::Kind::error     ? "error: "
                      : line.kind == SaidLine::Kind::warning ? "warning: "
                                                             : "";
   std::array<char, 32> time{};
   std::snprintf(time.data(), time.size(), "%9.2f s  ", 1e-9 * static_cast<double>(line.time_ns));
-  return time.data() + who + ": " + mark + line.text;
+  return time.data() + line.who + ": " + mark + line.text;
 }
 
 }  // namespace
@@ -83,6 +83,12 @@ PlayedMatch::PlayedMatch(const MatchConfig& match, std::uint64_t seed)
   }
   result_.match = match.name;
   result_.seed = seed;
+  track_ = "time_s,ball_x_m,ball_y_m,ball_z_m";
+  for (const Player& player : players_) {
+    for (const char* what : {"x_m", "y_m", "theta_rad", "upright", "thinks_x_m", "thinks_y_m", "thinks_theta_rad"})
+      track_ += "," + player.told.name + "." + what;
+  }
+  track_ += "\n";
   look();
 }
 
@@ -208,6 +214,34 @@ void PlayedMatch::measure(Player& player) {
   player.off_m.push_back(distance(truth.at(), player.senses->belief().pose.at()));
 }
 
+void PlayedMatch::note_lines() {
+  const std::string& first = players_.front().told.name;
+  for (SaidLine& line : simulation_.take_lines()) {
+    if (line.who.find('.') == std::string::npos) line.who.insert(0, first + ".");
+    for (Player& player : players_) {
+      if (line.kind == SaidLine::Kind::error && line.who.starts_with(player.told.name + ".")) ++player.told.errors;
+    }
+    lines_.push_back(text_of(line));
+  }
+}
+
+void PlayedMatch::track_places() {
+  if (simulation_.time_ns() < track_due_ns_) return;
+  track_due_ns_ = simulation_.time_ns() + track_every_ns;
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "%.2f,%.3f,%.3f,%.3f", 1e-9 * static_cast<double>(simulation_.time_ns()),
+                world_.ball.x_m, world_.ball.y_m, world_.ball_z_m);
+  track_ += text.data();
+  for (const Player& player : players_) {
+    const RobotTruth& robot = world_.robot(player.told.id);
+    const Pose2 thought = world_pose(player.senses->belief().pose, referee_.match().sign(player.told.id.side));
+    std::snprintf(text.data(), text.size(), ",%.3f,%.3f,%.3f,%d,%.3f,%.3f,%.3f", robot.pose.x_m, robot.pose.y_m,
+                  robot.pose.theta_rad, robot.upright ? 1 : 0, thought.x_m, thought.y_m, thought.theta_rad);
+    track_ += text.data();
+  }
+  track_ += "\n";
+}
+
 bool PlayedMatch::step() {
   const Match& match = referee_.match();
   if (!result_.ended.empty()) return false;
@@ -234,14 +268,8 @@ bool PlayedMatch::step() {
     player.senses->step(world_, match.sign(player.told.id.side));
     measure(player);
   }
-  for (const SaidLine& line : simulation_.take_lines()) {
-    for (Player& player : players_) {
-      const bool own = line.who.starts_with(player.told.name + ".") ||
-                       (&player == &players_.front() && line.who.find('.') == std::string::npos);
-      if (own && line.kind == SaidLine::Kind::error) ++player.told.errors;
-    }
-    lines_.push_back(text_of(line, players_.front().told.name));
-  }
+  note_lines();
+  track_places();
   if (match.over()) result_.ended = "by the rules";
   if (match_.goals > 0 && match.score(Side::home) + match.score(Side::away) >= match_.goals)
     result_.ended = "by its goals";

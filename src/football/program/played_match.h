@@ -43,12 +43,13 @@ class PlayedMatch {
   const MatchResult& result();
   // What was decided and said since the last call, each a line.
   std::vector<std::string> take_lines();
+  // Where ball and robots were, and where each robot thought it was, five times a second; in the world's frame.
+  const std::string& track() const noexcept { return track_; }
 
  private:
   struct Player {
     PlayedRobot told;
     std::unique_ptr<RobotSenses> senses;
-    std::uint32_t arms_first = 0;
     LinkSet arms;
     SignalId sent_signal = 0;
     bool has_messages = false, was_upright = true;
@@ -65,8 +66,9 @@ class PlayedMatch {
   void heed(const RefereeReport& report);
   void tell_players(bool at_once);
   void prepare_half();
-  void count(const Player& player, double step_s);
   void measure(Player& player);
+  void track_places();
+  void note_lines();
 
   MatchConfig match_;
   Simulation simulation_;
@@ -77,6 +79,8 @@ class PlayedMatch {
   double ball_radius_m_;
   MatchResult result_;
   std::vector<std::string> lines_;
+  std::string track_;
+  std::int64_t track_due_ns_ = 0;
   std::int64_t packet_due_ns_ = 0;
   GameState state_ = GameState::initial;
   bool stopped_ = false, left_ = true;

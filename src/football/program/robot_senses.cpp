@@ -24,6 +24,8 @@ RobotSenses::RobotSenses(const MatchConfig& match, Simulation& simulation, std::
       field_(match.field()),
       markings_(markings_of(field_)),
       random_(seed, "football.senses of " + robot_name(id)),
+      camera_scale_(random_.uniform(0.95, 1.05)),
+      camera_rad_(random_.uniform(-0.03, 0.03)),
       localisation_({.field = field_, .seed = seed + number}),
       field_entry_(simulation.entry(number, "field")),
       game_entry_(simulation.entry(number, "game")),
@@ -114,8 +116,10 @@ bool RobotSenses::sees(const Point& at) const noexcept {
 }
 
 Point RobotSenses::noisy(const Point& at) {
-  const double far_m = norm(at) * (1 + match_.senses.distance_noise * random_.normal()) + 0.03 * random_.normal();
-  const double bearing_rad = std::atan2(at.y_m, at.x_m) + match_.senses.bearing_noise_rad * random_.normal();
+  const double far_m =
+      norm(at) * (camera_scale_ + match_.senses.distance_noise * random_.normal()) + 0.03 * random_.normal();
+  const double bearing_rad =
+      std::atan2(at.y_m, at.x_m) + camera_rad_ + match_.senses.bearing_noise_rad * random_.normal();
   return turned({far_m, 0.02 * random_.normal()}, bearing_rad);
 }
 

@@ -1,9 +1,10 @@
 // What one robot of a simulated match perceives beside the ball, and what it makes of it: where it is on the field, who
 // is near, what the game controller and the whistle say. It goes to the robot's world model, which its decisions read.
 //
-// The camera sees lines, crossings, posts, marks and the circle of the field late, with noise, with misses and with
-// things that are not there; Localisation (localisation.h) makes a place of that and of the robot's own odometry. The
-// robot knows that a person carried it from what the game controller says: nothing else tells it.
+// The camera is mounted a little askew. It sees lines, crossings, posts, marks and the circle of the field late, with
+// noise, with misses and with things that are not there; Localisation (localisation.h) makes a place of that and of the
+// robot's own odometry. The robot knows that a person carried it from what the game controller says: nothing else tells
+// it.
 //
 // All random numbers come from streams of the run's seed. One thread, no physics.
 #pragma once
@@ -64,6 +65,7 @@ class RobotSenses {
   Field field_;
   Markings markings_;
   RandomStream random_;
+  double camera_scale_, camera_rad_;  // how askew the camera is mounted
   Localisation localisation_;
   Localisation::Estimate belief_;
   std::deque<Late> late_;
