@@ -37,6 +37,9 @@ function game.keeps_away(s)
   return told.state == playing and told.set_play > 0 and told.ours == 0
 end
 
+-- A penalty kick that is not taken yet: only the kicker moves.
+function game.penalty_kick(s) return s.seen.game.set_play == 3 end
+
 function game.goal(s) return { x_m = s.seen.me.length_m / 2, y_m = 0 } end
 function game.own_goal(s) return { x_m = -s.seen.me.length_m / 2, y_m = 0 } end
 

@@ -12,6 +12,7 @@ local clears_m = 1.6  -- a ball nearer to the goal's middle is its own
 function keeper.clears(s, ball) return ball ~= nil and field.distance(ball, game.own_goal(s)) < clears_m end
 
 function keeper.play(m, s, pose, ball)
+  if game.penalty_kick(s) then return legs.stand(m, s) end
   local own = game.own_goal(s)
   if keeper.clears(s, ball) and not game.keeps_away(s) then return striker.play(m, s, pose, ball) end
   local toward = ball or { x_m = 0, y_m = 0 }

@@ -25,6 +25,7 @@ local function kick_off_place(s)
 end
 
 function striker.play(m, s, pose, ball)
+  if game.penalty_kick(s) and s.seen.game.ours ~= 1 then return legs.stand(m, s) end
   if not ball then return search.play(m, s, pose) end
   if not ball.own then return legs.go(m, s, pose, ball, ball) end
   local in_circle = field.distance(ball, { x_m = 0, y_m = 0 }) < s.seen.me.circle_m + 0.1

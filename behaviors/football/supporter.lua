@@ -7,6 +7,7 @@ local search = require "search"
 local supporter = {}
 
 function supporter.play(m, s, pose, ball)
+  if game.penalty_kick(s) then return legs.stand(m, s) end
   if not ball then return search.play(m, s, pose) end
   local half_m, side_m = s.seen.me.length_m / 2, s.seen.me.width_m / 2
   local side = ball.y_m > 0 and -1 or 1

@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::size_t simulation_lines_kept = 1000;
 
+ScenarioConfig simulated_scenario(const std::string& text, const std::filesystem::path& file) {
+  ScenarioConfig scenario = read_scenario_config_text(text, file.string());
+  if (!scenario.record.empty())
+    throw InputError({.file = scenario.file, .message = "repeats a record, so it cannot be simulated"});
+  return scenario;
+}
+
 }  // namespace
 
 class Simulation::Stepped {
@@ -36,7 +43,7 @@ class Simulation::Stepped {
   };
 
   Stepped(const std::string& text, const std::filesystem::path& file, std::uint64_t seed)
-      : scenario(read_scenario_config_text(text, file.string())),
+      : scenario(simulated_scenario(text, file)),
         log({&lines}, simulation_lines_kept),
         assembly(scenario, seed, log),
         steps(assembly.parts()) {

@@ -89,7 +89,8 @@ std::string world_model() {
       "me": { "what": "what the robot is in its team, and the field", "fields": {
           "number": { "what": "its number" }, "keeper": { "what": "the keeper's number, 0 none" }, "players": { "what": "robots of the team" },
           "length_m": { "unit": "m" , "what": "of the field" }, "width_m": { "unit": "m", "what": "of the field" },
-          "goal_m": { "unit": "m", "what": "width of the goals" }, "circle_m": { "unit": "m", "what": "radius of the centre circle" } } })";
+          "goal_m": { "unit": "m", "what": "width of the goals" }, "circle_m": { "unit": "m", "what": "radius of the centre circle" },
+          "mark_m": { "unit": "m", "what": "from a penalty mark to its goal line" } } })";
   for (std::size_t i = 1; i <= robots_told; ++i) {
     text +=
         ",\n      \"robot_" + std::to_string(i) +

@@ -11,6 +11,7 @@ constexpr std::int64_t track_every_ns = 200'000'000;
 constexpr double step_s = 1e-9 * static_cast<double>(referee_step_ns);
 constexpr double upright_up = 0.6;   // z of the trunk's axis: less is no longer on its feet
 constexpr double tries_rad_s = 0.3;  // joints that move so fast on the ground: it tries to get up
+constexpr double rests_s = 3;        // the longest rest in an attempt
 constexpr double holds_m = 0.12;     // a ball so near to the middle of the robot is within it
 constexpr double still_m = 0.05, still_rad = 0.15;
 constexpr double touching_far_m = 1.2;  // robots that touch each other are nearer
@@ -115,7 +116,8 @@ void PlayedMatch::look() {
     robot.present = true;
     robot.pose = pose_of(truth.base);
     robot.upright = up_of(truth.base) > upright_up;
-    robot.getting_up = !robot.upright && fastest_joint(truth) > tries_rad_s;
+    player.joints_still_s = fastest_joint(truth) > tries_rad_s ? 0 : player.joints_still_s + step_s;
+    robot.getting_up = !robot.upright && player.joints_still_s < rests_s;
     robot.active = simulation_.status(i).safety.level < SafetyLevel::damp;
     robot.touches_ball = player.touched_ball;
     robot.uses_arms = player.touched_with_arms && robot.upright;

@@ -54,7 +54,7 @@ class PlayedMatch {
     SignalId sent_signal = 0;
     bool has_messages = false, was_upright = true;
     Pose2 still;
-    double still_s = 0;
+    double still_s = 0, joints_still_s = 0;
     std::vector<double> off_m;
     // Since the referee looked last.
     bool touched_ball = false, touched_with_arms = false, touched_robot = false;

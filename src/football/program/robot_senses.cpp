@@ -76,7 +76,7 @@ void RobotSenses::tell_self(std::int64_t now_ns) {
   const TeamSetup& team = match_.team(id_.side);
   tell(me_entry_, now_ns,
        {static_cast<double>(id_.number), static_cast<double>(team.keeper), static_cast<double>(team.players),
-        field_.length_m, field_.width_m, field_.goal.width_m, field_.circle_radius_m});
+        field_.length_m, field_.width_m, field_.goal.width_m, field_.circle_radius_m, field_.penalty_mark_m});
 }
 
 void RobotSenses::hear(Bytes packet) {
