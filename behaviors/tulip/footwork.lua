@@ -27,11 +27,14 @@ local function from_here(m, data)
   }
 end
 
+-- Whatever it does just now; what the order means from where the robot is, is reckoned when its legs are its own.
 local function hear(m, s)
-  local data = s.event.data or {}
-  local order = { what = s.event.name, heard_s = s.time_s, rad_s = data.rad_s, most_m_s = data.most_m_s, beyond_m = data.beyond_m }
-  if data.x_m then order.place = from_here(m, data) end
-  m.vars.order = order
+  m.vars.order = { what = s.event.name, data = s.event.data or {}, heard_s = s.time_s }
+end
+
+local function take(m, order)
+  if not order.taken and order.data.x_m then order.place = from_here(m, order.data) end
+  order.taken = true
 end
 
 -- The same place does not make it walk again for what odometry and noise say.
@@ -40,11 +43,12 @@ local function go(m, order)
   local off_m = math.sqrt((order.place.x_m - at.x_m) ^ 2 + (order.place.y_m - at.y_m) ^ 2)
   local off_rad = math.abs(walk.angle(order.place.heading_rad - at.heading_rad))
   if walk.stands(m) and off_m < 0.25 and off_rad < 0.35 then return end
-  if walk.to(m, order.place, { m = 0.1, rad = 0.15 }, order.most_m_s or 0.35) then walk.stop(m) end
+  if walk.to(m, order.place, { m = 0.1, rad = 0.15 }, order.data.most_m_s or 0.35) then walk.stop(m) end
 end
 
 local function obey(m, s)
   local order = m.vars.order
+  if order then take(m, order) end
   local b = ball.watch(m, s, m.vars.known)
   local kicks = walk.kicks(m)
   if m.vars.armed and not kicks then m.vars.kicked_s = s.time_s end
@@ -56,12 +60,12 @@ local function obey(m, s)
     walk.go(m, {})
   elseif order.what == "foot.turn" then
     if kicks then walk.keep(m) end
-    walk.go(m, { turn_rad_s = order.rad_s })
+    walk.go(m, { turn_rad_s = order.data.rad_s })
   elseif order.what == "foot.go" then
     if kicks then walk.keep(m) end
     go(m, order)
   elseif b then
-    ball.approach(m, b, order.place, order.beyond_m or 1, P.roll_m_s2)
+    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2)
   end
 end
 

@@ -31,6 +31,6 @@ describe("footwork", function()
     expect(run.state:sub(1, 6)).to_equal "fallen"
     run:emit("foot.stand")
     run:advance(0.1)
-    expect(run.error).to_be_nil()
+    expect(run.error).to_equal ""
   end)
 end)
