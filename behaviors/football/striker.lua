@@ -20,7 +20,7 @@ end
 
 -- No goal counts straight from a kick-off: the ball goes out of the circle first, aslant.
 local function kick_off_place(s)
-  local far_m = s.seen.me.circle_m + 0.55
+  local far_m = s.seen.me.circle_m + 0.35
   return { x_m = far_m * 0.95, y_m = 0.3 * far_m }
 end
 
@@ -29,7 +29,7 @@ function striker.play(m, s, pose, ball)
   if not ball then return search.play(m, s, pose) end
   if not ball.own then return legs.go(m, s, pose, ball, ball) end
   local in_circle = field.distance(ball, { x_m = 0, y_m = 0 }) < s.seen.me.circle_m + 0.1
-  if m.vars.kick_off_ours and in_circle then return legs.kick(m, s, pose, kick_off_place(s), 0.1) end
+  if m.vars.kick_off_ours and in_circle then return legs.kick(m, s, pose, kick_off_place(s), 0) end
   m.vars.kick_off_ours = m.vars.kick_off_ours and in_circle
   if game.keeps_away(s) or m.vars.kick_off_theirs then return striker.block(m, s, pose, ball) end
   legs.kick(m, s, pose, aim(s, pose, ball), 1.2)

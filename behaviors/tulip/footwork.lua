@@ -11,6 +11,7 @@ local P = k.params {
   settle_s   = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
   patience_s = { 1, min = 0.1, max = 60, unit = "s", doc = "without a word of who decides, after which it stands" },
   roll_m_s2  = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
+  most_m_s   = { 0.42, min = 0.05, max = 0.6, unit = "m/s", doc = "how fast it walks to the ball" },
   after_s    = { 0.6, min = 0, max = 10, unit = "s", doc = "time in place after a kick" },
 }
 
@@ -43,7 +44,7 @@ local function go(m, order)
   local off_m = math.sqrt((order.place.x_m - at.x_m) ^ 2 + (order.place.y_m - at.y_m) ^ 2)
   local off_rad = math.abs(walk.angle(order.place.heading_rad - at.heading_rad))
   if walk.stands(m) and off_m < 0.25 and off_rad < 0.35 then return end
-  if walk.to(m, order.place, { m = 0.1, rad = 0.15 }, order.data.most_m_s or 0.35) then walk.stop(m) end
+  if walk.to(m, order.place, { m = 0.1, rad = 0.15 }, order.data.most_m_s or P.most_m_s) then walk.stop(m) end
 end
 
 local function obey(m, s)
@@ -65,7 +66,7 @@ local function obey(m, s)
     if kicks then walk.keep(m) end
     go(m, order)
   elseif b then
-    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2)
+    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s)
   end
 end
 
