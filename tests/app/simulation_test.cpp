@@ -1,9 +1,11 @@
 // A program of one's own that steps a scenario: include/kadans/app/simulation.h.
+#include "kadans/app/simulation.h"
+
 #include <string>
 
 #include <doctest/doctest.h>
 
-#include "kadans/app/simulation.h"
+#include "kadans/signal/input_error.h"
 #include "program.h"
 
 namespace simulation_test {

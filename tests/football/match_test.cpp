@@ -62,13 +62,13 @@ TEST_CASE("A match file with nothing but a team has the rules of 2026 and an emp
 
 TEST_CASE("What is wrong in a match file is told with its place, what is wrong and what was meant") {
   CHECK(refusal(home).empty());
-  CHECK(has(refusal("\"field\": \"small\""), "1:1: home is missing"));
-  CHECK(has(refusal(home + ",\n\"halfs\": 3"), "3:1: unknown field 'halfs'"));
+  CHECK(has(refusal("\"field\": \"small\""), "1:1: key 'home' is missing"));
+  CHECK(has(refusal(home + ",\n\"halfs\": 3"), "3:1: unknown key 'halfs' (known: name, "));
   CHECK(has(refusal(home + ",\n\"field\": \"smal\""), "3:10: "));
-  CHECK(has(refusal(home + ",\n\"field\": \"smal\""), "small, middle, large"));
+  CHECK(has(refusal(home + ",\n\"field\": \"smal\""), "did you mean 'small'?"));
   CHECK(has(refusal(home + ",\n\"field\": \"large\""), "3:10: "));
   CHECK(has(refusal(home + ",\n\"rules\": { \"half_s\": -3 }"), "rules.half_s is -3"));
-  CHECK(has(refusal(home + ",\n\"rules\": { \"half_s\": \"long\" }"), "3:23: rules.half_s"));
+  CHECK(has(refusal(home + ",\n\"rules\": { \"half_s\": \"long\" }"), "3:22: rules.half_s must be a number in s"));
   CHECK(has(refusal(home + ",\n\"rules\": { \"hal_s\": 3 }"), "did you mean 'half_s'"));
   CHECK(has(refusal(home + ",\n\"seed\": 1.5"), "3:9: seed"));
   CHECK(has(refusal(home + ",\n\"ends\": { \"goals\": 0 }"), "ends.goals"));
@@ -79,13 +79,15 @@ TEST_CASE("What is wrong in a match file is told with its place, what is wrong a
   CHECK(has(refusal(home, "Two teams"), "1:11: name must be small letters"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/footbal", "players": 1 })"), "2:19: home.team: there is no "));
   CHECK(has(refusal(R"("home": { "team": "behaviors/tulip", "players": 1 })"), "has no team.lua, a k.decisions"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football" })"), "home.players is missing"));
+  CHECK(has(refusal(R"("home": { "team": "behaviors/football" })"), "2:9: key 'players' is missing in home"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "keeper": 2 })"),
             "keeper is number 2, but the team has 1 players"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "robot": "config/tulp/robot.json" })"),
             "home.robot: there is no "));
   CHECK(has(refusal("\"home\": 3"), "home must be an object"));
-  CHECK(has(refusal(home + " \"away\": {}"), "3:"));
+  CHECK(has(refusal(home + " \"away\": {}"), "2:56: a comma or } is needed here"));
+  CHECK(has(refusal(home + ",\n\"away\": {}"), "3:9: key 'team' is missing in away"));
+  CHECK(has(refusal(home + ",\n\"division\": \"small\", \"field\": \"large\""), "the small division does not play"));
   CHECK_THROWS_AS(read_match(matches / "nothing.json"), InputError);
 }
 
