@@ -126,3 +126,16 @@ TEST_CASE("The same seed plays the same match, bit for bit, and another one anot
   CHECK(first.state_hash == again.state_hash);
   CHECK(played("striker_drill.json", 5, 18).state_hash != first.state_hash);
 }
+
+TEST_CASE("Two teams of two walk to their places before the kick-off, the same way by the same seed") {
+  const MatchConfig match = read_match(matches / "two_against_two.json");
+  const MatchResult first = played("two_against_two.json", 2, 8), again = played("two_against_two.json", 2, 8);
+  CHECK(json_of(first, match) == json_of(again, match));
+  REQUIRE(first.robots.size() == 4);
+  for (const PlayedRobot& robot : first.robots) {
+    CHECK(robot.errors == 0);
+    CHECK(robot.falls == 0);
+    CHECK(robot.upright_s > 7.9);
+  }
+  CHECK(first.decisions.front().text == "ready: kick-off for home");
+}

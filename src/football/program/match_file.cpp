@@ -162,7 +162,8 @@ std::vector<RobotId> MatchConfig::robots() const {
 
 Pose2 place_before(const MatchConfig& match, RobotId id) {
   const Field field = match.field();
-  if (match.start_on_field) return {-1.2 - 1.3 * (id.number - 1), id.number % 2 == 0 ? 0.8 : 0, 0};
+  if (match.start_on_field && match.team(id.side).keeper == id.number) return {0.5 - field.length_m / 2, 0, 0};
+  if (match.start_on_field) return {-1.2 - 0.9 * (id.number - 1), id.number % 2 == 0 ? 0.8 : 0, 0};
   const double y_m = field.width_m / 2 + 0.3, x_m = -field.length_m / 2 + 1.2 + beside_gap_m * (id.number - 1);
   return {x_m, id.side == Side::home ? -y_m : y_m, (id.side == Side::home ? 1 : -1) * std::numbers::pi / 2};
 }
