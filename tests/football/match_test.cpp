@@ -8,6 +8,8 @@
 #include "football/program/match_report.h"
 #include "kadans/signal/input_error.h"
 
+namespace match_test {
+
 namespace fs = std::filesystem;
 using namespace kadans::football;
 using kadans::InputError;
@@ -41,7 +43,7 @@ std::string refusal(const std::string& rest, const std::string& name = "drawn") 
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-const std::string home = R"("home": { "team": "behaviors/football", "players": 1 })";
+const std::string one_team = R"("home": { "team": "behaviors/football", "players": 1 })";
 
 MatchResult played(const std::string& file, std::uint64_t seed, double until_s) {
   PlayedMatch match(read_match(matches / file), seed);
@@ -52,7 +54,7 @@ MatchResult played(const std::string& file, std::uint64_t seed, double until_s) 
 }  // namespace
 
 TEST_CASE("A match file with nothing but a team has the rules of 2026 and an empty goal on the other side") {
-  const MatchConfig match = read_match(match_of("{ \"name\": \"drawn\",\n" + home + "\n}\n"));
+  const MatchConfig match = read_match(match_of("{ \"name\": \"drawn\",\n" + one_team + "\n}\n"));
   CHECK(match.rules.half_s == 600);
   CHECK(match.rules.removal_s == 45);
   CHECK(match.robots().size() == 1);
@@ -61,22 +63,23 @@ TEST_CASE("A match file with nothing but a team has the rules of 2026 and an emp
 }
 
 TEST_CASE("What is wrong in a match file is told with its place, what is wrong and what was meant") {
-  CHECK(refusal(home).empty());
+  CHECK(refusal(one_team).empty());
   CHECK(has(refusal("\"field\": \"small\""), "1:1: key 'home' is missing"));
-  CHECK(has(refusal(home + ",\n\"halfs\": 3"), "3:1: unknown key 'halfs' (known: name, "));
-  CHECK(has(refusal(home + ",\n\"field\": \"smal\""), "3:10: "));
-  CHECK(has(refusal(home + ",\n\"field\": \"smal\""), "did you mean 'small'?"));
-  CHECK(has(refusal(home + ",\n\"field\": \"large\""), "3:10: "));
-  CHECK(has(refusal(home + ",\n\"rules\": { \"half_s\": -3 }"), "rules.half_s is -3"));
-  CHECK(has(refusal(home + ",\n\"rules\": { \"half_s\": \"long\" }"), "3:22: rules.half_s must be a number in s"));
-  CHECK(has(refusal(home + ",\n\"rules\": { \"hal_s\": 3 }"), "did you mean 'half_s'"));
-  CHECK(has(refusal(home + ",\n\"seed\": 1.5"), "3:9: seed"));
-  CHECK(has(refusal(home + ",\n\"ends\": { \"goals\": 0 }"), "ends.goals"));
-  CHECK(has(refusal(home + ",\n\"network\": { \"lost\": 2 }"), "network.lost is 2"));
-  CHECK(has(refusal(home + ",\n\"senses\": { \"rate_Hz\": 0 }"), "senses.rate_Hz"));
-  CHECK(has(refusal(home + ",\n\"start\": \"bench\""), "touchline, field"));
-  CHECK(has(refusal(home + ",\n\"away\": { \"players\": 9, \"team\": \"behaviors/football\" }"), "away.players is 9"));
-  CHECK(has(refusal(home, "Two teams"), "1:11: name must be small letters"));
+  CHECK(has(refusal(one_team + ",\n\"halfs\": 3"), "3:1: unknown key 'halfs' (known: name, "));
+  CHECK(has(refusal(one_team + ",\n\"field\": \"smal\""), "3:10: "));
+  CHECK(has(refusal(one_team + ",\n\"field\": \"smal\""), "did you mean 'small'?"));
+  CHECK(has(refusal(one_team + ",\n\"field\": \"large\""), "3:10: "));
+  CHECK(has(refusal(one_team + ",\n\"rules\": { \"half_s\": -3 }"), "rules.half_s is -3"));
+  CHECK(has(refusal(one_team + ",\n\"rules\": { \"half_s\": \"long\" }"), "3:22: rules.half_s must be a number in s"));
+  CHECK(has(refusal(one_team + ",\n\"rules\": { \"hal_s\": 3 }"), "did you mean 'half_s'"));
+  CHECK(has(refusal(one_team + ",\n\"seed\": 1.5"), "3:9: seed"));
+  CHECK(has(refusal(one_team + ",\n\"ends\": { \"goals\": 0 }"), "ends.goals"));
+  CHECK(has(refusal(one_team + ",\n\"network\": { \"lost\": 2 }"), "network.lost is 2"));
+  CHECK(has(refusal(one_team + ",\n\"senses\": { \"rate_Hz\": 0 }"), "senses.rate_Hz"));
+  CHECK(has(refusal(one_team + ",\n\"start\": \"bench\""), "touchline, field"));
+  CHECK(has(refusal(one_team + ",\n\"away\": { \"players\": 9, \"team\": \"behaviors/football\" }"),
+            "away.players is 9"));
+  CHECK(has(refusal(one_team, "Two teams"), "1:11: name must be small letters"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/footbal", "players": 1 })"), "2:19: home.team: there is no "));
   CHECK(has(refusal(R"("home": { "team": "behaviors/tulip", "players": 1 })"), "has no team.lua, a k.decisions"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/football" })"), "2:9: key 'players' is missing in home"));
@@ -85,9 +88,10 @@ TEST_CASE("What is wrong in a match file is told with its place, what is wrong a
   CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "robot": "config/tulp/robot.json" })"),
             "home.robot: there is no "));
   CHECK(has(refusal("\"home\": 3"), "home must be an object"));
-  CHECK(has(refusal(home + " \"away\": {}"), "2:56: a comma or } is needed here"));
-  CHECK(has(refusal(home + ",\n\"away\": {}"), "3:9: key 'team' is missing in away"));
-  CHECK(has(refusal(home + ",\n\"division\": \"small\", \"field\": \"large\""), "the small division does not play"));
+  CHECK(has(refusal(one_team + " \"away\": {}"), "2:56: a comma or } is needed here"));
+  CHECK(has(refusal(one_team + ",\n\"away\": {}"), "3:9: key 'team' is missing in away"));
+  CHECK(
+      has(refusal(one_team + ",\n\"division\": \"small\", \"field\": \"large\""), "the small division does not play"));
   CHECK_THROWS_AS(read_match(matches / "nothing.json"), InputError);
 }
 
@@ -139,3 +143,5 @@ TEST_CASE("Two teams of two walk to their places before the kick-off, the same w
   }
   CHECK(first.decisions.front().text == "ready: kick-off for home");
 }
+
+}  // namespace match_test
