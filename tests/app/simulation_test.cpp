@@ -21,7 +21,7 @@ TEST_CASE("A program that steps a scenario goes through the same states as kadan
   char hash[17];
   std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(simulation.state_hash()));
   const Outcome outcome =
-      run("sim " + scenario_file + " --seed 7 --duration 0.5 --no-record --json", KADANS_SOURCE_DIR);
+      run("sim " + scenario_file + " --seed 7 --duration 0.5 --no-record --json", fresh_folder("simulation"));
   CHECK_MESSAGE(has(outcome.out, hash), outcome.out);
   CHECK(simulation.robots() >= 2);
 }
