@@ -32,4 +32,44 @@ function ball.watch(m, s, known)
   return known
 end
 
+local around_m = 0.6  -- radius of the way around the ball
+
+-- Walks toward a place, facing it.
+local function toward(m, at, x_m, y_m, most_m_s)
+  local turn_rad = walk.angle(math.atan2(y_m - at.y_m, x_m - at.x_m) - at.heading_rad)
+  walk.go(m, walk.slowed { forward_m_s = most_m_s * math.max(0, math.cos(turn_rad)) ^ 3, turn_rad_s = walk.within(1.5 * turn_rad, 0.6) })
+end
+
+-- In each tick: a step of the way around the ball b until it is between the robot and the target, and then the kick, so
+-- that the ball rolls beyond_m farther than the target on a ground that slows it by roll_m_s2. All in the frame of
+-- walk.at, at most_m_s (0.35). m.vars.side is the foot: 1 the left one.
+function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s)
+  most_m_s = most_m_s or 0.35
+  local at = walk.at(m)
+  local rad = math.atan2(target.y_m - b.y_m, target.x_m - b.x_m)
+  local ux, uy = math.cos(rad), math.sin(rad)
+  local behind = -(ux * (at.x_m - b.x_m) + uy * (at.y_m - b.y_m))  -- how far the robot is behind the ball
+  local left = ux * (at.y_m - b.y_m) - uy * (at.x_m - b.x_m)       -- and to the left of its way
+  if math.abs(left) > 0.04 then m.vars.side = left > 0 and -1 or 1 end  -- on its left: the ball is before the right foot
+  local place = walk.to_kick(b, rad, m.vars.side, rad)
+  local off_m = math.sqrt((place.x_m - at.x_m) ^ 2 + (place.y_m - at.y_m) ^ 2)
+  if behind > 0.15 and math.abs(left) < 0.15 + 0.7 * (behind - 0.15) then
+    if off_m > 0.5 then
+      toward(m, at, place.x_m, place.y_m, most_m_s)
+    else
+      walk.beside(m, place)
+      if off_m < 0.2 and math.abs(walk.angle(rad - at.heading_rad)) < 0.3 then
+        local far_m = math.sqrt((target.x_m - b.x_m) ^ 2 + (target.y_m - b.y_m) ^ 2) + beyond_m
+        walk.kick(m, b, rad, math.min(far_m, 4.5), roll_m_s2)
+      end
+    end
+    return
+  end
+  walk.keep(m)
+  local from_rad = math.atan2(left, behind)  -- about the ball, 0 behind it
+  local to_rad = from_rad - walk.within(from_rad, 0.8)
+  local c, n = math.cos(to_rad), math.sin(to_rad)
+  toward(m, at, b.x_m - around_m * (c * ux + n * uy), b.y_m - around_m * (c * uy - n * ux), most_m_s)
+end
+
 return ball

@@ -24,19 +24,34 @@ void RunLog::tell(const Line& line) {
   keep(lines_, kept_max_, {line.time_ns, line.severity, std::string(line.behavior), std::string(line.text)});
 }
 
+RunSteps::RunSteps(RunParts parts) : parts_(std::move(parts)) {
+  std::size_t from = 0;
+  for (const SignalId left_out : parts_.unhashed) {
+    hashed_.emplace_back(from, left_out - from);
+    from = left_out + 1;
+  }
+  hashed_.emplace_back(from, std::dynamic_extent);
+}
+
+void RunSteps::step() {
+  parts_.begin_step();
+  parts_.lockstep.step();
+  const std::span<const double> row = parts_.control.row();
+  for (const auto& [first, count] : hashed_) hash_.add(row.subspan(first, count));
+  parts_.world.hash(hash_);
+  for (const RunParts& other : parts_.others) {
+    if (other.faulty != nullptr) other.faulty->hash_held_back(hash_);
+  }
+}
+
+RunMark RunSteps::mark() const noexcept { return {parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()}; }
+
 namespace {
 
 class Run {
  public:
   Run(const RunParts& parts, Checks& checks, const std::vector<RunObserver*>& observers)
-      : parts_(parts), checks_(checks), observers_(observers) {
-    std::size_t from = 0;
-    for (const SignalId left_out : parts.unhashed) {
-      hashed_.emplace_back(from, left_out - from);
-      from = left_out + 1;
-    }
-    hashed_.emplace_back(from, std::dynamic_extent);
-  }
+      : steps_(parts), parts_(steps_.parts()), checks_(checks), observers_(observers) {}
 
   void go(double duration_s) {
     const std::int64_t end_ns = std::llround(duration_s * 1e9);
@@ -57,7 +72,7 @@ class Run {
     result_.realtime_factor = result_.wall_s > 0 ? result_.duration_s / result_.wall_s : 0;
     result_.control_ticks = parts_.control.ticks();
     result_.behavior_ticks = parts_.behaviors.ticks();
-    result_.state_hash = hash_.value();
+    result_.state_hash = steps_.mark().state_hash;
     result_.tick = {cost.percentile_ns(0.5), cost.percentile_ns(0.99), static_cast<double>(cost.max_ns())};
     result_.commands_sent = parts_.behaviors.commands().sent();
     result_.commands_refused = parts_.behaviors.commands().refused() + parts_.control.inbox().state().refused;
@@ -74,18 +89,12 @@ class Run {
   }
 
   void step() {
-    parts_.begin_step();
-    parts_.lockstep.step();
+    steps_.step();
     const double time_s = 1e-9 * static_cast<double>(parts_.control.state().time_ns);
     const std::span<const double> row = parts_.control.row();
-    for (const auto& [first, count] : hashed_) hash_.add(row.subspan(first, count));
-    parts_.world.hash(hash_);
-    for (const RunParts& other : parts_.others) {
-      if (other.faulty != nullptr) other.faulty->hash_held_back(hash_);
-    }
     checks_.update(time_s, row);
     for (RunObserver* observer : observers_) observer->tick(time_s, row);
-    const RunMark mark{parts_.control.ticks(), parts_.lockstep.time_ns(), hash_.value()};
+    const RunMark mark = steps_.mark();
     for (RunObserver* observer : observers_) observer->between_ticks(mark);
     take_residual(time_s);
     take_faults(parts_, 0);
@@ -111,11 +120,10 @@ class Run {
     }
   }
 
+  RunSteps steps_;
   const RunParts& parts_;
   Checks& checks_;
   const std::vector<RunObserver*>& observers_;
-  std::vector<std::pair<std::size_t, std::size_t>> hashed_;  // stretches of a row: where, how many
-  StateHash hash_;
   RunResult result_;
 };
 

@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/behavior_log.h"
 #include "engine/lockstep.h"
 #include "kadans/plant/world.h"
+#include "kadans/signal/state_hash.h"
 #include "plant/joystick/stick.h"
 #include "scenario/disturb/disturbances.h"
 #include "scenario/disturb/planned_faults.h"
@@ -82,6 +84,22 @@ struct RunMark {
   std::uint64_t ticks = 0;       // completed ticks
   std::int64_t time_ns = 0;      // time at which the next tick begins
   std::uint64_t state_hash = 0;  // over all completed ticks
+};
+
+// Steps a run, and keeps the hash of its states. Keeps the parts' references.
+class RunSteps {
+ public:
+  explicit RunSteps(RunParts parts);
+
+  // One control period of all robots and the world. Throws what the plant throws.
+  void step();
+  const RunParts& parts() const noexcept { return parts_; }
+  RunMark mark() const noexcept;  // after the last step
+
+ private:
+  RunParts parts_;
+  std::vector<std::pair<std::size_t, std::size_t>> hashed_;  // stretches of a row: where, how many
+  StateHash hash_;
 };
 
 // Observes a run while it goes. `row` holds all signals of the tick.

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/output_file.h"
 
 namespace kadans {
 namespace {
@@ -106,6 +107,13 @@ void write_durably(const fs::path& file, std::string_view bytes) {
   Descriptor descriptor(file, O_WRONLY, file);
   descriptor.write_all(bytes);
   descriptor.finish();
+}
+
+void write_output_file(const std::filesystem::path& file, std::string_view bytes) {
+  std::error_code error;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
+  if (error) throw InputError({.file = file.parent_path().string(), .message = "cannot be made: " + error.message()});
+  write_durably(file, bytes);
 }
 
 }  // namespace kadans

@@ -143,10 +143,7 @@ Json run_here(const Trial& trial, const TrialFailure* wanted) {
   Assembly assembly(scenario, scenario.seed, log);
   const SignalTable& signals = assembly.catalog().signals;
   Checks checks(signals, scenario.checks, scenario.file, assembly.signal_states());
-  if (trial.whole) {
-    refuse_faulty_behaviors(scenario, assembly.catalog());
-    for (const auto& robot : assembly.others()) refuse_faulty_behaviors(robot->scenario(), robot->catalog());
-  }
+  if (trial.whole) refuse_faulty_behaviors(assembly);
   RunParts parts = assembly.parts();
   TrialWatch watch(trial, wanted, checks, parts);
   const RunResult result = run_scenario(parts, scenario.duration_s, checks, {&watch});

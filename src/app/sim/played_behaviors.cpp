@@ -1,5 +1,6 @@
 #include "played_behaviors.h"
 
+#include "app/assembly.h"
 #include "config/robot/project_root.h"
 #include "script/check/check_behavior.h"
 
@@ -45,6 +46,11 @@ std::vector<InputProblem> problems_of_named(const ScenarioConfig& scenario, cons
 void refuse_faulty_behaviors(const ScenarioConfig& scenario, const Catalog& catalog) {
   const std::vector<InputProblem> problems = problems_of_played(scenario, catalog);
   if (!problems.empty()) throw InputError(problems);
+}
+
+void refuse_faulty_behaviors(const Assembly& assembly) {
+  refuse_faulty_behaviors(assembly.scenario(), assembly.catalog());
+  for (const auto& robot : assembly.others()) refuse_faulty_behaviors(robot->scenario(), robot->catalog());
 }
 
 }  // namespace kadans

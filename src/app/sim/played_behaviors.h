@@ -11,6 +11,8 @@
 
 namespace kadans {
 
+class Assembly;
+
 // The problems in these files. `root` is the project's root. A problem in a file that several of them require or call
 // stands there once.
 std::vector<InputProblem> problems_in(const std::set<std::filesystem::path>& files, const std::filesystem::path& root,
@@ -24,5 +26,6 @@ std::vector<InputProblem> problems_of_named(const ScenarioConfig& scenario, cons
 
 // Throws InputError when problems_of_played() finds any.
 void refuse_faulty_behaviors(const ScenarioConfig& scenario, const Catalog& catalog);
+void refuse_faulty_behaviors(const Assembly& assembly);  // of all its robots
 
 }  // namespace kadans

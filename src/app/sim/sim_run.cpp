@@ -65,10 +65,7 @@ SimRun::SimRun(const SimOptions& options, const RunChoices& choices, std::option
       height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
       record_plan_(record_plan(assembly_, options.recording, false)),
       continuation_(std::move(continuation)) {
-  if (!continuation_) {
-    refuse_faulty_behaviors(scenario_, assembly_.catalog());
-    for (const auto& robot : assembly_.others()) refuse_faulty_behaviors(robot->scenario(), robot->catalog());
-  }
+  if (!continuation_) refuse_faulty_behaviors(assembly_);
   if (continuation_) {
     inputs_ = continuation_->from.inputs;
     const double at_s = 1e-9 * static_cast<double>(continuation_->from.at.time_ns);

@@ -1,0 +1,35 @@
+-- kadans behavior test behaviors/football/field_test.lua
+local field = require "field"
+
+-- What a robot at this pose sees of the field's centre.
+local function seen(x_m, y_m, heading_rad)
+  local c, n = math.cos(heading_rad), math.sin(heading_rad)
+  return { seen = { field = { confidence = 1, known = 1, x_m = -(c * x_m + n * y_m), y_m = n * x_m - c * y_m, heading_rad = -heading_rad } } }
+end
+
+describe("field", function()
+  it("knows the robot's pose from where the field's centre is", function()
+    local pose = field.pose(seen(-2, 1.5, 0.7))
+    expect(pose.x_m).to_be_near(-2, 1e-9)
+    expect(pose.y_m).to_be_near(1.5, 1e-9)
+    expect(pose.heading_rad).to_be_near(0.7, 1e-9)
+    expect(pose.known).to_be_true()
+    expect(field.pose({ seen = { field = { confidence = 0 } } })).to_be_nil()
+  end)
+
+  it("leads from the robot to the field and back", function()
+    local pose = { x_m = 1, y_m = -1, heading_rad = 2 }
+    local there = field.from_robot(pose, 0.5, 0.25)
+    local back = field.to_robot(pose, there)
+    expect(back.x_m).to_be_near(0.5, 1e-9)
+    expect(back.y_m).to_be_near(0.25, 1e-9)
+  end)
+
+  it("leaves a robot in the way to one side, and no other", function()
+    local pose, goal = { x_m = 0, y_m = 0, heading_rad = 0 }, { x_m = 3, y_m = 0 }
+    local aside = field.around(pose, goal, { { x_m = 0.8, y_m = 0.1 } })
+    expect(aside.y_m).to_be_below(-0.5)
+    expect(field.around(pose, goal, { { x_m = 0.8, y_m = 1 } })).to_equal(goal)
+    expect(field.around(pose, goal, { { x_m = -0.5, y_m = 0 } })).to_equal(goal)
+  end)
+end)

@@ -1,0 +1,61 @@
+-- What the referee's words mean for a robot: what it may do now.
+local field = require "field"
+
+local game = {}
+
+local set, playing = 2, 3
+
+-- "wait": it stands; "ready": it goes to its place for the kick-off; "play".
+function game.phase(s, m)
+  local told = s.seen.game
+  if not (told.confidence > 0) or told.penalty > 0.5 or told.stopped > 0.5 then return "wait" end
+  if told.state == 1 then return "ready" end
+  if told.state == set then return m.vars.whistled and "play" or "wait" end
+  return told.state == playing and "play" or "wait"
+end
+
+-- The whistle tells of playing 10 s before the game controller does; to be called in each tick.
+function game.listen(m, s)
+  local whistle, told = s.seen.whistle, s.seen.game
+  local count = whistle.confidence > 0 and whistle.count or 0
+  local state = told.confidence > 0 and told.state or 0
+  if state ~= set then m.vars.whistled = false end
+  if state == set and count > m.vars.whistles then m.vars.whistled = true end
+  m.vars.whistles = math.max(m.vars.whistles, count)
+end
+
+-- A kick-off of which the game controller does not say yet that it is over: "ours", "theirs", or nil.
+function game.kick_off(s, m)
+  local told = s.seen.game
+  if told.state ~= set or not m.vars.whistled or told.set_play > 0 then return nil end
+  return told.ours == 1 and "ours" or told.ours == 0 and "theirs" or nil
+end
+
+-- A free kick, throw-in and so on of the others, from whose ball the team keeps away.
+function game.keeps_away(s)
+  local told = s.seen.game
+  return told.state == playing and told.set_play > 0 and told.ours == 0
+end
+
+-- A penalty kick that is not taken yet: only the kicker moves.
+function game.penalty_kick(s) return s.seen.game.set_play == 3 end
+
+function game.goal(s) return { x_m = s.seen.me.length_m / 2, y_m = 0 } end
+function game.own_goal(s) return { x_m = -s.seen.me.length_m / 2, y_m = 0 } end
+
+-- Where the ball is by what the robot sees, or else by what its mates say: { x_m =, y_m =, own = }, or nil.
+function game.ball(m, s, pose)
+  local ball = s.seen.ball
+  if ball.confidence > 0 and ball.age_s < 2 and ball.carried then
+    local at = field.from_robot(pose, ball.x_m, ball.y_m)
+    at.own = true
+    return at
+  end
+  local best
+  for _, mate in pairs(m.vars.mates) do
+    if mate.ball_x_m and s.time_s - mate.heard_s < 3 and (not best or mate.heard_s > best.heard_s) then best = mate end
+  end
+  return best and { x_m = best.ball_x_m, y_m = best.ball_y_m, own = false }
+end
+
+return game

@@ -1,0 +1,40 @@
+-- What a play asks of the legs: orders to the behavior `footwork`, which plays all the time.
+local field = require "field"
+
+local legs = {}
+
+local again_s = 0.2  -- the same order is sent again after that, with its place as it is seen by then
+
+-- footwork is played again when an error ended it.
+local function order(m, s, name, data)
+  local sent = m.vars.sent
+  if not m:plays("footwork") then
+    if not sent or sent.name ~= "" or s.time_s - sent.at_s > 1 then
+      m:replace("footwork")
+      m.vars.sent = { name = "", at_s = s.time_s }
+    end
+    return
+  end
+  if sent and sent.name == name and s.time_s - sent.at_s < again_s - 1e-6 then return end
+  m.vars.sent = { name = name, at_s = s.time_s }
+  m:emit(name, data, { to = "footwork" })
+end
+
+-- To a place of the field, to face `toward` there; other robots are walked around.
+function legs.go(m, s, pose, place, toward, most_m_s)
+  local near = field.around(pose, place, field.robots(s, pose))
+  local at = field.to_robot(pose, near)
+  local heading_rad = math.atan2(toward.y_m - place.y_m, toward.x_m - place.x_m)
+  order(m, s, "foot.go", { x_m = at.x_m, y_m = at.y_m, heading_rad = field.angle(heading_rad - pose.heading_rad), most_m_s = most_m_s })
+end
+
+-- The ball to a place of the field, so that it would roll beyond_m farther.
+function legs.kick(m, s, pose, place, beyond_m)
+  local at = field.to_robot(pose, place)
+  order(m, s, "foot.kick", { x_m = at.x_m, y_m = at.y_m, beyond_m = beyond_m })
+end
+
+function legs.turn(m, s, rad_s) order(m, s, "foot.turn", { rad_s = rad_s }) end
+function legs.stand(m, s) order(m, s, "foot.stand", {}) end
+
+return legs

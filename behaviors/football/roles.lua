@@ -1,0 +1,33 @@
+-- Who does what, agreed without a master: each says how long it takes to the ball, and each sees by the same rule who is
+-- the striker. Who is silent or may not play is not there.
+local field = require "field"
+local keeper = require "keeper"
+
+local roles = {}
+
+local silent_s = 4    -- a mate that was not heard of for so long does not count
+local keeps_s = 1.5   -- who is the striker stays it, unless another one is faster by that
+local walks_m_s, turns_rad_s = 0.3, 0.6
+
+-- Seconds to stand behind the ball, facing the others' goal.
+function roles.far(pose, ball)
+  if not ball then return 60 end
+  local behind = { x_m = ball.x_m - 0.4, y_m = ball.y_m }
+  local toward_rad = math.atan2(ball.y_m - pose.y_m, ball.x_m - pose.x_m)
+  return field.distance(pose, behind) / walks_m_s + math.abs(field.angle(toward_rad - pose.heading_rad)) / turns_rad_s
+end
+
+function roles.pick(m, s, pose, ball)
+  local me = s.seen.me
+  if me.number == me.keeper then return "keeper" end
+  local own_s = roles.far(pose, ball) - (m.vars.role == "striker" and keeps_s or 0)
+  for number, mate in pairs(m.vars.mates) do
+    if number ~= me.keeper and s.time_s - mate.heard_s < silent_s and mate.plays then
+      local their_s = mate.far_s - (mate.role == "striker" and keeps_s or 0)
+      if their_s < own_s or (their_s == own_s and number < me.number) then return "supporter" end
+    end
+  end
+  return keeper.clears(s, ball) and me.keeper > 0 and "supporter" or "striker"
+end
+
+return roles

@@ -1,0 +1,34 @@
+-- kadans behavior test behaviors/football/roles_test.lua
+local roles = require "roles"
+
+local function robot(number, keeper)
+  local me = { number = number, keeper = keeper, length_m = 9, width_m = 6, goal_m = 2.6, circle_m = 0.75 }
+  return { vars = { mates = {}, role = "none" } }, { time_s = 10, seen = { me = me } }
+end
+local ball, near, far = { x_m = 1, y_m = 0 }, { x_m = 0.3, y_m = 0, heading_rad = 0 }, { x_m = -3, y_m = 0, heading_rad = 0 }
+
+describe("roles", function()
+  it("lets the keeper keep, and one that is alone strike", function()
+    local m, s = robot(1, 1)
+    expect(roles.pick(m, s, far, ball)).to_equal "keeper"
+    m, s = robot(2, 1)
+    expect(roles.pick(m, s, far, ball)).to_equal "striker"
+  end)
+
+  it("lets the one that is faster at the ball strike, on both sides alike", function()
+    local m, s = robot(2, 1)
+    m.vars.mates[3] = { heard_s = 9, plays = true, far_s = roles.far(near, ball), role = "none" }
+    expect(roles.pick(m, s, far, ball)).to_equal "supporter"
+    m, s = robot(3, 1)
+    m.vars.mates[2] = { heard_s = 9, plays = true, far_s = roles.far(far, ball), role = "none" }
+    expect(roles.pick(m, s, near, ball)).to_equal "striker"
+  end)
+
+  it("does not count a mate that is silent or may not play", function()
+    local m, s = robot(2, 1)
+    m.vars.mates[3] = { heard_s = 1, plays = true, far_s = 0, role = "striker" }
+    expect(roles.pick(m, s, far, ball)).to_equal "striker"
+    m.vars.mates[3] = { heard_s = 9, plays = false, far_s = 0, role = "striker" }
+    expect(roles.pick(m, s, far, ball)).to_equal "striker"
+  end)
+end)

@@ -1,0 +1,101 @@
+-- Walks to places and kicks the ball as somebody decides from moment to moment: the decisions of a football team, over
+-- the events below. Places are as the robot sees them when the event comes, x ahead and y to the left. An order holds
+-- until the next one; without one for a while the robot comes to stand. When it falls, it gets up.
+local k = require "kadans"
+local ball = require "ball"
+local floor = require "floor"
+local orders = require "foot_orders"
+local walk = require "walking"
+
+local P = k.params {
+  settle_s   = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
+  patience_s = { 1, min = 0.1, max = 60, unit = "s", doc = "without a word of who decides, after which it stands" },
+  roll_m_s2  = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
+  most_m_s   = { 0.42, min = 0.05, max = 0.6, unit = "m/s", doc = "how fast it walks to the ball" },
+  after_s    = { 0.6, min = 0, max = 10, unit = "s", doc = "time in place after a kick" },
+}
+
+k.events(orders)
+
+-- A place that is given from where the robot is, in the frame of walk.at.
+local function from_here(m, data)
+  local at = walk.at(m)
+  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
+  return {
+    x_m = at.x_m + c * data.x_m - n * data.y_m,
+    y_m = at.y_m + n * data.x_m + c * data.y_m,
+    heading_rad = walk.angle(at.heading_rad + (data.heading_rad or 0)),
+  }
+end
+
+-- Whatever it does just now; what the order means from where the robot is, is reckoned when its legs are its own.
+local function hear(m, s)
+  m.vars.order = { what = s.event.name, data = s.event.data or {}, heard_s = s.time_s }
+end
+
+local function take(m, order)
+  if not order.taken and order.data.x_m then order.place = from_here(m, order.data) end
+  order.taken = true
+end
+
+-- The same place does not make it walk again for what odometry and noise say.
+local function go(m, order)
+  local at = walk.at(m)
+  local off_m = math.sqrt((order.place.x_m - at.x_m) ^ 2 + (order.place.y_m - at.y_m) ^ 2)
+  local off_rad = math.abs(walk.angle(order.place.heading_rad - at.heading_rad))
+  if walk.stands(m) and off_m < 0.25 and off_rad < 0.35 then return end
+  if walk.to(m, order.place, { m = 0.1, rad = 0.15 }, order.data.most_m_s or P.most_m_s) then walk.stop(m) end
+end
+
+local function obey(m, s)
+  local order = m.vars.order
+  if order then take(m, order) end
+  local b = ball.watch(m, s, m.vars.known)
+  local kicks = walk.kicks(m)
+  if m.vars.armed and not kicks then m.vars.kicked_s = s.time_s end
+  m.vars.armed = kicks
+  if not order or s.time_s - order.heard_s > P.patience_s or order.what == "foot.stand" then
+    if kicks then walk.keep(m) end
+    walk.stop(m)
+  elseif s.time_s - m.vars.kicked_s < P.after_s then
+    walk.go(m, {})
+  elseif order.what == "foot.turn" then
+    if kicks then walk.keep(m) end
+    walk.go(m, { turn_rad_s = order.data.rad_s })
+  elseif order.what == "foot.go" then
+    if kicks then walk.keep(m) end
+    go(m, order)
+  elseif b then
+    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s)
+  end
+end
+
+local function lies(s) return floor.lies(s.base) end
+
+return k.behavior "footwork" {
+  controls = "walking",
+  vars     = { known = {}, side = 1, armed = false, kicked_s = -10 },
+  initial  = "set_out",
+  always   = { { on = "foot.*", action = hear } },
+
+  k.state "set_out" {
+    run = function(m) walk.set_out(m, P.settle_s) end,
+    { on = "run.done", to = "obeys" },
+    { when = lies, to = "fallen", why = "lies" },
+  },
+  k.state "obeys" {
+    endless = true,
+    during = obey,
+    { when = lies, to = "fallen", why = "lies" },
+  },
+  k.state "fallen" {
+    enter = function(m)
+      walk.keep(m)
+      walk.stop(m)
+      m.vars.known, m.vars.order, m.vars.armed = {}, nil, false
+    end,
+    k.call "get_up",
+    { on = "done", to = "set_out" },
+    { on = "failed", to = "fallen", why = "tries again" },
+  },
+}

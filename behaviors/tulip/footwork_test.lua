@@ -1,0 +1,36 @@
+-- kadans behavior test behaviors/tulip/footwork_test.lua
+local k = require "kadans"
+
+describe("footwork", function()
+  local run
+  before_each(function()
+    run = k.play "footwork.lua"
+    run:advance_to("obeys")
+  end)
+
+  it("stands until somebody says where to go, and again when nobody does any more", function()
+    run:advance(0.2)
+    expect(run.state).to_equal "obeys"
+    run:emit("foot.go", { x_m = 2, y_m = 0, heading_rad = 0 })
+    run:advance(0.5)
+    expect(run.control_sets).to_equal "walking"
+    run:advance(2)
+    expect(run.state).to_equal "obeys"
+  end)
+
+  it("refuses places that are none", function()
+    expect(function() run:emit("foot.go", { x_m = 200, y_m = 0, heading_rad = 0 }) end).to_raise "outside its range -30..30 m"
+    expect(function() run:emit("foot.turn", {}) end).to_raise "rad_s"
+  end)
+
+  it("gets up when it lies, and hears meanwhile", function()
+    run:set_sensor("base.pitch_rad", 1.5)
+    run:set_sensor("base.tilt_rad", 1.5)
+    run:set_sensor("base.posture", 1)
+    run:advance(0.1)
+    expect(run.state:sub(1, 6)).to_equal "fallen"
+    run:emit("foot.stand")
+    run:advance(0.1)
+    expect(run.error).to_equal ""
+  end)
+end)

@@ -1,0 +1,56 @@
+// Reads a JSON file of one's own as strictly as Kadans reads its own: each field is asked for by name, with its type,
+// its range and a sentence; a key that nobody asks for is refused with the nearest one; all mistakes are told at once,
+// each with file, line and column.
+//
+//   read_input_object("config/matches/drill.json", [&](InputObject& f) {
+//     f.number("half_s", rules.half_s, {1, 3600, "s"}, "length of a half");
+//   });
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace kadans {
+
+class Fields;
+class Problems;
+
+class InputObject {
+ public:
+  struct Range {
+    double min = -std::numeric_limits<double>::infinity(), max = std::numeric_limits<double>::infinity();
+    std::string_view unit{};
+  };
+  using Read = std::function<void(InputObject&)>;
+
+  InputObject(Fields& fields, Problems& problems) noexcept : fields_(&fields), problems_(&problems) {}
+
+  // What is not in the file keeps its value. True: it was there and right.
+  bool number(std::string_view name, double& value, Range range, std::string_view doc, bool required = false);
+  bool whole(std::string_view name, std::uint64_t& value, std::uint64_t min, std::uint64_t max, std::string_view doc,
+             bool required = false);
+  bool text(std::string_view name, std::string& value, std::string_view doc, bool required = false);
+  bool choice(std::string_view name, std::size_t& value, std::span<const std::string> names, std::string_view doc,
+              bool required = false);
+  bool object(std::string_view name, std::string_view doc, const Read& read, bool required = false);
+  // The path of a file or folder of the project, as it is written; "" in `value`: there is none, which is a mistake.
+  bool path(std::string_view name, std::string& value, std::string_view doc, bool required = false);
+
+  bool is_file(const std::string& path) const;  // of the project
+
+  // A mistake at the value of this field.
+  void refuse(std::string_view name, const std::string& message);
+
+ private:
+  Fields* fields_;
+  Problems* problems_;
+};
+
+// Throws InputError.
+void read_input_object(const std::filesystem::path& file, const InputObject::Read& read);
+
+}  // namespace kadans

@@ -1,0 +1,69 @@
+#include "kadans/config/input_object.h"
+
+#include "config/robot/project_root.h"
+#include "fields.h"
+#include "signal/input_file.h"
+
+namespace kadans {
+namespace {
+
+Need need(bool required) { return required ? Need::required : Need::optional; }
+
+}  // namespace
+
+bool InputObject::number(std::string_view name, double& value, Range range, std::string_view doc, bool required) {
+  return fields_->number(name, value, {range.min, range.max, range.unit}, doc, need(required));
+}
+
+bool InputObject::whole(std::string_view name, std::uint64_t& value, std::uint64_t min, std::uint64_t max,
+                        std::string_view doc, bool required) {
+  return fields_->integer(name, value, {min, max, {}}, doc, need(required));
+}
+
+bool InputObject::text(std::string_view name, std::string& value, std::string_view doc, bool required) {
+  return fields_->string(name, value, doc, need(required));
+}
+
+bool InputObject::choice(std::string_view name, std::size_t& value, std::span<const std::string> names,
+                         std::string_view doc, bool required) {
+  return fields_->choice(name, value, names, doc, need(required));
+}
+
+bool InputObject::object(std::string_view name, std::string_view doc, const Read& read, bool required) {
+  return fields_->object(
+      name, doc,
+      [&](Fields& inner) {
+        InputObject object(inner, *problems_);
+        read(object);
+      },
+      need(required));
+}
+
+bool InputObject::path(std::string_view name, std::string& value, std::string_view doc, bool required) {
+  if (!fields_->string(name, value, doc, need(required))) return false;
+  const std::filesystem::path found = resolve(value, problems_->file());
+  if (std::filesystem::exists(found)) return true;
+  refuse(name, fields_->path(name) + ": there is no " + in_quotes(found.string()));
+  value.clear();
+  return false;
+}
+
+bool InputObject::is_file(const std::string& path) const {
+  return std::filesystem::is_regular_file(resolve(path, problems_->file()));
+}
+
+void InputObject::refuse(std::string_view name, const std::string& message) {
+  problems_->add(fields_->place(name), message);
+}
+
+void read_input_object(const std::filesystem::path& file, const InputObject::Read& read) {
+  Problems problems(file.string());
+  const JsonValue json = parse_json(read_input_file(file), file.string());
+  read_fields(json, problems, [&](Fields& fields) {
+    InputObject object(fields, problems);
+    read(object);
+  });
+  problems.throw_if_any();
+}
+
+}  // namespace kadans

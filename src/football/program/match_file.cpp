@@ -1,0 +1,241 @@
+#include "match_file.h"
+
+#include <cstdio>
+
+#include "kadans/config/input_object.h"
+
+namespace kadans::football {
+namespace {
+
+constexpr double beside_gap_m = 1.0;  // between robots that stand beside the field
+constexpr std::string_view name_letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
+const std::array<std::string, 3> division_names{"small", "middle", "large"};
+const std::array<std::string, 2> start_names{"touchline", "field"};
+
+void read_rules(InputObject& f, MatchRules& rules) {
+  f.number("half_s", rules.half_s, {5, 3600, "s"}, "length of a half");
+  f.number("break_s", rules.break_s, {1, 3600, "s"}, "length of the break");
+  f.number("initial_s", rules.initial_s, {1, 600, "s"}, "before each half, until ready");
+  f.number("ready_s", rules.kick_off_ready_s, {5, 120, "s"}, "to come to the places of a kick-off");
+  f.number("set_s", rules.set_s, {1, 60, "s"}, "in set, until the whistle");
+  f.number("stop_s", rules.stop_s, {1, 60, "s"}, "of a stop for a free kick");
+  f.number("set_play_s", rules.set_play_s, {5, 120, "s"}, "to take a free kick");
+  f.number("removal_s", rules.removal_s, {1, 600, "s"}, "of a penalty at the touchline");
+  f.number("hidden_playing_s", rules.hidden_playing_s, {0, 60, "s"},
+           "so long the packets hide playing after the whistle");
+  std::uint64_t mercy = static_cast<std::uint64_t>(rules.mercy_difference), messages = rules.messages;
+  f.whole("mercy_difference", mercy, 1, 1000, "lead that ends the match");
+  f.whole("messages", messages, 0, 65'535, "messages of a team in a game");
+  rules.mercy_difference = static_cast<int>(mercy);
+  rules.messages = static_cast<std::uint16_t>(messages);
+}
+
+void read_senses(InputObject& f, SensesConfig& senses) {
+  f.number("rate_Hz", senses.rate_Hz, {1, 50, "Hz"}, "pictures in a second");
+  f.number("latency_s", senses.latency_s, {0, 0.5, "s"}, "from a picture to what it says");
+  f.number("view_rad", senses.view_rad, {0.1, 6.3, "rad"}, "opening angle of the field of view");
+  f.number("far_m", senses.far_m, {0.5, 30, "m"}, "the furthest that it sees");
+  f.number("distance_noise", senses.distance_noise, {0, 0.5}, "standard deviation of a distance, per distance");
+  f.number("bearing_noise_rad", senses.bearing_noise_rad, {0, 0.5, "rad"}, "standard deviation of a direction");
+  f.number("missed", senses.missed, {0, 1}, "share of the pictures that miss a thing");
+  f.number("imagined", senses.imagined, {0, 1}, "share of the pictures that show it where it is not");
+}
+
+void read_team(InputObject& f, TeamSetup& team, unsigned least) {
+  f.text("name", team.name, "what the team is called");
+  if (f.path("team", team.folder, "the folder of the team, with its team.lua, from the project root", least > 0)) {
+    std::string decisions = team.folder + "/team.lua";
+    if (!f.is_file(decisions))
+      f.refuse("team", "team: the folder '" + team.folder + "' has no team.lua, a k.decisions");
+  }
+  if (!f.path("robot", team.robot, "the configuration of its robots") && team.robot.empty()) team.robot = "?";
+  f.whole("players", team.players, least, team_players_max, "robots of the team", least > 0);
+  f.whole("keeper", team.keeper, 0, team_players_max, "number of the keeper, 0: none");
+  if (team.keeper > team.players)
+    f.refuse("keeper", "keeper is number " + std::to_string(team.keeper) + ", but the team has " +
+                           std::to_string(team.players) + " players");
+}
+
+std::string number(double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.12g", value);
+  return text.data();
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + "\"";
+}
+
+std::string world_model() {
+  std::string text = R"({
+      "ball": { "what": "the ball", "place": "point", "within_m": 20, "forget_s": 6 },
+      "field": { "what": "the field's centre; ahead of it the goal that the team attacks", "place": "pose", "within_m": 30,
+                 "forget_s": 3, "fields": { "known": { "what": "1 when the robot knows where it is", "min": 0, "max": 1 } } },
+      "game": { "what": "the game controller's words", "fields": {
+          "state": { "what": "0 initial, 1 ready, 2 set, 3 playing, 4 finished", "min": 0, "max": 4 },
+          "set_play": { "what": "0 none, 1 direct, 2 indirect free kick, 3 penalty kick, 4 throw-in, 5 goal kick, 6 corner", "min": 0, "max": 6 },
+          "ours": { "what": "1 when the team kicks, 0 when the others do, -1 nobody", "min": -1, "max": 1 },
+          "stopped": { "what": "1 while play is stopped", "min": 0, "max": 1 },
+          "penalty": { "what": "its own penalty, 0 none", "min": 0, "max": 13 },
+          "remaining_s": { "unit": "s", "what": "left of the half" },
+          "secondary_s": { "unit": "s", "what": "left of ready, of a set play or of the break" },
+          "lead": { "what": "goals ahead" } } },
+      "whistle": { "what": "the referee's whistle", "forget_s": 30, "fields": { "count": { "what": "how often it was heard" } } },
+      "me": { "what": "what the robot is in its team, and the field", "fields": {
+          "number": { "what": "its number" }, "keeper": { "what": "the keeper's number, 0 none" }, "players": { "what": "robots of the team" },
+          "length_m": { "unit": "m" , "what": "of the field" }, "width_m": { "unit": "m", "what": "of the field" },
+          "goal_m": { "unit": "m", "what": "width of the goals" }, "circle_m": { "unit": "m", "what": "radius of the centre circle" },
+          "mark_m": { "unit": "m", "what": "from a penalty mark to its goal line" } } })";
+  for (std::size_t i = 1; i <= robots_told; ++i) {
+    text +=
+        ",\n      \"robot_" + std::to_string(i) +
+        "\": { \"what\": \"a robot that it sees, the nearest first\", \"place\": \"point\", \"within_m\": 20, "
+        "\"forget_s\": 1.5, \"fields\": { \"mate\": { \"what\": \"1 of its own team\", \"min\": 0, \"max\": 1 } } }";
+  }
+  return text + " }";
+}
+
+std::string robot_fields(const MatchConfig& match, RobotId id) {
+  const TeamSetup& team = match.team(id.side);
+  const Pose2 at = world_pose(place_before(match, id), id.side == Side::home ? -1 : 1);
+  std::string text = "\"robot\": " + quoted(team.robot) +
+                     ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
+                     ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) +
+                     " },\n    \"supervisor\": { \"decisions\": " + quoted(team.folder + "/team.lua") +
+                     ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
+  std::string peers;
+  for (unsigned number = 1; number <= team.players; ++number) {
+    const RobotId mate{id.side, static_cast<std::uint8_t>(number)};
+    if (!(mate == id)) peers += (peers.empty() ? "" : ", ") + quoted(robot_name(mate));
+  }
+  if (!peers.empty())
+    text += ",\n    \"messages\": { \"name\": " + quoted(robot_name(id)) + ", \"peers\": [" + peers +
+            "], \"messages_per_minute\": 300, \"bytes_per_minute\": 150000 }";
+  const SensesConfig& senses = match.senses;
+  text +=
+      " },\n    \"perception\": [{ \"entry\": \"ball\", \"object\": \"ball\", \"rate_Hz\": " + number(senses.rate_Hz) +
+      ", \"latency_s\": " + number(senses.latency_s) + ", \"distance_noise\": " + number(senses.distance_noise) +
+      ", \"bearing_noise_rad\": " + number(senses.bearing_noise_rad) + ", \"missed\": " + number(senses.missed) +
+      ", \"view_rad\": " + number(senses.view_rad) + ", \"far_m\": " + number(senses.far_m) +
+      ", \"imagined\": " + number(senses.imagined) + ", \"hidden\": true }]";
+  return text;
+}
+
+std::string box(const std::string& name, const Point& at, double z_m, double x_m, double y_m, double height_m) {
+  return ",\n    { \"kind\": \"box\", \"name\": " + quoted(name) + ", \"size_m\": [" + number(x_m) + ", " +
+         number(y_m) + ", " + number(height_m) + "], \"position_m\": [" + number(at.x_m) + ", " + number(at.y_m) +
+         ", " + number(z_m) + "] }";
+}
+
+// Posts and nets; a crossbar is higher than any ball of this ground.
+std::string goals(const Field& field) {
+  std::string text;
+  const Goal& goal = field.goal;
+  const double post_m = goal.post_m, y_m = (goal.width_m + post_m) / 2;
+  for (const double end : {-1.0, 1.0}) {
+    const std::string name = end < 0 ? "right" : "left";  // as the game controller sees it
+    const double x_m = end * (field.goal_line_x_m());
+    text += box(name + "_post_1", {x_m, y_m}, goal.height_m / 2, post_m, post_m, goal.height_m);
+    text += box(name + "_post_2", {x_m, -y_m}, goal.height_m / 2, post_m, post_m, goal.height_m);
+    text += box(name + "_net", {x_m + end * goal.depth_m, 0}, 0.25, 0.05, goal.width_m, 0.5);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string robot_name(RobotId id) { return (id.side == Side::home ? "home_" : "away_") + std::to_string(id.number); }
+
+std::vector<RobotId> MatchConfig::robots() const {
+  std::vector<RobotId> all;
+  for (const Side side : both_sides) {
+    for (unsigned number = 1; number <= team(side).players; ++number)
+      all.push_back({side, static_cast<std::uint8_t>(number)});
+  }
+  return all;
+}
+
+Pose2 place_before(const MatchConfig& match, RobotId id) {
+  const Field field = match.field();
+  if (match.start_on_field && match.team(id.side).keeper == id.number) return {0.5 - field.length_m / 2, 0, 0};
+  if (match.start_on_field) return {-1.2 - 0.9 * (id.number - 1), id.number % 2 == 0 ? 0.8 : 0, 0};
+  const double y_m = field.width_m / 2 + 0.3, x_m = -field.length_m / 2 + 1.2 + beside_gap_m * (id.number - 1);
+  return {x_m, id.side == Side::home ? -y_m : y_m, (id.side == Side::home ? 1 : -1) * std::numbers::pi / 2};
+}
+
+Pose2 world_pose(const Pose2& of_team, double sign) noexcept { return sign > 0 ? of_team : mirrored(of_team); }
+
+MatchConfig read_match(const std::filesystem::path& file) {
+  MatchConfig match;
+  match.file = file.string();
+  read_input_object(file, [&](InputObject& f) {
+    f.text("name", match.name, "the match's name, which reports are called by", true);
+    if (match.name.empty() || match.name.find_first_not_of(name_letters) != std::string::npos)
+      f.refuse("name", "name must be small letters, digits and '_', such as two_against_two");
+    f.text("doc", match.doc, "what it shows, one or two sentences");
+    auto division = static_cast<std::size_t>(match.division), size = static_cast<std::size_t>(match.field_size);
+    f.choice("division", division, division_names, "the robots' division: it gives ball and goals");
+    f.choice("field", size, division_names, "the field's size: S, M or L");
+    match.division = static_cast<Division>(division);
+    match.field_size = static_cast<FieldSize>(size);
+    try {
+      (void)match.field();
+    } catch (const std::invalid_argument& error) {
+      f.refuse("field", error.what());
+    }
+    f.whole("seed", match.seed, 0, 9'007'199'254'740'992, "seed of all random numbers");
+    f.object("rules", "times that differ from the rules of 2026", [&](InputObject& e) { read_rules(e, match.rules); });
+    f.object(
+        "home", "the team that defends the left goal first, and kicks off",
+        [&](InputObject& e) { read_team(e, match.teams[0], 1); }, true);
+    match.teams[1].players = 0;
+    f.object("away", "the other team; without one the goal is empty",
+             [&](InputObject& e) { read_team(e, match.teams[1], 1); });
+    std::size_t start = 0;
+    f.choice("start", start, start_names, "where robots stand before a half: beside the field, or on it");
+    match.start_on_field = start == 1;
+    f.object("ends", "what ends it before the rules do", [&](InputObject& e) {
+      e.whole("goals", match.goals, 1, 1000, "with so many goals");
+      e.number("playing_s", match.playing_s, {1, 1e5, "s"}, "after so long in playing");
+    });
+    f.number("rolling_friction_m", match.rolling_friction_m, {1e-4, 0.1, "m"}, "how the grass slows the ball");
+    f.object("network", "the network of each team", [&](InputObject& e) {
+      e.number("delay_s", match.delay_s, {0, 10, "s"}, "the least time that a message takes");
+      e.number("jitter_s", match.jitter_s, {0, 10, "s"}, "the most that it takes longer");
+      e.number("lost", match.lost, {0, 1}, "share of the messages that are lost");
+    });
+    f.object("senses", "what a robot's camera says", [&](InputObject& e) { read_senses(e, match.senses); });
+  });
+  for (const Side side : both_sides) {
+    TeamSetup& team = match.teams.at(index_of(side));
+    if (team.name.empty()) team.name = side == Side::home ? "home" : "away";
+  }
+  match.rules.competition_type = static_cast<std::uint8_t>(match.division);
+  match.rules.players_per_team = static_cast<unsigned>(std::max(match.teams[0].players, match.teams[1].players));
+  return match;
+}
+
+std::string scenario_of(const MatchConfig& match) {
+  const Field field = match.field();
+  const Ball ball = league_ball(match.division);
+  const std::vector<RobotId> robots = match.robots();
+  std::string text = "{ \"name\": " + quoted(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
+                     robot_fields(match, robots.front()) + ",\n  \"robots\": [";
+  for (std::size_t i = 1; i < robots.size(); ++i) {
+    text += std::string(i == 1 ? "" : ",") + "\n    { \"name\": " + quoted(robot_name(robots[i])) + ", " +
+            robot_fields(match, robots[i]) + " }";
+  }
+  text += "],\n  \"network\": { \"delay_s\": " + number(match.delay_s) + ", \"jitter_s\": " + number(match.jitter_s) +
+          ", \"lost\": " + number(match.lost) +
+          " },\n  \"world\": [\n    { \"kind\": \"ball\", \"name\": \"ball\", \"radius_m\": " + number(ball.radius_m) +
+          ", \"mass_kg\": " + number(ball.mass_kg) + ", \"rolling_friction_m\": " + number(match.rolling_friction_m) +
+          ", \"restitution\": 0.6, \"position_m\": [0, 0, " + number(ball.radius_m) + "] }" + goals(field) + "]\n}\n";
+  return text;
+}
+
+}  // namespace kadans::football

@@ -1,0 +1,66 @@
+// A match in one JSON file: two teams by their folders, field, times, what robots perceive and how they hear each other
+// (docs/football.md). And the scenario of several robots that it is played in.
+//
+// A team is a folder with a `team.lua`, a k.decisions. All it knows comes by the world model, whose entries are those
+// of `world_model_of`; all it does it does by playing behaviors and by messages.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "football/field.h"
+#include "football/match.h"
+
+namespace kadans::football {
+
+inline constexpr unsigned team_players_max = 4;  // of the robots that one world holds, eight
+inline constexpr std::size_t robots_told = 3;    // of those that a robot sees: the nearest ones
+
+struct TeamSetup {
+  std::string name, folder, robot = "config/tulip/robot.json";
+  std::uint64_t players = 1, keeper = 0;  // keeper 0: there is none
+};
+
+// What a robot's camera says of the ball, of other robots and of the field.
+struct SensesConfig {
+  double rate_Hz = 15, latency_s = 0.06;
+  double view_rad = 2, far_m = 6;  // about straight ahead
+  double distance_noise = 0.04, bearing_noise_rad = 0.02;
+  double missed = 0.2, imagined = 0.02;  // shares of the pictures
+};
+
+struct MatchConfig {
+  std::string file, name, doc;
+  Division division = Division::middle;
+  FieldSize field_size = FieldSize::small;
+  MatchRules rules;
+  std::array<TeamSetup, 2> teams;
+  std::uint64_t seed = 1;
+  bool start_on_field = false;  // else at the touchline of their own half
+  std::uint64_t goals = 0;      // it ends with so many; 0: the rules end it
+  double playing_s = 0;         // it ends after so long in playing; 0: the rules end it
+  double rolling_friction_m = 0.004;
+  double delay_s = 0.01, jitter_s = 0.01, lost = 0.05;  // of messages
+  SensesConfig senses;
+
+  const TeamSetup& team(Side side) const noexcept { return teams.at(index_of(side)); }
+  Field field() const { return league_field(division, field_size); }
+  std::vector<RobotId> robots() const;  // in the order of the scenario
+};
+
+// Throws InputError with all mistakes.
+MatchConfig read_match(const std::filesystem::path& file);
+
+// Where a robot stands before a half, in its team's frame: at the touchline, or on the field. Before the kick-off the
+// teams walk from there to their places.
+Pose2 place_before(const MatchConfig& match, RobotId id);
+Pose2 world_pose(const Pose2& of_team, double sign) noexcept;  // Match::sign of the team
+
+std::string robot_name(RobotId id);  // "home_1"
+// The text of the scenario, for kadans::Simulation.
+std::string scenario_of(const MatchConfig& match);
+
+}  // namespace kadans::football

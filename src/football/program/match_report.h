@@ -1,0 +1,16 @@
+// What is told of a match that was played: for people, and for programs.
+#pragma once
+
+#include <string>
+
+#include "played_match.h"
+
+namespace kadans::football {
+
+bool ended_by_itself(const MatchResult& result);  // by the rules, or as its file wants it
+std::string text_of(const MatchResult& result, const MatchConfig& match);
+// One JSON object: {"match":, "seed":, "ended":, "home": {"name":, "goals":}, ..., "decisions": [...], "robots":
+// [...]}. The same match gives the same text.
+std::string json_of(const MatchResult& result, const MatchConfig& match);
+
+}  // namespace kadans::football

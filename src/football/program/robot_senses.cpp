@@ -1,0 +1,193 @@
+#include "robot_senses.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace kadans::football {
+namespace {
+
+constexpr double false_share = 0.05, landmark_missed = 0.4, line_missed = 0.3, line_least_m = 0.4;
+constexpr double placed_sd_m = 0.1, placed_sd_rad = 0.1, penalised_sd_m = 0.5, penalised_sd_rad = 0.25;
+constexpr double penalised_edge_m = 0.2;  // from the carpet's edge
+constexpr double near_m = 0.3;            // what lies nearer is below the camera
+constexpr std::int64_t self_every_ns = 1'000'000'000;
+
+}  // namespace
+
+RobotSenses::RobotSenses(const MatchConfig& match, Simulation& simulation, std::size_t number, RobotId id,
+                         std::uint64_t seed)
+    : match_(match),
+      simulation_(simulation),
+      number_(number),
+      id_(id),
+      team_number_(static_cast<std::uint8_t>(1 + index_of(id.side))),
+      field_(match.field()),
+      markings_(markings_of(field_)),
+      random_(seed, "football.senses of " + robot_name(id)),
+      camera_scale_(random_.uniform(0.95, 1.05)),
+      camera_rad_(random_.uniform(-0.03, 0.03)),
+      localisation_({.field = field_, .seed = seed + number}),
+      field_entry_(simulation.entry(number, "field")),
+      game_entry_(simulation.entry(number, "game")),
+      whistle_entry_(simulation.entry(number, "whistle")),
+      me_entry_(simulation.entry(number, "me")) {
+  for (std::size_t i = 1; i <= robots_told; ++i)
+    robot_entries_.push_back(simulation.entry(number, "robot_" + std::to_string(i)));
+  placed(place_before(match, id));
+}
+
+void RobotSenses::placed(const Pose2& place) {
+  localisation_.place(std::span(&place, 1), placed_sd_m, placed_sd_rad);
+  late_views_.clear();
+}
+
+void RobotSenses::tell(std::uint32_t entry, std::int64_t time_ns, std::initializer_list<double> fields) {
+  Observation observation{.entry = entry, .time_ns = time_ns, .source = SeenSource::scenario};
+  std::ranges::copy(fields, observation.fields.begin());
+  simulation_.observe(number_, observation);
+}
+
+void RobotSenses::step(const WorldTruth& world, double sign) {
+  const std::int64_t now_ns = simulation_.time_ns() - simulation_.period_ns();  // of the last tick
+  const double now_s = 1e-9 * static_cast<double>(now_ns);
+  const OdometryStatus& odometry = simulation_.status(number_).odometry;
+  localisation_.odometry(now_s, {odometry.path_x_m, odometry.path_y_m, odometry.path_heading_rad});
+  if (now_ns >= picture_due_ns_) {
+    picture_due_ns_ = now_ns + std::llround(1e9 / match_.senses.rate_Hz);
+    take_picture(world, sign, now_ns);
+  }
+  for (; !late_views_.empty() && late_views_.front().due_ns <= now_ns; late_views_.pop_front())
+    (void)localisation_.view(late_views_.front().view);
+  for (; !late_.empty() && late_.front().due_ns <= now_ns; late_.pop_front())
+    simulation_.observe(number_, late_.front().observation);
+  tell_place(now_ns);
+  tell_self(now_ns);
+}
+
+void RobotSenses::tell_place(std::int64_t now_ns) {
+  belief_ = localisation_.estimate();
+  const Pose2 centre = in_frame(belief_.pose, Pose2{});
+  tell(field_entry_, now_ns, {centre.x_m, centre.y_m, centre.theta_rad, belief_.known ? 1.0 : 0.0});
+}
+
+void RobotSenses::tell_self(std::int64_t now_ns) {
+  if (told_self_ns_ >= 0 && now_ns < told_self_ns_ + self_every_ns) return;
+  told_self_ns_ = now_ns;
+  const TeamSetup& team = match_.team(id_.side);
+  tell(me_entry_, now_ns,
+       {static_cast<double>(id_.number), static_cast<double>(team.keeper), static_cast<double>(team.players),
+        field_.length_m, field_.width_m, field_.goal.width_m, field_.circle_radius_m, field_.penalty_mark_m});
+}
+
+void RobotSenses::hear(Bytes packet) {
+  const Checked<GameControl> read = read_game_control(packet);
+  if (!read.value) return;
+  const GameControl& control = *read.value;
+  const TeamEntry* own = control.team(team_number_);
+  const TeamEntry* others = control.team(static_cast<std::uint8_t>(3 - team_number_));
+  if (own == nullptr || others == nullptr) return;
+  const Penalty penalty = own->robots.at(id_.index()).penalty;
+  if (penalty != penalty_ && penalty != Penalty::none && penalty != Penalty::motion_in_set) {
+    // It was carried to one of the touchlines, level with its own penalty mark, and faces the field.
+    const double y_m = field_.width_m / 2 + field_.border_m - penalised_edge_m;
+    const std::array<Pose2, 2> places{Pose2{-field_.penalty_mark_x_m(), y_m, -std::numbers::pi / 2},
+                                      Pose2{-field_.penalty_mark_x_m(), -y_m, std::numbers::pi / 2}};
+    localisation_.place(places, penalised_sd_m, penalised_sd_rad);
+    late_views_.clear();
+  }
+  penalty_ = penalty;
+  const double ours = control.kicking_team == no_team ? -1 : control.kicking_team == team_number_ ? 1 : 0;
+  tell(
+      game_entry_, simulation_.time_ns() - simulation_.period_ns(),
+      {static_cast<double>(control.state), static_cast<double>(control.set_play), ours, control.stopped ? 1.0 : 0.0,
+       static_cast<double>(penalty), static_cast<double>(control.remaining_s), static_cast<double>(control.secondary_s),
+       static_cast<double>(own->score) - static_cast<double>(others->score)});
+}
+
+void RobotSenses::hear_whistle() {
+  ++whistles_;
+  tell(whistle_entry_, simulation_.time_ns() - simulation_.period_ns(), {static_cast<double>(whistles_)});
+}
+
+bool RobotSenses::sees(const Point& at) const noexcept {
+  const double far_m = norm(at);
+  return far_m > near_m && far_m < match_.senses.far_m &&
+         std::abs(std::atan2(at.y_m, at.x_m)) < match_.senses.view_rad / 2;
+}
+
+Point RobotSenses::noisy(const Point& at) {
+  const double far_m =
+      norm(at) * (camera_scale_ + match_.senses.distance_noise * random_.normal()) + 0.03 * random_.normal();
+  const double bearing_rad =
+      std::atan2(at.y_m, at.x_m) + camera_rad_ + match_.senses.bearing_noise_rad * random_.normal();
+  return turned({far_m, 0.02 * random_.normal()}, bearing_rad);
+}
+
+Point RobotSenses::nothing() {
+  const double half_rad = match_.senses.view_rad / 2;
+  return turned({random_.uniform(0.5, match_.senses.far_m), 0}, random_.uniform(-half_rad, half_rad));
+}
+
+void RobotSenses::see_landmark(FieldView& view, const Pose2& camera, LandmarkKind kind, const Point& on_field) {
+  const Point at = in_frame(camera, on_field);
+  if (!sees(at) || random_.uniform() < landmark_missed) return;
+  if (random_.uniform() < false_share)
+    view.landmarks.push_back({static_cast<LandmarkKind>(random_.next() % 6), nothing()});
+  else
+    view.landmarks.push_back({kind, noisy(at)});
+}
+
+void RobotSenses::see_line(FieldView& view, const Pose2& camera, const Segment& on_field) {
+  constexpr int pieces = 30;
+  std::optional<Segment> seen;
+  for (int i = 0; i <= pieces; ++i) {
+    const double share = static_cast<double>(i) / pieces;
+    const Point at = in_frame(camera, on_field.from + share * (on_field.to - on_field.from));
+    if (!sees(at)) continue;
+    if (!seen) seen = Segment{at, at};
+    seen->to = at;
+  }
+  if (!seen || distance(seen->from, seen->to) < line_least_m || random_.uniform() < line_missed) return;
+  if (random_.uniform() < false_share) seen = Segment{nothing(), nothing()};
+  view.lines.push_back({noisy(seen->from), noisy(seen->to)});
+}
+
+void RobotSenses::take_picture(const WorldTruth& world, double sign, std::int64_t now_ns) {
+  const RobotTruth& self = world.robot(id_);
+  if (!self.upright) return;
+  const Pose2 camera = world_pose(self.pose, sign);  // in the team's frame: a half turn is its own inverse
+  FieldView view{1e-9 * static_cast<double>(now_ns), {}, {}};
+  for (const Crossing& crossing : markings_.crossings)
+    see_landmark(view, camera, static_cast<LandmarkKind>(crossing.kind), crossing.at);
+  for (const Point& post : markings_.posts) see_landmark(view, camera, LandmarkKind::post, post);
+  for (const Point& mark : markings_.marks) see_landmark(view, camera, LandmarkKind::mark, mark);
+  see_landmark(view, camera, LandmarkKind::circle, {});
+  for (const Segment& line : markings_.lines) see_line(view, camera, line);
+  const std::int64_t due_ns = now_ns + std::llround(1e9 * match_.senses.latency_s);
+  late_views_.push_back({due_ns, std::move(view)});
+  see_robots(world, now_ns);
+}
+
+void RobotSenses::see_robots(const WorldTruth& world, std::int64_t now_ns) {
+  struct Near {
+    Point at;
+    bool mate;
+  };
+  std::vector<Near> near;
+  const Pose2& self = world.robot(id_).pose;
+  for (const RobotId other : all_robots()) {
+    const RobotTruth& robot = world.robot(other);
+    if (other == id_ || !robot.present) continue;
+    const Point at = in_frame(self, robot.pose.at());
+    if (sees(at) && !(random_.uniform() < match_.senses.missed)) near.push_back({noisy(at), other.side == id_.side});
+  }
+  std::ranges::sort(near, {}, [](const Near& one) { return norm(one.at); });
+  const std::int64_t due_ns = now_ns + std::llround(1e9 * match_.senses.latency_s);
+  for (std::size_t i = 0; i < std::min(near.size(), robot_entries_.size()); ++i) {
+    Observation seen{.entry = robot_entries_[i], .time_ns = now_ns, .source = SeenSource::scenario};
+    seen.fields = {near[i].at.x_m, near[i].at.y_m, near[i].mate ? 1.0 : 0.0};
+    late_.push_back({due_ns, seen});
+  }
+}
+
+}  // namespace kadans::football

@@ -1,0 +1,80 @@
+// What one robot of a simulated match perceives beside the ball, and what it makes of it: where it is on the field, who
+// is near, what the game controller and the whistle say. It goes to the robot's world model, which its decisions read.
+//
+// The camera is mounted a little askew. It sees lines, crossings, posts, marks and the circle of the field late, with
+// noise, with misses and with things that are not there; Localisation (localisation.h) makes a place of that and of the
+// robot's own odometry. The robot knows that a person carried it from what the game controller says: nothing else tells
+// it.
+//
+// All random numbers come from streams of the run's seed. One thread, no physics.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "football/localisation.h"
+#include "football/positions.h"
+#include "kadans/app/simulation.h"
+#include "match_file.h"
+
+namespace kadans::football {
+
+class RobotSenses {
+ public:
+  // The robot with this number of the simulation. Keeps references.
+  RobotSenses(const MatchConfig& match, Simulation& simulation, std::size_t number, RobotId id, std::uint64_t seed);
+
+  // To be called at 50 Hz. `sign`: of the team (Match::sign).
+  void step(const WorldTruth& world, double sign);
+  // The game controller's packet, as it comes: refused when it is malformed.
+  void hear(Bytes packet);
+  void hear_whistle();
+  // People put it to its place before a half: it knows where that is, in its team's frame.
+  void placed(const Pose2& place);
+
+  const Localisation::Estimate& belief() const noexcept { return belief_; }  // in its team's frame
+
+ private:
+  struct Late {
+    std::int64_t due_ns = 0;
+    Observation observation;
+  };
+  struct LateView {
+    std::int64_t due_ns = 0;
+    FieldView view;
+  };
+
+  void take_picture(const WorldTruth& world, double sign, std::int64_t now_ns);
+  void see_landmark(FieldView& view, const Pose2& camera, LandmarkKind kind, const Point& on_field);
+  void see_line(FieldView& view, const Pose2& camera, const Segment& on_field);
+  void see_robots(const WorldTruth& world, std::int64_t now_ns);
+  void tell_place(std::int64_t now_ns);
+  void tell_self(std::int64_t now_ns);
+  void tell(std::uint32_t entry, std::int64_t time_ns, std::initializer_list<double> fields);
+  bool sees(const Point& at) const noexcept;
+  Point noisy(const Point& at);
+  Point nothing();
+
+  const MatchConfig& match_;
+  Simulation& simulation_;
+  std::size_t number_;
+  RobotId id_;
+  std::uint8_t team_number_;
+  Field field_;
+  Markings markings_;
+  RandomStream random_;
+  double camera_scale_, camera_rad_;  // how askew the camera is mounted
+  Localisation localisation_;
+  Localisation::Estimate belief_;
+  std::deque<Late> late_;
+  std::deque<LateView> late_views_;
+  std::int64_t picture_due_ns_ = 0, told_self_ns_ = -1;
+  std::uint32_t field_entry_, game_entry_, whistle_entry_, me_entry_;
+  std::vector<std::uint32_t> robot_entries_;
+  std::uint32_t whistles_ = 0;
+  Penalty penalty_ = Penalty::none;
+};
+
+}  // namespace kadans::football
