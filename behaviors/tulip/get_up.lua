@@ -79,7 +79,8 @@ local function roll(over)
       m:clear_faults()
       m.vars.rolls = m.vars.rolls + 1
       m.vars.turned = false
-      play(m, floor.roll(over, s.joints, m.vars.rolls % 2 == 1 and P.roll_way or 3 - P.roll_way))
+      local second = (P.roll_way > 1.5) == (m.vars.rolls % 2 == 1)
+      play(m, floor.roll(over, s.joints, second and 2 or 1))
       m.posture:move(floor.lying(), { time_s = P.straight_s }):wait()
       m.vars.turned = true
       m:wait(P.turn_s)
