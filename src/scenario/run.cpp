@@ -24,7 +24,7 @@ void RunLog::tell(const Line& line) {
   keep(lines_, kept_max_, {line.time_ns, line.severity, std::string(line.behavior), std::string(line.text)});
 }
 
-RunSteps::RunSteps(RunParts parts) : parts_(std::move(parts)) {
+RunSteps::RunSteps(const RunParts& parts) : parts_(parts) {
   std::size_t from = 0;
   for (const SignalId left_out : parts_.unhashed) {
     hashed_.emplace_back(from, left_out - from);
@@ -51,7 +51,7 @@ namespace {
 class Run {
  public:
   Run(const RunParts& parts, Checks& checks, const std::vector<RunObserver*>& observers)
-      : steps_(parts), parts_(steps_.parts()), checks_(checks), observers_(observers) {}
+      : steps_(parts), parts_(parts), checks_(checks), observers_(observers) {}
 
   void go(double duration_s) {
     const std::int64_t end_ns = std::llround(duration_s * 1e9);

@@ -86,18 +86,18 @@ struct RunMark {
   std::uint64_t state_hash = 0;  // over all completed ticks
 };
 
-// Steps a run, and keeps the hash of its states. Keeps the parts' references.
+// Steps a run, and keeps the hash of its states. Keeps a reference to the parts: what is taken out of them between two
+// steps (disturbances) is no more.
 class RunSteps {
  public:
-  explicit RunSteps(RunParts parts);
+  explicit RunSteps(const RunParts& parts);
 
   // One control period of all robots and the world. Throws what the plant throws.
   void step();
-  const RunParts& parts() const noexcept { return parts_; }
   RunMark mark() const noexcept;  // after the last step
 
  private:
-  RunParts parts_;
+  const RunParts& parts_;
   std::vector<std::pair<std::size_t, std::size_t>> hashed_;  // stretches of a row: where, how many
   StateHash hash_;
 };

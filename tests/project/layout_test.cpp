@@ -96,7 +96,8 @@ TEST_CASE("football includes what is installed and its own headers alone, and no
     if (!is_code(file)) continue;
     for (const std::string& finding : check_public(fs::relative(file, root).generic_string(), read(file))) {
       const auto begin = finding.find("includes ") + 9;
-      if (!fs::exists(file.parent_path() / finding.substr(begin, finding.find(',') - begin))) FAIL_CHECK(finding);
+      const std::string header = finding.substr(begin, finding.find(',') - begin);
+      if (!fs::exists(file.parent_path() / header) && !header.starts_with("football/")) FAIL_CHECK(finding);
     }
     ++checked;
   }

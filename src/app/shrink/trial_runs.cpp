@@ -87,6 +87,7 @@ class TrialWatch final : public RunObserver {
     if (robot.disturbances == nullptr) return;
     robot.disturbances = nullptr;
     robot.lockstep.silence_behaviors(robot.behaviors, false);
+    robot.lockstep.silence_supervisor(robot.behaviors, false);
   }
   static TrialFailure error(const LogLine& line) {
     return {.what = "error " + without_numbers(line.text),

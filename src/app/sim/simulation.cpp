@@ -46,19 +46,19 @@ class Simulation::Stepped {
       : scenario(simulated_scenario(text, file)),
         log({&lines}, simulation_lines_kept),
         assembly(scenario, seed, log),
-        steps(assembly.parts()) {
+        all(assembly.parts()),
+        steps(all) {
     refuse_faulty_behaviors(assembly);
   }
 
   const Assembly& of(std::size_t number) const { return number == 0 ? assembly : *assembly.others().at(number - 1); }
-  const RunParts& parts(std::size_t number) const {
-    return number == 0 ? steps.parts() : steps.parts().others.at(number - 1);
-  }
+  const RunParts& parts(std::size_t number) const { return number == 0 ? all : all.others.at(number - 1); }
 
   ScenarioConfig scenario;
   Lines lines;
   RunLog log;
   Assembly assembly;
+  RunParts all;
   RunSteps steps;
 };
 
@@ -71,13 +71,13 @@ void Simulation::step() { stepped_->steps.step(); }
 
 std::int64_t Simulation::time_ns() const noexcept { return stepped_->steps.mark().time_ns; }
 
-std::int64_t Simulation::period_ns() const noexcept { return stepped_->steps.parts().lockstep.control_period_ns(); }
+std::int64_t Simulation::period_ns() const noexcept { return stepped_->all.lockstep.control_period_ns(); }
 
 std::uint64_t Simulation::state_hash() const noexcept { return stepped_->steps.mark().state_hash; }
 
 std::vector<SaidLine> Simulation::take_lines() { return std::exchange(stepped_->lines.kept, {}); }
 
-World& Simulation::world() noexcept { return stepped_->steps.parts().world; }
+World& Simulation::world() noexcept { return stepped_->all.world; }
 
 std::size_t Simulation::object(std::string_view name) const {
   const auto& objects = stepped_->assembly.world_settings().objects;
