@@ -7,11 +7,19 @@
 #include <stdexcept>
 #include <string>
 
+#include "plant/imu/message.h"
+
 namespace kadans::imu {
 namespace {
 
 void put(std::vector<std::uint8_t>& bytes, std::uint64_t value, unsigned size) {
   while (size-- > 0) bytes.push_back(static_cast<std::uint8_t>(value >> (8 * size)));
+}
+
+// A knock harder than what the device measures is told as the most that it does.
+Vec3 within(Vec3 values, double most) noexcept {
+  for (double& value : values) value = std::clamp(value, -most, most);
+  return values;
 }
 
 void put(std::vector<std::uint8_t>& bytes, const Vec3& values) {
@@ -27,8 +35,8 @@ unsigned number(const std::vector<std::uint8_t>& bytes, std::size_t at, std::siz
 }  // namespace
 
 void EmulatedImu::feels(const Vec3& angular_velocity_rad_s, const Vec3& acceleration_m_s2) noexcept {
-  gyro_rad_s_ = angular_velocity_rad_s;
-  acceleration_m_s2_ = acceleration_m_s2;
+  gyro_rad_s_ = within(angular_velocity_rad_s, gyro_max_rad_s);
+  acceleration_m_s2_ = within(acceleration_m_s2, acceleration_max_m_s2);
 }
 
 void EmulatedImu::receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns, std::uint32_t baud) {
