@@ -16,7 +16,8 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t heap_reserve_bytes = std::size_t{512} << 10U;  // TULip squats, walks and falls without any
+// TULip squats, walks and falls without any. A machine of 32 bits has half of the memory and half as large pointers.
+constexpr std::size_t heap_reserve_bytes = (std::size_t{64} << 10U) * sizeof(void*);
 
 }  // namespace
 
