@@ -7,6 +7,7 @@
 #include "kadans/signal/random.h"
 #include "report.h"
 #include "telemetry/record/input_stream.h"
+#include "telemetry/record/recorded_inputs.h"
 #include "telemetry/record/recorder.h"
 
 namespace kadans::bench {
@@ -55,10 +56,10 @@ void bench_record(Report& report) {
   RecordedInputs behaviors(KADANS_SOURCE_DIR);
   const HandOvers hand_overs = robot.sets().hand_overs();
   const InputLayout layout = layout_of(robot);
-  repeatable.record_inputs(
-      std::make_unique<InputPieces>(robot.parts().control, layout,
-                                    std::vector<const DownStorage*>(hand_overs.down.begin(), hand_overs.down.end())),
-      behaviors);
+  repeatable.record_inputs({.pieces = std::make_unique<InputPieces>(
+                                robot.parts().control, layout,
+                                std::vector<const DownStorage*>(hand_overs.down.begin(), hand_overs.down.end())),
+                            .behaviors = &behaviors});
   const std::vector<double> row(signals.size(), 0.5);
   std::uint64_t tick = 0;
   const auto cost_ns = [&](Recorder& recorder) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bullet_robot.h"
+#include "convert.h"
 #include "plant/bullet/contact/robot_contacts.h"
 #include "plant_settings_check.h"
 
