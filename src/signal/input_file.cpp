@@ -85,7 +85,7 @@ std::string joined(const std::vector<InputProblem>& problems) {
 
 std::string InputProblem::text() const {
   std::string place = file;
-  if (line > 0) place += ':' + std::to_string(line);
+  if (line > 0) place += (file.empty() ? "" : ":") + std::to_string(line);
   if (line > 0 && column > 0) place += ':' + std::to_string(column);
   return place.empty() ? message : place + ": " + message;
 }
