@@ -12,11 +12,10 @@ namespace {
 
 using Kind = JsonValue::Kind;
 
-constexpr const char* message_source = "message";
 constexpr std::int64_t minute_ns = 60'000'000'000;
 constexpr double clock_drift_ms_per_ms = 1e-4;  // of two robots' clocks, at most
 
-[[noreturn]] void bad_message(const JsonValue& at, const std::string& what) { refuse(message_source, at.place, what); }
+[[noreturn]] void bad_message(const JsonValue& at, const std::string& what) { refuse("", at.place, what); }
 
 const JsonValue& value_of(const JsonValue& object, const char* name, Kind kind) {
   const JsonMember* found = object.find(name);
@@ -70,18 +69,17 @@ RobotMessages::Answer RobotMessages::decode(std::string_view datagram, std::int6
   Answer answer = Answer::wrong;
   why.clear();
   try {
-    if (datagram.size() > message_bytes_max) refuse(message_source, {1, 1}, "it is too long");
+    if (datagram.size() > message_bytes_max) refuse("", {1, 1}, "it is too long");
     answer = read(datagram, now_ns, event);
   } catch (const InputError& error) {
-    const InputProblem& problem = error.problems().front();
-    why = std::to_string(problem.line) + ":" + std::to_string(problem.column) + ": " + problem.message;
+    why = error.problems().front().text();
   }
   ++counts_[static_cast<std::size_t>(answer)];
   return answer;
 }
 
 RobotMessages::Answer RobotMessages::read(std::string_view datagram, std::int64_t now_ns, PlayedEvent& event) {
-  const JsonValue json = parse_json(datagram, message_source);
+  const JsonValue json = parse_json(datagram, "");
   if (json.kind != Kind::object) bad_message(json, "a message is one object");
   if (whole(json, "kadans", 1) != 1) bad_message(json, "'kadans' is not 1, the only version there is");
   const std::string& from = value_of(json, "from", Kind::string).text;
@@ -97,16 +95,17 @@ RobotMessages::Answer RobotMessages::read(std::string_view datagram, std::int64_
   std::size_t known = 6;
   if (const JsonMember* data = json.find("data")) {
     if (data->value.kind != Kind::object) bad_message(data->value, "'data' is an object");
-    Problems problems(message_source);
+    Problems problems("");
     event.data = read_event_data(data->value, problems);
     problems.throw_if_any();
     ++known;
   }
   if (json.members.size() != known) bad_message(json, "it has other keys");
-  Peer& peer = peers_[from];
+  const auto [known_peer, is_new] = peers_.try_emplace(from);
+  Peer& peer = known_peer->second;
   const double behind_ms = ms(now_ns) - sent_ms;
-  if (!peer.known || peer.boot != boot) {
-    peer = {.boot = boot, .number = number, .fastest_ms = behind_ms, .known = true};
+  if (is_new || peer.boot != boot) {
+    peer = {.boot = boot, .number = number, .fastest_ms = behind_ms};
     return Answer::taken;
   }
   if (number <= peer.number) return Answer::repeated;

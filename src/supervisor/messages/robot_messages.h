@@ -50,7 +50,6 @@ class RobotMessages {
   struct Peer {
     std::uint32_t boot = 0, number = 0;
     double fastest_ms = 0;  // the least that its clock was behind this one's when a message came
-    bool known = false;
   };
 
   Answer read(std::string_view datagram, std::int64_t now_ns, PlayedEvent& event);

@@ -5,15 +5,14 @@
 
 #include "config/json/json_value.h"
 #include "kadans/signal/input_error.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {
 
 using Kind = JsonValue::Kind;
 
-constexpr const char* perception_source = "perception";
-
-[[noreturn]] void wrong(const JsonValue& at, const std::string& what) { refuse(perception_source, at.place, what); }
+[[noreturn]] void wrong(const JsonValue& at, const std::string& what) { refuse("", at.place, what); }
 
 double number_in(const JsonValue& object, const std::string& name, double least, double most) {
   const JsonMember* found = object.find(name);
@@ -29,11 +28,7 @@ Observation one_seen(const JsonValue& object, const std::vector<SeenInfo>& decla
   const JsonMember* entry = object.find("entry");
   if (entry == nullptr || entry->value.kind != Kind::string) wrong(object, "'entry' is the name of an entry");
   const auto info = std::ranges::find(declared, entry->value.text, &SeenInfo::name);
-  if (info == declared.end()) {
-    std::vector<std::string> names;
-    for (const SeenInfo& known : declared) names.push_back(known.name);
-    refuse_unknown(perception_source, {entry->value.text, entry->value.place}, "entry", names);
-  }
+  if (info == declared.end()) refuse_unknown("", {entry->value.text, entry->value.place}, "entry", names_of(declared));
   const double age_s = number_in(object, "age_s", 0, perception_age_max_s);
   Observation made{.entry = static_cast<std::uint32_t>(info - declared.begin()),
                    .time_ns = now_ns - std::llround(1e9 * age_s),
@@ -66,12 +61,11 @@ std::string read_perception(std::string_view datagram, const std::vector<SeenInf
   if (datagram.size() > perception_bytes_max)
     return "it is longer than " + std::to_string(perception_bytes_max) + " bytes";
   try {
-    read_all(parse_json(datagram, perception_source), declared, now_ns, observations);
+    read_all(parse_json(datagram, ""), declared, now_ns, observations);
     return "";
   } catch (const InputError& error) {
     observations.resize(before);
-    const InputProblem& problem = error.problems().front();
-    return std::to_string(problem.line) + ":" + std::to_string(problem.column) + ": " + problem.message;
+    return error.problems().front().text();
   }
 }
 
