@@ -47,7 +47,4 @@ class WorldModel {
   std::array<std::uint64_t, answers> counts_{};
 };
 
-// "out of range"
-const char* name(WorldModel::Answer answer) noexcept;
-
 }  // namespace kadans

@@ -20,7 +20,7 @@ struct PlayReport {
   std::array<char, why_max> refusal{};   // of the last one that was refused
   std::uint32_t taken_over = 0;          // how often something else was played, because nothing decided any more
   std::uint32_t phase = 0;               // as PlayStatus
-  std::uint32_t done = 0, not_done = 0;  // behaviors that ended so
+  std::uint32_t not_done = 0;            // behaviors that ended otherwise than with done
   std::uint32_t count = 0;               // of those that play now, as far as they are listed
   std::array<Playing, behaviors_max> playing{};
 };

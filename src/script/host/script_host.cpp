@@ -390,7 +390,6 @@ void put_text(std::array<char, room>& to, const std::string& text) noexcept {
 void ScriptHost::report(PlayReport& report) const noexcept {
   const PlayStatus& status = list_.status();
   report.phase = status.phase.load(std::memory_order_relaxed);
-  report.done = status.done.load(std::memory_order_relaxed);
   report.not_done = status.not_done.load(std::memory_order_relaxed);
   report.count = 0;
   const std::vector<PlayList::Entry>& entries = list_.entries();

@@ -56,17 +56,16 @@ void Decisions::hear(const PlayReport& report) noexcept {
   tell(report.not_done == not_done_ ? "play.done" : "play.failed");
 }
 
-bool Decisions::tick(const Snapshot& snapshot, const PlayReport& report) noexcept {
+void Decisions::tick(const Snapshot& snapshot, const PlayReport& report) noexcept {
   orders_.clear();
   messages_.clear();
-  if (behavior_->failed()) return false;
-  if (behavior_->finished()) return true;
+  if (behavior_->failed() || behavior_->finished()) return;
   hear(report);
   behavior_->show_plays(&report);
   (void)behavior_->tick(snapshot, silence_);
   if (behavior_->failed()) {
     log_.message(snapshot.time_ns, BehaviorLog::Severity::error, behavior_->name(), behavior_->error().text());
-    return false;
+    return;
   }
   for (PlayOrder& order : behavior_->decided()) {
     if (plays(order) && !asked_) not_done_ = report.not_done;
@@ -83,7 +82,6 @@ bool Decisions::tick(const Snapshot& snapshot, const PlayReport& report) noexcep
   }
   behavior_->decided().clear();
   behavior_->sent_events().clear();
-  return true;
 }
 
 // Who sent it is data, too, when the declaration wants it: not what the message says, but who its sender is.

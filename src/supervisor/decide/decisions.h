@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,8 +22,8 @@ class Decisions {
   // Loads the file. Throws InputError, also when it is no k.decisions.
   Decisions(Behavior::Settings settings, const Catalog& catalog, BehaviorLog& log);
 
-  // `snapshot` with the world model as it is now. False: an error ended it; it was logged.
-  bool tick(const Snapshot& snapshot, const PlayReport& report) noexcept;
+  // `snapshot` with the world model as it is now. An error that ends it is logged.
+  void tick(const Snapshot& snapshot, const PlayReport& report) noexcept;
 
   // What the last tick asked for, in order: for what plays, and for other robots.
   std::vector<PlayOrder>& orders() noexcept { return orders_; }

@@ -138,7 +138,7 @@ void Supervisor::tick(std::int64_t time_ns) noexcept {
   const std::uint32_t ticks = status_.ticks.fetch_add(1, std::memory_order_relaxed) + 1;
   const bool failed = ended_ || (decisions_ && decisions_->failed());
   status_.failed.store(failed ? 1 : 0, std::memory_order_relaxed);
-  link_.heartbeat.publish({time_ns, ticks, failed ? 1U : 0U});
+  link_.heartbeat.publish({ticks, failed ? 1U : 0U});
 }
 
 void Supervisor::step(std::int64_t time_ns) {
@@ -157,7 +157,7 @@ void Supervisor::decide() {
   reload_saved();
   if (message_channel_ != nullptr) take_messages(snapshot_.time_ns);
   const auto report = link_.report.read();
-  (void)decisions_->tick(snapshot_, *report);
+  decisions_->tick(snapshot_, *report);
   send_orders();
   send_messages();
 }

@@ -16,7 +16,6 @@
 namespace kadans {
 
 struct Heartbeat {
-  std::int64_t time_ns = 0;  // of the supervisor's last tick, on the engine's clock
   std::uint32_t ticks = 0;   // so far; wraps around
   std::uint32_t failed = 0;  // 1: nothing decides any more, because of an error
 };

@@ -91,10 +91,4 @@ void WorldModel::forget(std::int64_t now_ns) noexcept {
   }
 }
 
-const char* name(WorldModel::Answer answer) noexcept {
-  constexpr std::array<const char*, WorldModel::answers> names{
-      "taken", "unknown entry", "not finite", "out of range", "from the future", "older than what is known", "too old"};
-  return names[std::min(static_cast<std::size_t>(answer), WorldModel::answers - 1)];
-}
-
 }  // namespace kadans
