@@ -1,8 +1,10 @@
 // What plays, as its host tells it after each behavior tick: decisions on another thread read it. Trivially copyable.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 
 namespace kadans {
@@ -25,5 +27,12 @@ struct PlayReport {
   std::array<Playing, behaviors_max> playing{};
 };
 static_assert(std::is_trivially_copyable_v<PlayReport>);
+
+// For its texts: what is longer is cut off.
+template <std::size_t room>
+void put_text(std::array<char, room>& to, std::string_view text) noexcept {
+  to.fill('\0');
+  std::copy_n(text.begin(), std::min(text.size(), room - 1), to.begin());
+}
 
 }  // namespace kadans

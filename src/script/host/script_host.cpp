@@ -377,16 +377,6 @@ std::vector<BehaviorReport> ScriptHost::reports() const {
   return all;
 }
 
-namespace {
-
-template <std::size_t room>
-void put_text(std::array<char, room>& to, const std::string& text) noexcept {
-  to.fill('\0');
-  std::copy_n(text.begin(), std::min(text.size(), room - 1), to.begin());
-}
-
-}  // namespace
-
 void ScriptHost::report(PlayReport& report) const noexcept {
   const PlayStatus& status = list_.status();
   report.phase = status.phase.load(std::memory_order_relaxed);

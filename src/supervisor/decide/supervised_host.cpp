@@ -1,11 +1,8 @@
 #include "supervised_host.h"
 
-#include <algorithm>
 #include <exception>
 #include <limits>
 #include <string>
-
-#include "kadans/signal/input_error.h"
 
 namespace kadans {
 
@@ -41,10 +38,8 @@ bool SupervisedHost::carry_out(const PlayOrder& order, std::int64_t time_ns) noe
     host_.order(order);
     return true;
   } catch (const std::exception& error) {
-    const std::string why = error.what();
-    report_.refusal.fill('\0');
-    std::copy_n(why.begin(), std::min(why.size(), report_.refusal.size() - 1), report_.refusal.begin());
-    say(time_ns, Severity::warning, "an order of the decisions was refused: " + why);
+    put_text(report_.refusal, error.what());
+    say(time_ns, Severity::warning, std::string("an order of the decisions was refused: ") + error.what());
     return false;
   }
 }
