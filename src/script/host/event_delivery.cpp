@@ -22,18 +22,14 @@ std::string shortened(std::string text) {
   return text.substr(0, end) + "...";
 }
 
-}  // namespace
-
-EventDelivery::EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs)
-    : log_(log), inputs_(std::move(inputs)), levels_(inputs_.size(), Level::unknown) {}
-
-namespace {
-
 bool is_meant(const std::string& to, const Behavior& behavior) {
   return to.empty() || to == "all" || to == behavior.name();
 }
 
 }  // namespace
+
+EventDelivery::EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs)
+    : log_(log), inputs_(std::move(inputs)), levels_(inputs_.size(), Level::unknown) {}
 
 std::string EventDelivery::refusal(const PlayedEvent& event, const std::string& to, PlayList& list, bool paused) {
   if (paused) return "the behaviors are paused; the event would be old when they go on";
