@@ -20,7 +20,6 @@ using Kind = PlayOrder::Kind;
 constexpr std::size_t orders_max = 8;                     // in a tick
 constexpr std::size_t list_max = 512, argument_max = 64;  // characters
 constexpr double order_instructions = 2000, played_argument_instructions = 100;
-constexpr const char* robots = "robots";  // the receiver that stands for other robots
 
 // "" when it can be played. Nothing of Lua is called here.
 const std::string& take_order(Bindings& bindings, Kind kind) noexcept {
@@ -122,7 +121,7 @@ int send(lua_State* state) {
                       message_event_prefix);
   if (!lua_isnil(state, 3) && !lua_istable(state, 3))
     return luaL_error(state, "the data of an event is a table { name = value }, not a %s", luaL_typename(state, 3));
-  return send_to(state, find_event(core_of(state).events, name), name, 3, robots);
+  return send_to(state, find_event(core_of(state).events, name), name, 3, other_robots);
 }
 
 constexpr luaL_Reg words[] = {{"play", play},     {"replace", replace}, {"stop", stop}, {"pause", pause},

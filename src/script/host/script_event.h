@@ -29,10 +29,13 @@ struct ScriptEvent {
   bool same_as(const ScriptEvent& other) const { return name == other.name && fields == other.fields; }
 };
 
+// The receiver of what decisions send by m:send(name, data).
+inline constexpr const char* other_robots = "robots";
+
 // An event that a behavior sends to others: by m:emit(name, data, { to = }).
 struct SentEvent {
   PlayedEvent event;
-  std::string to;          // name of a behavior, or "all"
+  std::string to;          // name of a behavior, or "all"; of decisions also other_robots
   std::uint32_t lane = 0;  // of the sender
 };
 

@@ -9,15 +9,6 @@
 namespace kadans {
 namespace {
 
-constexpr const char* other_robots = "robots";  // the receiver of m:send
-
-void require_decisions(const Behavior& behavior, const std::string& file) {
-  if (behavior.chart().decides) return;
-  throw InputError({file, 1, 0,
-                    "'" + behavior.name() + "' is a k.behavior; what decides returns k.decisions \"" + behavior.name() +
-                        "\" { ... }"});
-}
-
 bool plays(const PlayOrder& order) noexcept {
   return order.kind == PlayOrder::Kind::play || order.kind == PlayOrder::Kind::replace;
 }
@@ -25,11 +16,14 @@ bool plays(const PlayOrder& order) noexcept {
 }  // namespace
 
 Decisions::Decisions(Behavior::Settings settings, const Catalog& catalog, BehaviorLog& log)
-    : settings_(std::move(settings)),
-      catalog_(catalog),
-      log_(log),
-      behavior_(std::make_unique<Behavior>(settings_, catalog, log)) {
-  require_decisions(*behavior_, settings_.file.string());
+    : settings_(std::move(settings)), catalog_(catalog), log_(log), behavior_(load()) {}
+
+std::unique_ptr<Behavior> Decisions::load() const {
+  auto loaded = std::make_unique<Behavior>(settings_, catalog_, log_);
+  if (loaded->chart().decides) return loaded;
+  throw InputError({settings_.file.string(), 1, 0,
+                    "'" + loaded->name() + "' is a k.behavior; what decides returns k.decisions \"" + loaded->name() +
+                        "\" { ... }"});
 }
 
 void Decisions::tell(const char* event, const std::string& why) noexcept {
@@ -92,8 +86,7 @@ std::string Decisions::hear(PlayedEvent event) {
   std::erase_if(event.data, [](const PlayArgument& field) { return field.name == "from"; });
   if (std::ranges::find(declared->fields, "from", &ScriptEvent::Field::name) != declared->fields.end())
     event.data.push_back({.name = "from", .value = event.who});
-  const std::string why = wrong_data(*declared, event).why;
-  return why.empty() ? behavior_->post(event) : why;
+  return behavior_->post(event);
 }
 
 void Decisions::reload(const Snapshot& snapshot) noexcept {
@@ -102,9 +95,7 @@ void Decisions::reload(const Snapshot& snapshot) noexcept {
     return;
   }
   try {
-    auto fresh = std::make_unique<Behavior>(settings_, catalog_, log_);
-    require_decisions(*fresh, settings_.file.string());
-    behavior_ = std::move(fresh);
+    behavior_ = load();
     asked_ = false;
     log_.message(snapshot.time_ns, BehaviorLog::Severity::info, behavior_->name(), "begins anew");
   } catch (const std::exception& error) {

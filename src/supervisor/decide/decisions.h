@@ -43,6 +43,7 @@ class Decisions {
   const Behavior& behavior() const noexcept { return *behavior_; }
 
  private:
+  std::unique_ptr<Behavior> load() const;
   void hear(const PlayReport& report) noexcept;
   void tell(const char* event, const std::string& why = "") noexcept;
 
