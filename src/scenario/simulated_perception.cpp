@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "config/json/problems.h"
-#include "kadans/model/kinematics.h"
+#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {
@@ -15,9 +15,7 @@ template <typename Named>
 std::size_t find_named(const std::vector<Named>& all, const PlacedName& wanted, const char* what,
                        const std::string& file) {
   const auto found = std::ranges::find(all, wanted.name, &Named::name);
-  std::vector<std::string> names;
-  for (const Named& one : all) names.push_back(one.name);
-  if (found == all.end()) refuse_unknown(file, wanted, what, names);
+  if (found == all.end()) refuse_unknown(file, wanted, what, names_of(all));
   return static_cast<std::size_t>(found - all.begin());
 }
 
@@ -60,15 +58,14 @@ bool SimulatedPerception::hidden(const PlantTruth& truth) const noexcept {
 }
 
 void SimulatedPerception::send(std::int64_t time_ns, double far_m, double bearing_rad, double heading_rad) noexcept {
-  if (count_ == under_way_max) return;
-  Observation& seen = under_way_[(first_ + count_++) % under_way_max];
-  seen = {.entry = entry_,
-          .time_ns = time_ns,
-          .confidence = 1 - 0.5 * std::min(far_m / settings_.settings.far_m, 1.0),
-          .source = SeenSource::scenario};
+  Observation seen{.entry = entry_,
+                   .time_ns = time_ns,
+                   .confidence = 1 - 0.5 * std::min(far_m / settings_.settings.far_m, 1.0),
+                   .source = SeenSource::scenario};
   seen.fields[0] = far_m * std::cos(bearing_rad);
   seen.fields[1] = far_m * std::sin(bearing_rad);
   if (places_ == 3) seen.fields[2] = heading_rad;
+  pictures_.send(seen);
 }
 
 void SimulatedPerception::take_picture(std::int64_t time_ns, const PlantTruth& truth) noexcept {
@@ -78,30 +75,20 @@ void SimulatedPerception::take_picture(std::int64_t time_ns, const PlantTruth& t
   const double distance_off = s.distance_noise * random_.normal(),
                bearing_off_rad = s.bearing_noise_rad * random_.normal();
   const double imagined_m = s.far_m * random_.uniform(), imagined_rad = s.view_rad * (random_.uniform() - 0.5);
-  const double yaw_rad = roll_pitch_yaw(truth.base.orientation)[2];
   const Pose& thing = truth.objects[object_].pose;
-  const double x_m = thing.position_m[0] - truth.base.position_m[0],
-               y_m = thing.position_m[1] - truth.base.position_m[1];
-  const double far_m = std::hypot(x_m, y_m);
-  const double bearing_rad = std::remainder(std::atan2(y_m, x_m) - yaw_rad, 2 * std::numbers::pi);
+  const SightLine at(thing.position_m, truth.base);
   const double heading_rad =
-      places_ == 3 ? std::remainder(roll_pitch_yaw(thing.orientation)[2] - yaw_rad, 2 * std::numbers::pi) : 0;
+      places_ == 3 ? std::remainder(roll_pitch_yaw(thing.orientation)[2] - at.yaw_rad, 2 * std::numbers::pi) : 0;
   if (imagined) return send(time_ns, imagined_m, imagined_rad, heading_rad);
-  if (missed || far_m > s.far_m || std::abs(bearing_rad) > s.view_rad / 2 || hidden(truth)) return;
-  send(time_ns, std::max(0.0, far_m * (1 + distance_off)), bearing_rad + bearing_off_rad,
+  if (missed || !at.in_view(s) || hidden(truth)) return;
+  send(time_ns, std::max(0.0, at.far_m * (1 + distance_off)), at.bearing_rad + bearing_off_rad,
        heading_rad + bearing_off_rad);
 }
 
 void SimulatedPerception::look(std::int64_t time_ns, const PlantTruth& truth, ObservationSink& sink) noexcept {
-  if (time_ns >= due_ns_) {
-    due_ns_ = time_ns + std::llround(1e9 / settings_.settings.rate_Hz);
-    take_picture(time_ns, truth);
-  }
-  const std::int64_t latency_ns = std::llround(1e9 * settings_.settings.latency_s);
-  for (; count_ > 0 && under_way_[first_].time_ns + latency_ns <= time_ns; --count_) {
-    sink.observe(under_way_[first_]);
-    first_ = (first_ + 1) % under_way_max;
-  }
+  pictures_.step(
+      settings_.settings, time_ns, [&] { take_picture(time_ns, truth); },
+      [&](const Observation& seen) { sink.observe(seen); });
 }
 
 }  // namespace kadans

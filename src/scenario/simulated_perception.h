@@ -6,8 +6,9 @@
 // of an entry come from one stream of the run's seed.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "config/scenario/scenario_config.h"
@@ -16,6 +17,7 @@
 #include "kadans/signal/observation.h"
 #include "kadans/signal/random.h"
 #include "kadans/signal/seen_info.h"
+#include "pictures.h"
 
 namespace kadans {
 
@@ -30,8 +32,6 @@ class SimulatedPerception {
   void look(std::int64_t time_ns, const PlantTruth& truth, ObservationSink& sink) noexcept;
 
  private:
-  static constexpr std::size_t under_way_max = 128;  // pictures that have not arrived
-
   struct Blocker {  // what can stand before the thing: an upright cylinder
     std::size_t object = 0;
     double radius_m = 0, half_height_m = 0;
@@ -46,9 +46,7 @@ class SimulatedPerception {
   std::size_t object_ = 0, places_ = 2;
   std::vector<Blocker> blockers_;
   RandomStream random_;
-  std::int64_t due_ns_ = 0;
-  std::array<Observation, under_way_max> under_way_{};  // a ring
-  std::size_t first_ = 0, count_ = 0;
+  Pictures<Observation> pictures_;
 };
 
 }  // namespace kadans

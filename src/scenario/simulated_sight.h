@@ -6,13 +6,14 @@
 // stream of the run's seed.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "config/scenario/scenario_config.h"
 #include "kadans/plant/world.h"
 #include "kadans/signal/random.h"
 #include "kadans/signal/sight.h"
+#include "pictures.h"
 
 namespace kadans {
 
@@ -25,16 +26,12 @@ class SimulatedSight {
   const SeenBall& at(std::int64_t time_ns, const PlantTruth& truth) noexcept;
 
  private:
-  static constexpr std::size_t under_way_max = 128;  // pictures that have not arrived
-
   void look(std::int64_t time_ns, const PlantTruth& truth) noexcept;
 
   SightSettings settings_;
   std::size_t ball_;
   RandomStream random_;
-  std::int64_t due_ns_ = 0;
-  std::array<SeenBall, under_way_max> under_way_{};  // a ring
-  std::size_t first_ = 0, count_ = 0;
+  Pictures<SeenBall> pictures_;
   SeenBall arrived_;
 };
 
