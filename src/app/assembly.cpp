@@ -497,12 +497,13 @@ void Assembly::make_sight() {
 }
 
 BehaviorHost& Assembly::played() noexcept {
+  if (supervised_) return *supervised_;
   if (faulty_host_) return *faulty_host_;
   return outside_ != nullptr ? static_cast<BehaviorHost&>(*outside_) : *host_;
 }
 
 void Assembly::make_behaviors() {
-  BehaviorHost* host = filtered_ ? filtered_.get() : supervised_ ? supervised_.get() : &played();
+  BehaviorHost* host = filtered_ ? filtered_.get() : &played();
   lockstep_.reset();
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host);
   if (shared_ == nullptr || linked_ || number_ > 0) return;
@@ -519,8 +520,7 @@ void Assembly::make_behaviors() {
 }
 
 void Assembly::filter(SnapshotFilter& filter) {
-  BehaviorHost& host = supervised_ ? static_cast<BehaviorHost&>(*supervised_) : played();
-  filtered_ = std::make_unique<FilteredHost>(host, filter);
+  filtered_ = std::make_unique<FilteredHost>(played(), filter);
   make_behaviors();
 }
 
