@@ -430,14 +430,13 @@ std::string lua_stubs(const Catalog& catalog) {
   text += "---@class kadans.Joints\n";
   for (const Joint& joint : catalog.model->joints) text += "---@field " + joint.name + " kadans.Joint\n";
   text += "\n---@class kadans.Sensors\n";
-  for (const SensorChannel& sensor : catalog.sensors)
-    text +=
-        "---@field " + sensor.name + " number " + sensor.doc + (sensor.unit.empty() ? "" : " In " + sensor.unit) + "\n";
+  const auto add_number = [&text](const auto& one) {  // a SensorChannel or a SeenField
+    text += "---@field " + one.name + " number " + one.doc + (one.unit.empty() ? "" : " In " + one.unit) + "\n";
+  };
+  std::ranges::for_each(catalog.sensors, add_number);
   for (const SeenInfo& entry : catalog.seen) {
     text += "\n---@class kadans.Entry." + entry.name + ": kadans.Entry\n";
-    for (const SeenField& field : entry.fields)
-      text +=
-          "---@field " + field.name + " number " + field.doc + (field.unit.empty() ? "" : " In " + field.unit) + "\n";
+    std::ranges::for_each(entry.fields, add_number);
   }
   text += "\n---@class kadans.Feet\n";
   for (const FootInfo& foot : catalog.feet) text += "---@field " + foot.name + " kadans.Foot\n";
