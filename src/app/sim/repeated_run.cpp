@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
-#include <sstream>
+#include <map>
 
 #include "app/run/behavior_process.h"
 #include "kadans/signal/input_error.h"
@@ -103,8 +101,20 @@ bool RepeatedRun::begin() {
   if (!flight && taken_.tick != 0)
     refuse("begins in tick " + std::to_string(taken_.tick) +
            " of its run: only a record from the first tick on can be repeated");
+  find_foreign_signals();
   if (flight) begin_from_state();
   return true;
+}
+
+// In the record, whose signals are the same in all its files.
+void RepeatedRun::find_foreign_signals() {
+  std::map<std::string, std::uint32_t> numbers;
+  const std::vector<std::string>& names = ticks_read_.signals();
+  for (std::uint32_t i = 0; i < names.size(); ++i) numbers[names[i]] = i;
+  for (std::size_t id = assembly_.foreign_first(); id < assembly_.foreign_end(); ++id) {
+    const auto number = numbers.find(assembly_.catalog().signals.info(static_cast<SignalId>(id)).name);
+    if (number != numbers.end()) foreign_signals_.emplace_back(static_cast<SignalId>(id), number->second);
+  }
 }
 
 void RepeatedRun::begin_from_state() {
@@ -214,15 +224,6 @@ void RepeatedRun::go_on_in(Assembly& model, const std::function<bool()>& stop,
 }
 
 bool RepeatedRun::repeat_tick(const TickTaken& taken) {
-  if (foreign_signals_.empty()) {
-    std::map<std::string, std::uint32_t> numbers;
-    const std::vector<std::string>& names = ticks_read_.signals();
-    for (std::uint32_t i = 0; i < names.size(); ++i) numbers[names[i]] = i;
-    for (std::size_t id = assembly_.foreign_first(); id < assembly_.foreign_end(); ++id) {
-      const auto number = numbers.find(assembly_.catalog().signals.info(static_cast<SignalId>(id)).name);
-      if (number != numbers.end()) foreign_signals_.emplace_back(static_cast<SignalId>(id), number->second);
-    }
-  }
   for (const auto& [id, number] : foreign_signals_) foreign_[id] = ticks_read_.row()[number];
   for (std::size_t i = 0; behaviors_ == Behaviors::saved && i < taken.down.size(); ++i) {
     if (!hand_down(i, taken.down[i])) return false;

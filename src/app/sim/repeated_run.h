@@ -102,6 +102,7 @@ class RepeatedRun final : private BehaviorInputs {
 
  private:
   bool begin();
+  void find_foreign_signals();
   void begin_from_state();
   bool repeat_tick(const TickTaken& taken);
   bool hand_down(std::size_t storage, std::int64_t number);
