@@ -116,6 +116,7 @@ class RepeatedRun final : private BehaviorInputs {
   void show(const std::vector<RunObserver*>& observers);
   void add_hash(std::span<const double> row) noexcept;
   void take_faults(const std::vector<RunObserver*>& observers, std::int64_t time_ns);
+  bool plays() const noexcept { return behaviors_ > Behaviors::none; }
   bool leads() const noexcept { return behaviors_ == Behaviors::leading || behaviors_ == Behaviors::tested; }
   bool led() const noexcept { return leads() && !parting_.empty(); }
   void repeat_behaviors(std::uint64_t until_tick);
