@@ -45,13 +45,13 @@ std::string command_text(const Command& command, const Catalog& catalog) {
 
 }  // namespace
 
-UnpackedRun::UnpackedRun(const RunInputs& inputs, const std::string& record, bool any_plugins,
-                         const std::vector<std::string>& with)
-    : files(inputs, record, any_plugins, with), options(options_of(inputs, record)) {
+ScenarioConfig unpacked_scenario(const RunInputs& inputs, const std::string& record, const UnpackedInputs& files) {
+  RunOptions options = options_of(inputs, record);
   options.robot = files.scenario().string();
-  scenario = live_scenario(options);
+  ScenarioConfig scenario = live_scenario(options);
   scenario.plugins = files.plugins();
   scenario.repeats = true;
+  return scenario;
 }
 
 RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const UnpackedInputs& unpacked,

@@ -45,16 +45,10 @@ int run_then_simulation(const ReplayOptions& options);
 // Makes all ready for a test, and says how many checks there are. Throws InputError.
 std::size_t count_record_checks(const ScenarioConfig& test);
 
-// The run of a record on threads, with its files unpacked.
-struct UnpackedRun {
-  // `with`: files of a project here that take the place of the record's. Throws InputError.
-  UnpackedRun(const RunInputs& inputs, const std::string& record, bool any_plugins,
-              const std::vector<std::string>& with);
-
-  UnpackedInputs files;
-  RunOptions options;
-  ScenarioConfig scenario;
-};
+// The scenario of a run on threads, made of the unpacked files of its record. Throws InputError.
+ScenarioConfig unpacked_scenario(const RunInputs& inputs, const std::string& record, const UnpackedInputs& files);
+// Whether its behaviors played in a process of their own.
+inline bool played_elsewhere(const RunInputs& inputs) { return inputs.fact("behaviors") == "process"; }
 
 class RepeatedRun final : private BehaviorInputs {
  public:
