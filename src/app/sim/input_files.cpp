@@ -204,11 +204,10 @@ class Gathering {
   std::map<std::string, InputFile> files_;
 };
 
-void add_scripts(const fs::path& folder, Gathering& files) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".lua" && !entry.path().stem().string().ends_with("_test")) files.add(entry.path());
-  }
+// The scripts in behaviors/FOLDER.
+void add_scripts(const fs::path& project_file, const std::string& folder, Gathering& files) {
+  for (const std::string& name : playable_names({project_file, folder}))
+    files.add(project_root(project_file) / "behaviors" / folder / (name + ".lua"));
 }
 
 void add_robot(const Assembly& assembly, Gathering& files) {
@@ -228,9 +227,8 @@ void add_robot(const Assembly& assembly, Gathering& files) {
       supervisor != nullptr && supervisor->decisions() != nullptr) {
     for (const fs::path& file : supervisor->decisions()->behavior().files()) files.add(file);
     const PlayFolders folders = folders_of(assembly.scenario());  // what they may play is in
-    const fs::path behaviors = project_root(folders.project_file) / "behaviors";
-    add_scripts(behaviors / folders.robot, files);
-    add_scripts(behaviors / "lib", files);
+    add_scripts(folders.project_file, folders.robot, files);
+    add_scripts(folders.project_file, "lib", files);
   }
   for (const auto& other : assembly.others()) add_robot(*other, files);
 }
