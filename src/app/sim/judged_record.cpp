@@ -156,10 +156,11 @@ class ThenSimulation final : public JudgedRun {
   }
 
   int run() {
-    run_.go([&] { return interrupted() || 1e-9 * static_cast<double>(run_.time_ns()) >= options_.at_s; });
-    if (!(1e-9 * static_cast<double>(run_.time_ns()) >= options_.at_s) && !interrupted())
+    const auto recorded_s = [this] { return 1e-9 * static_cast<double>(run_.time_ns()); };
+    run_.go([&] { return interrupted() || recorded_s() >= options_.at_s; });
+    if (!(recorded_s() >= options_.at_s) && !interrupted())
       throw InputError({.file = options_.record,
-                        .message = printed("ends at %.3f s, before --at", 1e-9 * static_cast<double>(run_.time_ns())) +
+                        .message = printed("ends at %.3f s, before --at", recorded_s()) +
                                    (run_.shortened().empty() ? "" : ": " + run_.shortened())});
     const Snapshot& state = run_.assembly().control().state();
     scenario_.placed.orientation = state.status.base.orientation;
