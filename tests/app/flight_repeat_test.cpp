@@ -1,4 +1,6 @@
 // kadans replay of a flight record: the control engine goes on from a saved state.
+#include <vector>
+
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
@@ -12,11 +14,10 @@ using Json = nlohmann::json;
 
 namespace {
 
-fs::path flight_in(const fs::path& folder) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (has(entry.path().filename().string(), "flight")) return entry.path().filename();
-  }
-  return {};
+fs::path flight_in(const fs::path& project) {
+  const std::vector<fs::path> flights = flights_in(project);
+  REQUIRE_FALSE(flights.empty());
+  return flights.front().filename();
 }
 
 // A robot that is stopped after some seconds of virtual time, with the last ones in its flight record.
@@ -27,9 +28,7 @@ fs::path flight_of(const fs::path& project, const std::string& arguments, const 
   for (int i = 0; i < 3; ++i) (void)run("ctl --socket ctl status", project);
   (void)run("ctl --socket ctl estop", project);
   robot.end(SIGTERM);
-  const fs::path flight = flight_in(project);
-  REQUIRE_FALSE(flight.empty());
-  return flight;
+  return flight_in(project);
 }
 
 // A TULip that squats with one leg alone on virtual time and latches when it falls, after 3 s.
@@ -38,9 +37,7 @@ fs::path latched_flight(const fs::path& project, const std::string& more = " --f
     REQUIRE(edit(project / "config/tulip/robot.json", "\"heartbeat_lost\": {",
                  "\"tilt\": { \"robot\": \"damp\", \"latch\": true }, \"heartbeat_lost\": {"));
   (void)run("run config/tulip/robot.json --threads-on-virtual-time --duration 5 --play squat" + more, project);
-  const fs::path flight = flight_in(project);
-  REQUIRE_FALSE(flight.empty());
-  return flight;
+  return flight_in(project);
 }
 
 }  // namespace
@@ -102,16 +99,8 @@ TEST_CASE("What needs the behaviors of a run says that a flight record has none"
 TEST_CASE("A flight record that is damaged, of another version or without inputs says so") {
   const fs::path project = project_copy("flight_damaged");
   const fs::path flight = latched_flight(project);
+  check_damaged(project / flight);
   const std::string whole = read(project / flight);
-  for (std::size_t i = 1; i < 12; ++i) {
-    std::string damaged = whole;
-    damaged[i * whole.size() / 12] = static_cast<char>(~damaged[i * whole.size() / 12]);
-    write(project / "damaged.mcap", damaged);
-    const Outcome outcome = run("replay damaged.mcap", project);
-    CAPTURE(i);
-    CHECK(outcome.exit_code <= 2);
-    CHECK_MESSAGE(has(outcome.out + outcome.err, "damaged.mcap"), (outcome.out + outcome.err));
-  }
   const std::string name("state_bytes", 11);
   const std::size_t at = whole.find(name);
   REQUIRE(at != std::string::npos);

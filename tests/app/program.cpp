@@ -132,6 +132,27 @@ std::size_t results_in(const fs::path& folder) {
   return count;
 }
 
+std::vector<fs::path> flights_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (has(entry.path().filename().string(), "flight")) found.push_back(entry.path());
+  }
+  return found;
+}
+
+void check_damaged(const fs::path& record) {
+  const std::string whole = read(record);
+  for (std::size_t i = 1; i < 12; ++i) {
+    std::string damaged = whole;
+    damaged[i * whole.size() / 12] = static_cast<char>(~damaged[i * whole.size() / 12]);
+    write(record.parent_path() / "damaged.mcap", damaged);
+    const Outcome outcome = run("replay damaged.mcap", record.parent_path());
+    CAPTURE(i);
+    CHECK(outcome.exit_code <= 2);
+    CHECK_MESSAGE(has(outcome.out + outcome.err, "damaged.mcap"), (outcome.out + outcome.err));
+  }
+}
+
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of('\n') + 1;
   const std::size_t begin = text.rfind('\n', end - 1) + 1;

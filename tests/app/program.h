@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -59,6 +60,11 @@ bool edit(const std::filesystem::path& file, const std::string& from, const std:
 
 // How many runs have their results below this folder, each in a folder "cases" of what it belongs to.
 std::size_t results_in(const std::filesystem::path& folder);
+
+// The flight records in this folder.
+std::vector<std::filesystem::path> flights_in(const std::filesystem::path& folder);
+// Replays copies of a record, each damaged in another place: the program says something of it, and ends properly.
+void check_damaged(const std::filesystem::path& record);
 
 // The last line that is not empty, without its end.
 std::string last_line(const std::string& text);

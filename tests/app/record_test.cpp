@@ -46,14 +46,6 @@ std::pair<double, double> span_of(const fs::path& file, const std::string& topic
   return span;
 }
 
-std::vector<fs::path> flights_in(const fs::path& folder) {
-  std::vector<fs::path> found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (has(entry.path().filename().string(), "flight")) found.push_back(entry.path());
-  }
-  return found;
-}
-
 }  // namespace
 
 TEST_CASE("A record has joint states, the base's transform, wrenches, parameters and the robot for viewers") {

@@ -70,19 +70,10 @@ TEST_CASE("A record that was cut short is repeated up to its end, and damage nev
   const fs::path project = project_copy("repeat_cut");
   REQUIRE(run("run config/jiwiy/robot.json --plant ideal --play sine --duration 3" + on_threads, project).exit_code ==
           0);
+  check_damaged(project / "run.mcap");
   const std::string whole = read(project / "run.mcap");
   write(project / "run.mcap", whole.substr(0, whole.size() * 3 / 4));
   check_same(project, 500, false);
-  for (std::size_t i = 1; i < 12; ++i) {
-    std::string damaged = whole;
-    damaged[i * whole.size() / 12] = static_cast<char>(~damaged[i * whole.size() / 12]);
-    write(project / "run.mcap", damaged);
-    const Outcome outcome = run("replay run.mcap", project);
-    CAPTURE(i);
-    CHECK(outcome.exit_code <= 2);
-    const std::string said = outcome.out + outcome.err;
-    CHECK_MESSAGE(has(said, "run.mcap"), said);
-  }
 }
 
 TEST_CASE(

@@ -7,6 +7,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "program.h"
+#include "signal/number_text.h"
 
 namespace simulation_test {
 
@@ -18,11 +19,9 @@ const std::string scenario_file = KADANS_SOURCE_DIR "/config/scenarios/side_by_s
 TEST_CASE("A program that steps a scenario goes through the same states as kadans sim") {
   Simulation simulation(read(scenario_file), scenario_file, 7);
   while (simulation.time_ns() < 500'000'000) simulation.step();
-  char hash[17];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(simulation.state_hash()));
   const Outcome outcome =
       run("sim " + scenario_file + " --seed 7 --duration 0.5 --no-record --json", fresh_folder("simulation"));
-  CHECK_MESSAGE(has(outcome.out, hash), outcome.out);
+  CHECK_MESSAGE(has(outcome.out, hash_text(simulation.state_hash())), outcome.out);
   CHECK(simulation.robots() >= 2);
 }
 

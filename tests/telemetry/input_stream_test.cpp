@@ -63,21 +63,33 @@ struct Ticks final : SignalBits {
   static std::int64_t time_ns(std::size_t t) { return static_cast<std::int64_t>(t * 1'000'000 + t % 7); }
 };
 
+std::vector<std::byte> message_of(InputEncoder& encoder) {
+  ByteWriter message;
+  encoder.encode(message);
+  return {message.bytes().begin(), message.bytes().end()};
+}
+
 std::vector<std::vector<std::byte>> messages_of(const Ticks& ticks) {
   InputEncoder encoder(layout, {true, true, true});
   std::vector<std::vector<std::byte>> messages;
-  ByteWriter message;
-  const auto end = [&] {
-    message.clear();
-    encoder.encode(message);
-    messages.emplace_back(message.bytes().begin(), message.bytes().end());
-  };
   for (std::size_t t = 0; t < ticks.words.size(); ++t) {
-    if (encoder.full()) end();
+    if (encoder.full()) messages.push_back(message_of(encoder));
     REQUIRE(encoder.add(ticks.first + t, Ticks::time_ns(t), ticks.words[t], ticks.rows[t]));
   }
-  end();
+  messages.push_back(message_of(encoder));
   return messages;
+}
+
+// False: an event is damaged or missing.
+bool read_all(std::span<const std::byte> bytes, std::vector<BehaviorInput>& all) {
+  ByteReader reader(bytes);
+  std::uint32_t expected = 0;
+  while (reader.left() > 0) {
+    BehaviorInput input;
+    if (!take_behavior_input(reader, expected, input)) return false;
+    all.push_back(std::move(input));
+  }
+  return true;
 }
 
 void check_same(const TickTaken& read, const std::vector<std::uint64_t>& words) {
@@ -125,11 +137,7 @@ TEST_CASE("Each message of a flight record is read without the messages before i
   InputEncoder encoder(alone, {});
   std::vector<std::vector<std::byte>> messages;
   for (std::size_t t = 0; t < 250; ++t) {
-    if (encoder.full() || t == 130) {
-      ByteWriter message;
-      encoder.encode(message);
-      messages.emplace_back(message.bytes().begin(), message.bytes().end());
-    }
+    if (encoder.full() || t == 130) messages.push_back(message_of(encoder));
     REQUIRE(encoder.add(1000 + t, Ticks::time_ns(t), ticks.words[t], {}));
   }
   REQUIRE(messages.size() == 3);
@@ -199,14 +207,6 @@ TEST_CASE("Damaged inputs are refused, or read as other values of the same types
 }
 
 TEST_CASE("A flight record gets commands and what is handed down, a record the rest, and both notice what is missing") {
-  const auto read_all = [](std::span<const std::byte> bytes) {
-    ByteReader reader(bytes);
-    std::uint32_t expected = 0;
-    std::vector<BehaviorInput> all;
-    while (reader.left() > 0 && take_behavior_input(reader, expected, all.emplace_back())) {
-    }
-    return all;
-  };
   RecordedInputs inputs("/project");
   std::vector<std::byte> value(5003);
   for (std::size_t i = 0; i < value.size(); i += i < 400 ? 3 : 900) value[i] = static_cast<std::byte>(i + 1);
@@ -221,7 +221,9 @@ TEST_CASE("A flight record gets commands and what is handed down, a record the r
   inputs.take(message);
   EventSorter sorter;
   sorter.sort(message.bytes(), &record, &flight);
-  const std::vector<BehaviorInput> recorded = read_all(record.bytes()), flown = read_all(flight.bytes());
+  std::vector<BehaviorInput> recorded, flown;
+  REQUIRE(read_all(record.bytes(), recorded));
+  REQUIRE(read_all(flight.bytes(), flown));
   REQUIRE(recorded.size() == 3);
   CHECK(recorded[1].kind == BehaviorInput::Kind::sent);
   REQUIRE(flown.size() == 3);
@@ -249,7 +251,8 @@ TEST_CASE("A flight record gets commands and what is handed down, a record the r
     std::vector<std::byte> damaged(message.bytes().begin(), message.bytes().end());
     damaged[random.next() % damaged.size()] = static_cast<std::byte>(random.next());
     if (i % 2 == 0) damaged.resize(random.next() % damaged.size());
-    (void)read_all(damaged);
+    std::vector<BehaviorInput> some;
+    (void)read_all(damaged, some);
     EventSorter().sort(damaged, &record, &flight);
   }
 }
@@ -284,16 +287,6 @@ TEST_CASE("What the behavior thread took is read in its order, damage and a miss
   inputs.tick_ends();
   ByteWriter message;
   inputs.take(message);
-  const auto read_all = [](std::span<const std::byte> bytes, std::vector<BehaviorInput>& all) {
-    ByteReader reader(bytes);
-    std::uint32_t expected = 0;
-    while (reader.left() > 0) {
-      BehaviorInput input;
-      if (!take_behavior_input(reader, expected, input)) return false;
-      all.push_back(std::move(input));
-    }
-    return true;
-  };
   std::vector<BehaviorInput> all;
   REQUIRE(read_all(message.bytes(), all));
   REQUIRE(all.size() == 6);

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include "app/author/file_checks.h"
-#include "app/run/behavior_process.h"
 #include "app/run/run_choices.h"
 #include "app/sim/ordered_events.h"
 #include "app/sim/played_behaviors.h"
@@ -122,14 +121,10 @@ void simulate(RunChannel& channel, const DebugSubject& subject, const RunChoices
 
 // A run on threads: its files come out of the record.
 void repeat(RunChannel& channel, const DebugSubject& subject) {
-  RunOptions options = options_of(subject.inputs, subject.launch.file);
-  options.robot = subject.unpacked->scenario().string();
-  ScenarioConfig scenario = live_scenario(options);
-  scenario.plugins = subject.unpacked->plugins();
-  scenario.repeats = true;
+  const ScenarioConfig scenario = unpacked_scenario(subject.inputs, subject.launch.file, *subject.unpacked);
   RepeatedRun repeated(
       subject.launch.file, scenario, *subject.unpacked, subject.inputs.fact("root"),
-      options.behaviors == "process" ? RepeatedRun::Behaviors::none : RepeatedRun::Behaviors::compared);
+      played_elsewhere(subject.inputs) ? RepeatedRun::Behaviors::none : RepeatedRun::Behaviors::compared);
   DebuggedRun run(channel, repeated.assembly(), repeated.log(), nullptr);
   run.begin(description(repeated.assembly(), subject));
   repeated.go([] { return false; }, {&run});

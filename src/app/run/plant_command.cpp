@@ -102,7 +102,7 @@ class PlantService {
   // What is listened on is known to be free before the first peer comes.
   std::unique_ptr<WorldServer> make_server() {
     world_ = make();
-    const std::vector<ServedWorld::Site> sites = world_->sites();
+    const std::vector<ServedWorld::Site>& sites = world_->sites();
     for (const ServedWorld::Site& site : sites) names_.push_back(site.name.empty() ? site.robot.name : site.name);
     if (options_.listen.size() != sites.size())
       throw InputError(InputProblem{

@@ -6,7 +6,7 @@
 
 namespace kadans {
 
-ServedWorld::ServedWorld(const Robot& robot, const std::string& type, std::uint64_t seed) : alone_(&robot.config) {
+ServedWorld::ServedWorld(const Robot& robot, const std::string& type, std::uint64_t seed) {
   const PlantType& served = plant_type_named(robot.config, "--plant", {type, {}}, &PlantType::is_model);
   try {
     model_ = served.make_world({robot.config.model, robot.config.plant, seed});
@@ -15,26 +15,21 @@ ServedWorld::ServedWorld(const Robot& robot, const std::string& type, std::uint6
   }
   world_ = model_.get();
   robots_.push_back(&world_->robot(0));
+  sites_.push_back({"", robot.config});
 }
 
 ServedWorld::ServedWorld(const ScenarioConfig& scenario, std::uint64_t seed)
     : assembly_(std::make_unique<Assembly>(scenario, seed, log_)), world_(assembly_->world()) {
   const RunParts parts = assembly_->parts();
-  robots_.push_back(&parts.robot);
-  pushes_.emplace_back(scenario.pushes, parts.model, scenario.file);
-  hands_.emplace_back(scenario);
-  for (std::size_t i = 0; i < parts.others.size(); ++i) {
-    robots_.push_back(&parts.others[i].robot);
-    pushes_.emplace_back(scenario.robots[i].pushes, parts.others[i].model, scenario.file);
-    hands_.emplace_back(scenario.robots[i]);
-  }
-}
-
-std::vector<ServedWorld::Site> ServedWorld::sites() const {
-  if (alone_ != nullptr) return {{"", *alone_}};
-  std::vector<Site> sites{{"", assembly_->robot()}};
-  for (const auto& other : assembly_->others()) sites.push_back({other->scenario().name, other->robot()});
-  return sites;
+  const auto add = [&](const RunParts& robot, const RobotConfig& config, const ScenarioConfig& settings) {
+    robots_.push_back(&robot.robot);
+    sites_.push_back({robot.name, config});
+    pushes_.emplace_back(settings.pushes, robot.model, scenario.file);
+    hands_.emplace_back(settings);
+  };
+  add(parts, assembly_->robot(), scenario);
+  for (std::size_t i = 0; i < parts.others.size(); ++i)
+    add(parts.others[i], assembly_->others()[i]->robot(), scenario.robots[i]);
 }
 
 void ServedWorld::step(std::int64_t dt_ns) {

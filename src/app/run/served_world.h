@@ -25,19 +25,19 @@ class ServedWorld final : public World {
   ServedWorld(const Robot& robot, const std::string& type, std::uint64_t seed);
   ServedWorld(const ScenarioConfig& scenario, std::uint64_t seed);
 
-  std::vector<Site> sites() const;
+  const std::vector<Site>& sites() const noexcept { return sites_; }
   std::size_t robot_count() const noexcept override { return robots_.size(); }
   WorldRobot& robot(std::size_t number) noexcept override { return *robots_[number]; }
   void step(std::int64_t dt_ns) override;
   void hash(StateHash& hash) const noexcept override { world_->hash(hash); }
 
  private:
-  const RobotConfig* alone_ = nullptr;
   std::unique_ptr<World> model_;  // of a robot alone
   RunLog log_;
   std::unique_ptr<Assembly> assembly_;  // of a scenario; its engines rest
   World* world_ = nullptr;
   std::vector<WorldRobot*> robots_;
+  std::vector<Site> sites_;
   std::vector<Pushes> pushes_;  // a robot each; none of a robot alone
   std::vector<Hands> hands_;
   std::int64_t time_ns_ = 0;

@@ -1,12 +1,10 @@
 #include "input_files.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <set>
 #include <span>
 #include <string>
 #include <system_error>
@@ -81,6 +79,12 @@ namespace fs = std::filesystem;
 constexpr const char* beside = "beside";
 constexpr std::size_t input_max_bytes = std::size_t{256} << 20U;  // large enough for a plug-in, which is only hashed
 
+// From the folder on; "": the file is not in it.
+std::string name_below(const fs::path& folder, const fs::path& file) {
+  const fs::path relative = file.lexically_relative(folder);
+  return relative.empty() || *relative.begin() == ".." ? "" : relative.generic_string();
+}
+
 // The two folders at which paths in a record start.
 struct Folders {
   fs::path root, own;
@@ -90,12 +94,8 @@ struct Folders {
 
   std::string name(const fs::path& file) const {
     const fs::path whole = fs::absolute(file).lexically_normal();
-    const auto below = [&whole](const fs::path& folder) {
-      const fs::path relative = whole.lexically_relative(folder);
-      return relative.empty() || *relative.begin() == ".." ? "" : relative.generic_string();
-    };
-    if (const std::string name = below(root); !name.empty()) return name;
-    if (const std::string name = below(own); !name.empty()) return std::string(beside) + "/" + name;
+    if (std::string name = name_below(root, whole); !name.empty()) return name;
+    if (const std::string name = name_below(own, whole); !name.empty()) return std::string(beside) + "/" + name;
     return whole.generic_string();
   }
   fs::path file(const std::string& name) const {
@@ -114,13 +114,12 @@ std::optional<std::string> read_all(const fs::path& file) {
 }
 
 // The path of a file from the root of its project.
-fs::path name_in_project(const std::string& file) {
+std::string name_in_project(const std::string& file) {
   const fs::path whole = fs::absolute(file).lexically_normal();
-  const fs::path name = whole.lexically_relative(project_root(whole));
   std::error_code error;
   if (!fs::is_regular_file(whole, error)) throw InputError({.file = file, .message = "there is no such file"});
-  if (name.empty() || *name.begin() == "..")
-    throw InputError({.file = file, .message = "lies in no project, so it has no place in the record"});
+  std::string name = name_below(project_root(whole), whole);
+  if (name.empty()) throw InputError({.file = file, .message = "lies in no project, so it has no place in the record"});
   return name;
 }
 
@@ -204,11 +203,10 @@ class Gathering {
   std::map<std::string, InputFile> files_;
 };
 
-void add_scripts(const fs::path& folder, Gathering& files) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".lua" && !entry.path().stem().string().ends_with("_test")) files.add(entry.path());
-  }
+// The scripts in behaviors/FOLDER.
+void add_scripts(const fs::path& project_file, const std::string& folder, Gathering& files) {
+  for (const std::string& name : playable_names({project_file, folder}))
+    files.add(project_root(project_file) / "behaviors" / folder / (name + ".lua"));
 }
 
 void add_robot(const Assembly& assembly, Gathering& files) {
@@ -228,9 +226,8 @@ void add_robot(const Assembly& assembly, Gathering& files) {
       supervisor != nullptr && supervisor->decisions() != nullptr) {
     for (const fs::path& file : supervisor->decisions()->behavior().files()) files.add(file);
     const PlayFolders folders = folders_of(assembly.scenario());  // what they may play is in
-    const fs::path behaviors = project_root(folders.project_file) / "behaviors";
-    add_scripts(behaviors / folders.robot, files);
-    add_scripts(behaviors / "lib", files);
+    add_scripts(folders.project_file, folders.robot, files);
+    add_scripts(folders.project_file, "lib", files);
   }
   for (const auto& other : assembly.others()) add_robot(*other, files);
 }
@@ -439,15 +436,19 @@ UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& rec
                   "in the place that the record knows"};
   try {
     for (const char* name : {"config", "models", "behaviors", beside}) fs::create_directories(folder_ / name);
-    std::set<fs::path> given;
-    for (const std::string& file : with) given.insert(name_in_project(file));
+    std::map<std::string, std::string> given;
+    for (const std::string& file : with) given[name_in_project(file)] = file;
     for (const InputFile& file : recorded.files) {
       const bool plugin = !file.text && !file.hash.empty() && !file.left_out;
       if (plugin) link_plugin(file, record, any_plugins);
       if (plugin || fs::path(file.path).is_absolute() || given.contains(file.path)) continue;
       file.left_out ? fetch(file, record) : unpack(file);
     }
-    for (const std::string& file : with) put_in_place(file);
+    for (const auto& [name, file] : given) {
+      std::error_code error;
+      fs::remove(folder_ / name, error);  // also a plug-in's link
+      replace({name, "", read_input_file(fs::absolute(file), input_max_bytes)});
+    }
     const std::string name = recorded.fact("scenario_input");
     const auto scenario = std::ranges::find(recorded.files, name, &InputFile::path);
     if (scenario == recorded.files.end() || !(scenario->text || scenario->left_out) || fs::path(name).is_absolute())
@@ -537,13 +538,6 @@ void UnpackedInputs::fetch(const InputFile& file, const std::string& record) con
     refuse("and the one in this project is another: its hash is " + content_hash(*here) + ", recorded was " +
            file.hash);
   replace({file.path, file.hash, here});
-}
-
-void UnpackedInputs::put_in_place(const std::string& file) const {
-  const fs::path name = name_in_project(file);
-  std::error_code error;
-  fs::remove(folder_ / name, error);
-  replace({name.generic_string(), "", read_input_file(fs::absolute(file), input_max_bytes)});
 }
 
 void UnpackedInputs::unpack(const InputFile& file) const {

@@ -87,7 +87,6 @@ class UnpackedInputs {
  private:
   void remove() const noexcept;
   void unpack(const InputFile& file) const;
-  void put_in_place(const std::string& file) const;
   void link_plugin(const InputFile& file, const std::string& record, bool any_plugins);
 
   std::filesystem::path folder_, scenario_;

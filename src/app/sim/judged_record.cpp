@@ -3,8 +3,8 @@
 // world of a scenario.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "app/commands.h"
 #include "app/run/observers.h"
@@ -33,9 +33,10 @@ class JudgedRun : public RunObserver {
             const ScenarioConfig& judge)
       : judge_(judge),
         inputs_(read_run(record)),
-        unpacked_(inputs_, record, any_plugins, with),
-        run_(record, unpacked_.scenario, unpacked_.files, inputs_.fact("root"),
-             in_process() ? RepeatedRun::Behaviors::none : RepeatedRun::Behaviors::tested) {}
+        files_(inputs_, record, any_plugins, with),
+        recorded_(unpacked_scenario(inputs_, record, files_)),
+        run_(record, recorded_, files_, inputs_.fact("root"),
+             played_elsewhere(inputs_) ? RepeatedRun::Behaviors::none : RepeatedRun::Behaviors::tested) {}
 
   void tick(double time_s, std::span<const double> row) override {
     time_s_ = time_s;
@@ -43,7 +44,6 @@ class JudgedRun : public RunObserver {
   }
 
  protected:
-  bool in_process() const { return unpacked_.options.behaviors == "process"; }
   // Of the signals that are judged, which must outlive this object.
   void judge(const SignalTable& signals, std::span<const SignalState> states) {
     checks_.emplace(signals, judge_.checks, judge_.file, states);
@@ -53,7 +53,7 @@ class JudgedRun : public RunObserver {
   RunResult result(const std::string& error) const {
     RunResult result;
     result.scenario = judge_.name;
-    result.seed = unpacked_.options.seed.value_or(0);
+    result.seed = recorded_.seed;
     result.interrupted = interrupted();
     result.error = error;
     result.checks = checks_->results();
@@ -104,7 +104,8 @@ class JudgedRun : public RunObserver {
 
   const ScenarioConfig& judge_;
   RunInputs inputs_;
-  UnpackedRun unpacked_;
+  UnpackedInputs files_;
+  ScenarioConfig recorded_;
   RepeatedRun run_;
   std::optional<Checks> checks_;
   std::optional<Evidence> evidence_;
@@ -142,7 +143,7 @@ class ThenSimulation final : public JudgedRun {
     const auto refuse = [&](const std::string& why) {
       throw InputError({.file = options.then_simulate, .message = why});
     };
-    if (in_process())
+    if (played_elsewhere(inputs_))
       throw InputError(
           {.file = options.record, .message = "its behaviors played in a process of their own, so they cannot go on"});
     if (!scenario.robots.empty()) refuse("has further robots: a record goes on alone");
@@ -155,10 +156,11 @@ class ThenSimulation final : public JudgedRun {
   }
 
   int run() {
-    run_.go([&] { return interrupted() || 1e-9 * static_cast<double>(run_.time_ns()) >= options_.at_s; });
-    if (!(1e-9 * static_cast<double>(run_.time_ns()) >= options_.at_s) && !interrupted())
+    const auto recorded_s = [this] { return 1e-9 * static_cast<double>(run_.time_ns()); };
+    run_.go([&] { return interrupted() || recorded_s() >= options_.at_s; });
+    if (!(recorded_s() >= options_.at_s) && !interrupted())
       throw InputError({.file = options_.record,
-                        .message = printed("ends at %.3f s, before --at", 1e-9 * static_cast<double>(run_.time_ns())) +
+                        .message = printed("ends at %.3f s, before --at", recorded_s()) +
                                    (run_.shortened().empty() ? "" : ": " + run_.shortened())});
     const Snapshot& state = run_.assembly().control().state();
     scenario_.placed.orientation = state.status.base.orientation;

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
-#include <sstream>
+#include <map>
 
 #include "app/run/behavior_process.h"
 #include "kadans/signal/input_error.h"
@@ -47,13 +45,13 @@ std::string command_text(const Command& command, const Catalog& catalog) {
 
 }  // namespace
 
-UnpackedRun::UnpackedRun(const RunInputs& inputs, const std::string& record, bool any_plugins,
-                         const std::vector<std::string>& with)
-    : files(inputs, record, any_plugins, with), options(options_of(inputs, record)) {
+ScenarioConfig unpacked_scenario(const RunInputs& inputs, const std::string& record, const UnpackedInputs& files) {
+  RunOptions options = options_of(inputs, record);
   options.robot = files.scenario().string();
-  scenario = live_scenario(options);
+  ScenarioConfig scenario = live_scenario(options);
   scenario.plugins = files.plugins();
   scenario.repeats = true;
+  return scenario;
 }
 
 RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenario, const UnpackedInputs& unpacked,
@@ -85,10 +83,10 @@ RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenar
 
 void RepeatedRun::go(const std::function<bool()>& stop, const std::vector<RunObserver*>& observers) {
   for (bool more = begin(); more && !stop(); more = ticks_read_.next(taken_)) {
-    if (behaviors_ != Behaviors::saved) repeat_behaviors(taken_.tick);
+    if (!repeats_flight()) repeat_behaviors(taken_.tick);
     if (!repeat_tick(taken_)) return;
     show(observers);
-    if (behaviors_ == Behaviors::saved && !parting_.empty()) return;
+    if (repeats_flight() && !parting_.empty()) return;
     if (comparison_->parted() && behaviors_ != Behaviors::tested && observers.empty()) return;
   }
 }
@@ -98,13 +96,25 @@ bool RepeatedRun::begin() {
   if (!ticks_read_.next(taken_)) return false;
   const auto refuse = [&](const std::string& why) { throw InputError({.file = compared_.file(), .message = why}); };
   const bool flight = ticks_read_.layout().state_bytes > 0;
-  if (flight && behaviors_ != Behaviors::saved)
+  if (flight && !repeats_flight())
     refuse("is a flight record: kadans replay repeats its control engine, and nothing else can be done with it");
   if (!flight && taken_.tick != 0)
     refuse("begins in tick " + std::to_string(taken_.tick) +
            " of its run: only a record from the first tick on can be repeated");
+  find_foreign_signals();
   if (flight) begin_from_state();
   return true;
+}
+
+// In the record, whose signals are the same in all its files.
+void RepeatedRun::find_foreign_signals() {
+  std::map<std::string, std::uint32_t> numbers;
+  const std::vector<std::string>& names = ticks_read_.signals();
+  for (std::uint32_t i = 0; i < names.size(); ++i) numbers[names[i]] = i;
+  for (std::size_t id = assembly_.foreign_first(); id < assembly_.foreign_end(); ++id) {
+    const auto number = numbers.find(assembly_.catalog().signals.info(static_cast<SignalId>(id)).name);
+    if (number != numbers.end()) foreign_signals_.emplace_back(static_cast<SignalId>(id), number->second);
+  }
 }
 
 void RepeatedRun::begin_from_state() {
@@ -214,32 +224,25 @@ void RepeatedRun::go_on_in(Assembly& model, const std::function<bool()>& stop,
 }
 
 bool RepeatedRun::repeat_tick(const TickTaken& taken) {
-  if (foreign_signals_.empty()) {
-    std::map<std::string, std::uint32_t> numbers;
-    const std::vector<std::string>& names = ticks_read_.signals();
-    for (std::uint32_t i = 0; i < names.size(); ++i) numbers[names[i]] = i;
-    for (std::size_t id = assembly_.foreign_first(); id < assembly_.foreign_end(); ++id) {
-      const auto number = numbers.find(assembly_.catalog().signals.info(static_cast<SignalId>(id)).name);
-      if (number != numbers.end()) foreign_signals_.emplace_back(static_cast<SignalId>(id), number->second);
-    }
-  }
   for (const auto& [id, number] : foreign_signals_) foreign_[id] = ticks_read_.row()[number];
-  for (std::size_t i = 0; behaviors_ == Behaviors::saved && i < taken.down.size(); ++i) {
-    if (!hand_down(i, taken.down[i])) return false;
+  if (repeats_flight()) {
+    for (std::size_t i = 0; i < taken.down.size(); ++i) {
+      if (!hand_down(i, taken.down[i])) return false;
+    }
   }
   feed(taken);
   if (!feed_commands(taken.inputs.commands)) return false;
   ControlEngine& control = assembly_.control();
   control.tick(taken.time_ns, taken.inputs.dt_s, taken.inputs.missed);
   ++ticks_;
-  if (behaviors_ == Behaviors::saved) note_objects();
+  if (repeats_flight()) note_objects();
   compare(taken);
   for (std::size_t i = 0; i < hand_overs_.down.size() && i < taken.down.size(); ++i) {
     if (hand_overs_.down[i]->taken() != taken.down[i])
       part("a control object found value " + std::to_string(hand_overs_.down[i]->taken()) + " of its high level, not " +
            std::to_string(taken.down[i]));
   }
-  if (behaviors_ == Behaviors::saved) compare_state();
+  if (repeats_flight()) compare_state();
   return true;
 }
 
@@ -341,7 +344,7 @@ bool RepeatedRun::feed_commands(std::uint32_t waiting) {
 // Of a flight record: it is in the state already.
 bool RepeatedRun::is_old(const BehaviorInput& input) const noexcept {
   const std::uint32_t after = input.commands.front().sequence - last_transaction_;
-  return behaviors_ == Behaviors::saved && (after == 0 || after > std::numeric_limits<std::uint32_t>::max() / 2);
+  return repeats_flight() && (after == 0 || after > std::numeric_limits<std::uint32_t>::max() / 2);
 }
 
 // The next batch of the record's commands.
@@ -350,7 +353,7 @@ bool RepeatedRun::feed_next() {
   do {
     if (!commands_read_.next(input)) return false;
   } while (input.kind != BehaviorInput::Kind::sent || is_old(input));
-  if (behaviors_ == Behaviors::saved && input.commands.front().sequence != ++last_transaction_) return false;
+  if (repeats_flight() && input.commands.front().sequence != ++last_transaction_) return false;
   ++fed_;
   commands_ += input.commands.size() - 1;
   return assembly_.control().exchange().commands.try_push(input.commands);
@@ -400,14 +403,14 @@ void RepeatedRun::repeat_behavior_tick() {
       part("a value of a control object has another size");
   }
   for (const BehaviorInput& input : inputs) {
-    if (input.kind == BehaviorInput::Kind::asked && behaviors_ > Behaviors::none) ask_again(input);
-    if (input.kind == BehaviorInput::Kind::sent && !input.in_tick && behaviors_ > Behaviors::none) send_again(input);
+    if (input.kind == BehaviorInput::Kind::asked && plays()) ask_again(input);
+    if (input.kind == BehaviorInput::Kind::sent && !input.in_tick && plays()) send_again(input);
     if (input.kind == BehaviorInput::Kind::tick_begins) engine_.tick(input.time_ns);
   }
   ++behavior_ticks_;
   const auto more = std::find_if(inputs.begin() + static_cast<std::ptrdiff_t>(sent_), inputs.end(),
                                  [](const auto& input) { return input.kind == BehaviorInput::Kind::sent; });
-  if (more != inputs.end() && !behaviors_end_ && behaviors_ > Behaviors::none)
+  if (more != inputs.end() && !behaviors_end_ && plays())
     part("the behaviors do not send " + command_text(more->commands.back(), assembly_.catalog()));
   const std::vector<Command> commanded = take_all();
   (void)queue.try_push(waiting);
@@ -421,7 +424,7 @@ void RepeatedRun::repeat_behavior_tick() {
   sent_before_ += static_cast<std::uint64_t>(
       std::ranges::count(inputs, BehaviorInput::Kind::sent, [](const BehaviorInput& input) { return input.kind; }));
   if (led()) fed_ = sent_before_;
-  if (behaviors_ > Behaviors::none) compare_events();
+  if (plays()) compare_events();
 }
 
 void RepeatedRun::write_files() {
@@ -524,7 +527,7 @@ std::string RepeatedRun::shortened() const {
 }
 
 void RepeatedRun::sent(std::span<const Command> batch, bool) noexcept {
-  if (!next_behaviors_ || behaviors_ <= Behaviors::none) return;
+  if (!next_behaviors_ || !plays()) return;
   const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
   while (sent_ < inputs.size() && inputs[sent_].kind != BehaviorInput::Kind::sent) ++sent_;
   if (sent_ == inputs.size()) {

@@ -45,16 +45,10 @@ int run_then_simulation(const ReplayOptions& options);
 // Makes all ready for a test, and says how many checks there are. Throws InputError.
 std::size_t count_record_checks(const ScenarioConfig& test);
 
-// The run of a record on threads, with its files unpacked.
-struct UnpackedRun {
-  // `with`: files of a project here that take the place of the record's. Throws InputError.
-  UnpackedRun(const RunInputs& inputs, const std::string& record, bool any_plugins,
-              const std::vector<std::string>& with);
-
-  UnpackedInputs files;
-  RunOptions options;
-  ScenarioConfig scenario;
-};
+// The scenario of a run on threads, made of the unpacked files of its record. Throws InputError.
+ScenarioConfig unpacked_scenario(const RunInputs& inputs, const std::string& record, const UnpackedInputs& files);
+// Whether its behaviors played in a process of their own.
+inline bool played_elsewhere(const RunInputs& inputs) { return inputs.fact("behaviors") == "process"; }
 
 class RepeatedRun final : private BehaviorInputs {
  public:
@@ -102,6 +96,7 @@ class RepeatedRun final : private BehaviorInputs {
 
  private:
   bool begin();
+  void find_foreign_signals();
   void begin_from_state();
   bool repeat_tick(const TickTaken& taken);
   bool hand_down(std::size_t storage, std::int64_t number);
@@ -115,6 +110,7 @@ class RepeatedRun final : private BehaviorInputs {
   void show(const std::vector<RunObserver*>& observers);
   void add_hash(std::span<const double> row) noexcept;
   void take_faults(const std::vector<RunObserver*>& observers, std::int64_t time_ns);
+  bool plays() const noexcept { return behaviors_ > Behaviors::none; }
   bool leads() const noexcept { return behaviors_ == Behaviors::leading || behaviors_ == Behaviors::tested; }
   bool led() const noexcept { return leads() && !parting_.empty(); }
   void repeat_behaviors(std::uint64_t until_tick);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -9,7 +8,6 @@
 #include "app/assembly.h"
 #include "app/commands.h"
 #include "app/option_checks.h"
-#include "app/run/behavior_process.h"
 #include "app/run/observers.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
@@ -255,7 +253,7 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
     notes.emplace_back(
         "with other files: what they command counts, the sensors are those of the record, so the robot does not "
         "answer");
-  else if (inputs.fact("behaviors") == "process")
+  else if (played_elsewhere(inputs))
     notes.emplace_back("its behaviors played in a process of their own: their commands are taken from the record");
   return notes;
 }
@@ -320,12 +318,13 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
         {.file = "--with",
          .message = "is for complete records; " + options.record +
                     " is a flight record: behaviors are not repeated, and its state is that of its files"});
-  const UnpackedRun run(inputs, options.record, options.allow_plugins, options.with);
-  RepeatedRun repeated(options.record, run.scenario, run.files, inputs.fact("root"),
-                       flight                               ? RepeatedRun::Behaviors::saved
-                       : !options.with.empty()              ? RepeatedRun::Behaviors::leading
-                       : run.options.behaviors == "process" ? RepeatedRun::Behaviors::none
-                                                            : RepeatedRun::Behaviors::compared);
+  const UnpackedInputs unpacked(inputs, options.record, options.allow_plugins, options.with);
+  const ScenarioConfig scenario = unpacked_scenario(inputs, options.record, unpacked);
+  RepeatedRun repeated(options.record, scenario, unpacked, inputs.fact("root"),
+                       flight                     ? RepeatedRun::Behaviors::saved
+                       : !options.with.empty()    ? RepeatedRun::Behaviors::leading
+                       : played_elsewhere(inputs) ? RepeatedRun::Behaviors::none
+                                                  : RepeatedRun::Behaviors::compared);
   catch_interrupts();
   repeated.go(interrupted);
   if (interrupted()) return exit_interrupted;

@@ -65,16 +65,16 @@ SimRun::SimRun(const SimOptions& options, const RunChoices& choices, std::option
       height_("base height, m", assembly_.catalog().signals.find(height_signal).value(), duration_s_),
       record_plan_(record_plan(assembly_, options.recording, false)),
       continuation_(std::move(continuation)) {
-  if (!continuation_) refuse_faulty_behaviors(assembly_);
   if (continuation_) {
     inputs_ = continuation_->from.inputs;
     const double at_s = 1e-9 * static_cast<double>(continuation_->from.at.time_ns);
     actions_.reserve(continuation_->branches.size());
     for (const RunBranch& branch : continuation_->branches) actions_.emplace_back(branch, scenario_, assembly_, at_s);
   } else {
+    refuse_faulty_behaviors(assembly_);
     inputs_ = inputs_for(choices_, scenario_, assembly_, seed_, duration_s_, options_.watch);
+    make_reachable();
   }
-  if (!continuation_) make_reachable();
   if (options_.hash_every_s) trail_ = std::make_unique<HashTrail>(*options_.hash_every_s);
   if (!options_.checkpoints.empty())
     checkpoints_ = std::make_unique<CheckpointWriter>(inputs_, checkpoints_of(options_), assembly_, ordered_);

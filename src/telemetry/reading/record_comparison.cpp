@@ -27,7 +27,8 @@ std::uint32_t number_in(const TextMap& metadata, const char* name) {
 
 }  // namespace
 
-RecordComparison::RecordComparison(McapReader& record, const SignalTable& signals) : record_(record), table_(signals) {
+RecordComparison::RecordComparison(McapReader& record, const SignalTable& signals)
+    : record_(record), table_(signals), left_out_(signals.size()) {
   advance();
 }
 
@@ -82,11 +83,6 @@ void RecordComparison::compare(std::uint64_t tick, std::int64_t time_ns, std::sp
   for (auto& [id, difference] : found_) differences_.push_back(std::move(difference));
 }
 
-void RecordComparison::leave_out(SignalId signal, bool yes) {
-  left_out_.resize(table_.size());
-  left_out_[signal] = yes;
-}
-
 bool RecordComparison::compare_message(std::span<const double> row, std::int64_t time_ns) {
   Topic& topic = topic_of(message_.channel);
   topic.single = !read_cdr(message_.payload, topic.values, Precision::full);
@@ -117,7 +113,7 @@ bool RecordComparison::compare_standing(std::uint64_t tick, std::span<const doub
 void RecordComparison::compare_values(const Topic& topic, std::span<const double> row) {
   for (std::size_t i = 0; i < topic.signals.size(); ++i) {
     const SignalId id = topic.signals[i];
-    if (id == not_compared || (!left_out_.empty() && left_out_[id])) continue;
+    if (id == not_compared || left_out_[id]) continue;
     const double replayed = topic.single ? static_cast<double>(static_cast<float>(row[id])) : row[id];
     if (same_value(topic.values[i], replayed)) continue;
     const Signal& info = table_.info(id);

@@ -41,7 +41,7 @@ class RecordComparison {
   // record has ended.
   void compare(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   // Of signals that nobody computes yet: they are compared again when `yes` is false.
-  void leave_out(SignalId signal, bool yes);
+  void leave_out(SignalId signal, bool yes) { left_out_[signal] = yes; }
 
   bool over() const noexcept { return parted_ || ended_; }
   bool parted() const noexcept { return parted_; }
@@ -74,7 +74,7 @@ class RecordComparison {
   McapReader& record_;
   const SignalTable& table_;
   std::map<std::uint16_t, Topic> topics_;
-  std::vector<bool> left_out_;  // by signal; empty: none
+  std::vector<bool> left_out_;  // by signal
   McapMessage message_;
   std::vector<std::pair<SignalId, SignalDifference>> found_;
   std::vector<SignalDifference> differences_;

@@ -245,17 +245,14 @@ class CutInputs {
   // `exact`: the signals of which the new file has each tick with all bits.
   CutInputs(const RecordOutline& record, std::int64_t to_ns, const std::set<std::string>& exact, McapWriter& file)
       : to_ns_(std::min(to_ns, record.last_ns)), file_(file), ticks_(record.file), behaviors_(record.file) {
+    const auto refuse = [&](const std::string& why) { throw InputError({.file = record.file, .message = why}); };
     more_ = ticks_.next(tick_);
     if (!more_)
-      throw InputError({.file = record.file,
-                        .message = "has no inputs to be kept: " +
-                                   (ticks_.problem().empty() ? "it holds no tick" : ticks_.problem())});
+      refuse("has no inputs to be kept: " + (ticks_.problem().empty() ? "it holds no tick" : ticks_.problem()));
     if (tick_.tick != 0)
-      throw InputError({.file = record.file,
-                        .message = "begins in tick " + std::to_string(tick_.tick) +
-                                   " of its run: only inputs from the first tick on can be repeated"});
-    if (ticks_.layout().state_bytes > 0)
-      throw InputError({.file = record.file, .message = "is a flight record: its inputs are not cut"});
+      refuse("begins in tick " + std::to_string(tick_.tick) +
+             " of its run: only inputs from the first tick on can be repeated");
+    if (ticks_.layout().state_bytes > 0) refuse("is a flight record: its inputs are not cut");
     std::vector<bool> known;
     TextMap facts = ticks_.layout().facts();
     for (const std::string& name : ticks_.signals()) {

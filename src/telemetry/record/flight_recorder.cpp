@@ -44,6 +44,9 @@ const std::byte* take_column(const std::byte* from, std::size_t rows, Take take)
   return from + rows * sizeof(T);
 }
 
+// A row in a block: its tick, its time, its signals.
+std::size_t row_bytes(std::size_t signals) noexcept { return 2 * sizeof(std::uint64_t) + signals * sizeof(float); }
+
 // What inputs need beside the packed blocks: the encoder's, and a block before it is packed, and packed.
 std::size_t input_bytes(const FlightSettings& settings) {
   if (!settings.inputs) return 0;
@@ -60,7 +63,7 @@ FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
       kept_ns_(std::llround(settings.kept_s * 1e9)),
       zstd_(ZSTD_createCCtx()),
       store_(settings.bytes - input_bytes(settings)),
-      planes_(block_rows * (signals * sizeof(float) + 2 * sizeof(std::uint64_t))),
+      planes_(block_rows * row_bytes(signals)),
       packed_(ZSTD_compressBound(planes_.size())) {
   if (zstd_ == nullptr) throw std::bad_alloc();
   if (settings.inputs) encoder_ = std::make_unique<InputEncoder>(*settings.inputs, std::vector<bool>{});
@@ -84,10 +87,10 @@ void FlightMemory::add(std::uint64_t tick, std::int64_t time_ns, std::span<const
 }
 
 void FlightMemory::add_state(const EngineStates::Saved& state) {
-  state_.clear();
-  put_state(state, state_);
-  states_.put(static_cast<std::uint32_t>(state_.size()));
-  states_.put(state_.bytes());
+  const std::size_t length = states_.size(), begin = length + sizeof(std::uint32_t);
+  states_.put(std::uint32_t{0});
+  put_state(state, states_);
+  states_.set(length, static_cast<std::uint32_t>(states_.size() - begin));
 }
 
 void FlightMemory::seal() {
@@ -95,8 +98,8 @@ void FlightMemory::seal() {
   if (rows == 0 && behaviors_.size() + states_.size() == 0) return;
   if (encoder_ != nullptr && rows > 0) encoder_->encode(inputs_);
   if (rows > 0) last_ns_ = static_cast<std::int64_t>(times_.back());
-  const std::size_t rows_bytes = rows * (signals_ * sizeof(float) + 2 * sizeof(std::uint64_t));
-  planes_.resize(std::max(planes_.size(), rows_bytes + inputs_.size() + behaviors_.size() + states_.size()));
+  const std::size_t bytes = rows * row_bytes(signals_) + inputs_.size() + behaviors_.size() + states_.size();
+  planes_.resize(std::max(planes_.size(), bytes));
   std::byte* to = put_column<std::uint64_t>(planes_.data(), rows, [&](std::size_t row) { return ticks_[row]; });
   to = put_column<std::uint64_t>(to, rows, [&](std::size_t row) { return times_[row]; });
   for (std::size_t i = 0; i < signals_; ++i) {
@@ -114,10 +117,9 @@ void FlightMemory::seal() {
     to = std::ranges::copy(part->bytes(), to).out;
     part->clear();
   }
-  const auto size = static_cast<std::size_t>(to - planes_.data());
-  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(size)));
+  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(bytes)));
   const std::size_t packed =
-      ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), planes_.data(), size, compression_level);
+      ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), planes_.data(), bytes, compression_level);
   ticks_.clear();
   times_.clear();
   values_.clear();
@@ -155,7 +157,7 @@ bool FlightMemory::read(std::uint64_t block, Rows& rows) const {
   const Block& found = blocks_[static_cast<std::size_t>(block - first())];
   if (found.size == 0) return false;
   const std::size_t behind = std::size_t{found.inputs} + found.behaviors + found.states;
-  std::vector<std::byte> planes(found.rows * (signals_ * sizeof(float) + 2 * sizeof(std::uint64_t)) + behind);
+  std::vector<std::byte> planes(found.rows * row_bytes(signals_) + behind);
   const std::size_t size = ZSTD_decompress(planes.data(), planes.size(), store_.data() + found.offset, found.size);
   if (size != planes.size()) return false;
   rows.ticks.resize(found.rows);

@@ -94,7 +94,7 @@ class FlightMemory {
   std::vector<std::uint64_t> ticks_, times_;  // of the open block
   std::vector<float> values_;                 // row by row
   std::unique_ptr<InputEncoder> encoder_;     // nullptr: without inputs
-  ByteWriter inputs_, behaviors_, states_, state_;
+  ByteWriter inputs_, behaviors_, states_;
 };
 
 // The recorder gets every row and event that the recorder drains, also when no record is open. When the safety.level

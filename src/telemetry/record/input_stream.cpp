@@ -40,6 +40,19 @@ std::size_t bytes_in(std::uint64_t value) noexcept { return (static_cast<std::si
 std::uint64_t zigzag(std::uint64_t difference) noexcept { return (difference << 1U) ^ (0 - (difference >> 63U)); }
 std::uint64_t unzigzag(std::uint64_t value) noexcept { return (value >> 1U) ^ (0 - (value & 1U)); }
 
+// How many bytes the largest of the numbers has, then the lowest bytes of all, then the next bytes, up to these.
+template <typename NumberAt>
+void put_planes(std::size_t count, NumberAt number, ByteWriter& message) {
+  std::uint64_t all = 0;
+  for (std::size_t i = 0; i < count; ++i) all |= number(i);
+  const std::size_t planes = bytes_in(all);
+  message.put(static_cast<std::uint8_t>(planes));
+  const std::span<std::byte> bytes = message.grow(planes * count);
+  for (std::size_t p = 0; p < planes; ++p) {
+    for (std::size_t i = 0; i < count; ++i) bytes[p * count + i] = static_cast<std::byte>(number(i) >> (8 * p));
+  }
+}
+
 constexpr std::size_t bytes_of_bits(std::size_t bits) noexcept { return (bits + 7) / 8; }
 
 std::optional<std::uint32_t> count_in(const TextMap& facts, const char* name, std::uint32_t max) {
@@ -335,15 +348,10 @@ void InputEncoder::put_counts(const Column& column, ByteWriter& message) {
   message.put(static_cast<std::uint8_t>(Mode::counts));
   message.put(column.step);
   message.put(counts_.front());
-  std::size_t planes = 0;
   const auto change = [this](std::size_t t) {
-    return zigzag(static_cast<std::uint64_t>(counts_[t]) - static_cast<std::uint64_t>(counts_[t - 1]));
+    return zigzag(static_cast<std::uint64_t>(counts_[t + 1]) - static_cast<std::uint64_t>(counts_[t]));
   };
-  for (std::size_t t = 1; t < counts_.size(); ++t) planes = std::max(planes, bytes_in(change(t)));
-  message.put(static_cast<std::uint8_t>(planes));
-  for (std::size_t p = 0; p < planes; ++p) {
-    for (std::size_t t = 1; t < counts_.size(); ++t) message.put(static_cast<std::uint8_t>(change(t) >> (8 * p)));
-  }
+  put_planes(counts_.size() - 1, change, message);
 }
 
 void InputEncoder::encode(std::uint32_t c, Values values, ByteWriter& message) {
@@ -406,15 +414,12 @@ void InputEncoder::encode_rest(Column& column, Values values, ByteWriter& messag
   }
   before = column.before;
   last = column.last;
-  std::uint64_t all = 0;
   for (std::size_t t = 0; t < values.size(); ++t) {
     if (mode == Mode::xored) rest_[t] = values[t] ^ last;
     if (mode == Mode::change) rest_[t] = zigzag(values[t] - next_of(before, last));
-    all |= rest_[t];
     before = last;
     last = values[t];
   }
-  const std::size_t planes = bytes_in(all);
   message.put(static_cast<std::uint8_t>(mode));
   if (mode == Mode::near) {
     message.put(column.near);
@@ -425,12 +430,8 @@ void InputEncoder::encode_rest(Column& column, Values values, ByteWriter& messag
     for (std::size_t t = 0; varies && t < values.size(); ++t)
       bits[t / 8] |= static_cast<std::byte>(static_cast<unsigned>(counts_[t]) << (t % 8));
   }
-  message.put(static_cast<std::uint8_t>(planes));
-  const std::span<std::byte> bytes = message.grow(planes * values.size());
-  for (std::size_t p = 0; p < planes; ++p) {
-    for (std::size_t t = 0; t < values.size(); ++t)
-      bytes[p * values.size() + t] = static_cast<std::byte>(rest_[t] >> (8 * p));
-  }
+  put_planes(
+      values.size(), [this](std::size_t t) { return rest_[t]; }, message);
 }
 
 bool InputDecoder::decode(std::span<const std::byte> message, const SignalBits& signals, std::deque<TickTaken>& ticks) {

@@ -50,8 +50,8 @@ struct BehaviorInput {
   BehaviorInputs::Asked how{};      // asked
   std::vector<std::byte> bytes{};   // newer, asked, handed_down
 };
+std::uint32_t number_of_behavior_input(ByteReader message);  // of the next event
 // The next event of a message; `expected` counts them. False: damaged, or one is missing.
-std::uint32_t number_of_behavior_input(ByteReader message);
 [[nodiscard]] bool take_behavior_input(ByteReader& message, std::uint32_t& expected, BehaviorInput& input);
 
 // Sorts events into those of a record and those of a flight record, each with numbers of its own.

@@ -80,8 +80,7 @@ bool Recorder::push(std::span<const double> head, std::span<const double> row) n
 }
 
 bool Recorder::drain() {
-  const bool behind = inputs_.pieces != nullptr && inputs_ring_ == nullptr;
-  const std::size_t row_size = head_size + signal_count_ + (behind ? word_count_ : 0);
+  const std::size_t row_size = head_size + signal_count_ + (inputs_ring_ ? 0 : word_count_);
   for (std::size_t waiting = ring_->size() / row_size; waiting > 0; --waiting) {
     take_row();
     ring_->drop(row_size);
