@@ -62,15 +62,6 @@ std::string number(double value) {
   return text.data();
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out + "\"";
-}
-
 std::string world_model() {
   std::string text = R"({
       "ball": { "what": "the ball", "place": "point", "within_m": 20, "forget_s": 6 },
@@ -103,18 +94,18 @@ std::string world_model() {
 std::string robot_fields(const MatchConfig& match, RobotId id) {
   const TeamSetup& team = match.team(id.side);
   const Pose2 at = world_pose(place_before(match, id), id.side == Side::home ? -1 : 1);
-  std::string text = "\"robot\": " + quoted(team.robot) +
+  std::string text = "\"robot\": " + json_text(team.robot) +
                      ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
                      ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) +
-                     " },\n    \"supervisor\": { \"decisions\": " + quoted(team.folder + "/team.lua") +
+                     " },\n    \"supervisor\": { \"decisions\": " + json_text(team.folder + "/team.lua") +
                      ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
   std::string peers;
   for (unsigned number = 1; number <= team.players; ++number) {
     const RobotId mate{id.side, static_cast<std::uint8_t>(number)};
-    if (!(mate == id)) peers += (peers.empty() ? "" : ", ") + quoted(robot_name(mate));
+    if (!(mate == id)) peers += (peers.empty() ? "" : ", ") + json_text(robot_name(mate));
   }
   if (!peers.empty())
-    text += ",\n    \"messages\": { \"name\": " + quoted(robot_name(id)) + ", \"peers\": [" + peers +
+    text += ",\n    \"messages\": { \"name\": " + json_text(robot_name(id)) + ", \"peers\": [" + peers +
             "], \"messages_per_minute\": 300, \"bytes_per_minute\": 150000 }";
   const SensesConfig& senses = match.senses;
   text +=
@@ -127,7 +118,7 @@ std::string robot_fields(const MatchConfig& match, RobotId id) {
 }
 
 std::string box(const std::string& name, const Point& at, double z_m, double x_m, double y_m, double height_m) {
-  return ",\n    { \"kind\": \"box\", \"name\": " + quoted(name) + ", \"size_m\": [" + number(x_m) + ", " +
+  return ",\n    { \"kind\": \"box\", \"name\": " + json_text(name) + ", \"size_m\": [" + number(x_m) + ", " +
          number(y_m) + ", " + number(height_m) + "], \"position_m\": [" + number(at.x_m) + ", " + number(at.y_m) +
          ", " + number(z_m) + "] }";
 }
@@ -150,6 +141,15 @@ std::string goals(const Field& field) {
 }  // namespace
 
 std::string robot_name(RobotId id) { return (id.side == Side::home ? "home_" : "away_") + std::to_string(id.number); }
+
+std::string json_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + "\"";
+}
 
 std::vector<RobotId> MatchConfig::robots() const {
   std::vector<RobotId> all;
@@ -224,10 +224,10 @@ std::string scenario_of(const MatchConfig& match) {
   const Field field = match.field();
   const Ball ball = league_ball(match.division);
   const std::vector<RobotId> robots = match.robots();
-  std::string text = "{ \"name\": " + quoted(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
+  std::string text = "{ \"name\": " + json_text(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
                      robot_fields(match, robots.front()) + ",\n  \"robots\": [";
   for (std::size_t i = 1; i < robots.size(); ++i) {
-    text += std::string(i == 1 ? "" : ",") + "\n    { \"name\": " + quoted(robot_name(robots[i])) + ", " +
+    text += std::string(i == 1 ? "" : ",") + "\n    { \"name\": " + json_text(robot_name(robots[i])) + ", " +
             robot_fields(match, robots[i]) + " }";
   }
   text += "],\n  \"network\": { \"delay_s\": " + number(match.delay_s) + ", \"jitter_s\": " + number(match.jitter_s) +
