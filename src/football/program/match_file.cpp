@@ -41,15 +41,13 @@ void read_senses(InputObject& f, SensesConfig& senses) {
   f.number("imagined", senses.imagined, {0, 1}, "share of the pictures that show it where it is not");
 }
 
-void read_team(InputObject& f, TeamSetup& team, unsigned least) {
+void read_team(InputObject& f, TeamSetup& team) {
   f.text("name", team.name, "what the team is called");
-  if (f.path("team", team.folder, "the folder of the team, with its team.lua, from the project root", least > 0)) {
-    std::string decisions = team.folder + "/team.lua";
-    if (!f.is_file(decisions))
-      f.refuse("team", "team: the folder '" + team.folder + "' has no team.lua, a k.decisions");
-  }
-  if (!f.path("robot", team.robot, "the configuration of its robots") && team.robot.empty()) team.robot = "?";
-  f.whole("players", team.players, least, team_players_max, "robots of the team", least > 0);
+  if (f.path("team", team.folder, "the folder of the team, with its team.lua, from the project root", true) &&
+      !f.is_file(team.folder + "/team.lua"))
+    f.refuse("team", "team: the folder '" + team.folder + "' has no team.lua, a k.decisions");
+  f.path("robot", team.robot, "the configuration of its robots");
+  f.whole("players", team.players, 1, team_players_max, "robots of the team", true);
   f.whole("keeper", team.keeper, 0, team_players_max, "number of the keeper, 0: none");
   if (team.keeper > team.players)
     f.refuse("keeper", "keeper is number " + std::to_string(team.keeper) + ", but the team has " +
@@ -130,7 +128,7 @@ std::string goals(const Field& field) {
   const double post_m = goal.post_m, y_m = (goal.width_m + post_m) / 2;
   for (const double end : {-1.0, 1.0}) {
     const std::string name = end < 0 ? "right" : "left";  // as the game controller sees it
-    const double x_m = end * (field.goal_line_x_m());
+    const double x_m = end * field.goal_line_x_m();
     text += box(name + "_post_1", {x_m, y_m}, goal.height_m / 2, post_m, post_m, goal.height_m);
     text += box(name + "_post_2", {x_m, -y_m}, goal.height_m / 2, post_m, post_m, goal.height_m);
     text += box(name + "_net", {x_m + end * goal.depth_m, 0}, 0.25, 0.05, goal.width_m, 0.5);
@@ -192,10 +190,10 @@ MatchConfig read_match(const std::filesystem::path& file) {
     f.object("rules", "times that differ from the rules of 2026", [&](InputObject& e) { read_rules(e, match.rules); });
     f.object(
         "home", "the team that defends the left goal first, and kicks off",
-        [&](InputObject& e) { read_team(e, match.teams[0], 1); }, true);
+        [&](InputObject& e) { read_team(e, match.teams[0]); }, true);
     match.teams[1].players = 0;
     f.object("away", "the other team; without one the goal is empty",
-             [&](InputObject& e) { read_team(e, match.teams[1], 1); });
+             [&](InputObject& e) { read_team(e, match.teams[1]); });
     std::size_t start = 0;
     f.choice("start", start, start_names, "where robots stand before a half: beside the field, or on it");
     match.start_on_field = start == 1;
