@@ -170,13 +170,9 @@ void PlayedMatch::heed(const RefereeReport& report) {
   for (const Decision& decision : report.decisions) {
     result_.decisions.push_back(decision);
     lines_.push_back(decision.line());
-    for (Player& player : players_) {
-      // A decision begins with the penalty's name and who it is: "pushing, home 1: ...".
-      const std::string who = ", " + std::string(player.told.id.side == Side::home ? "home " : "away ") +
-                              std::to_string(player.told.id.number) + ":";
-      if (decision.text.find(who) != std::string::npos) ++player.told.penalties;
-    }
   }
+  for (Player& player : players_)
+    player.told.penalties += static_cast<std::uint64_t>(std::ranges::count(report.penalised, player.told.id));
   if (report.ball) simulation_.world().put(ball_, {report.ball->x_m, report.ball->y_m, ball_radius_m_});
   for (const RobotPlacement& placed : report.robots) {
     for (std::size_t i = 0; i < players_.size(); ++i) {
