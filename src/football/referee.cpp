@@ -124,6 +124,7 @@ void Referee::penalise(RobotId id, Penalty penalty, const WorldTruth& world, std
                        const std::string& why) {
   if (!match_.plays(id)) return;
   match_.penalise(id, penalty);
+  report_.penalised.push_back(id);
   decide(rule, std::string(football::name_of(penalty)) + ", " + name_of(id) + ": " + why);
   if (penalty == Penalty::motion_in_set) return;  // it stays where it is
   watch(id).returning = true;

@@ -38,6 +38,7 @@ struct RefereeReport {
   std::vector<Decision> decisions;
   std::optional<Point> ball;  // place it here, at rest
   std::vector<RobotPlacement> robots;
+  std::vector<RobotId> penalised;  // whose penalties began
   int whistles_short = 0, whistles_long = 0;
 };
 

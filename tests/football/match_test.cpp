@@ -81,6 +81,10 @@ TEST_CASE("What is wrong in a match file is told with its place, what is wrong a
             "away.players is 9"));
   CHECK(has(refusal(one_team, "Two teams"), "1:11: name must be small letters"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/footbal", "players": 1 })"), "2:19: home.team: there is no "));
+  CHECK(has(refusal(R"("home": { "team": "behaviors/footbal", "players": 1 })"), "did you mean 'football'?"));
+  CHECK(
+      has(refusal("\"home\": { \"team\": \"" + std::string(5000, 'a') + "\", \"players\": 1 }"), "2:19: home.team: "));
+  CHECK(has(refusal(R"("home": { "team": "behaviors/football\u0000x", "players": 1 })"), "is no path"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/tulip", "players": 1 })"), "has no team.lua, a k.decisions"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/football" })"), "2:9: key 'players' is missing in home"));
   CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "keeper": 2 })"),

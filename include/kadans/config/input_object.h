@@ -37,7 +37,7 @@ class InputObject {
   bool choice(std::string_view name, std::size_t& value, std::span<const std::string> names, std::string_view doc,
               bool required = false);
   bool object(std::string_view name, std::string_view doc, const Read& read, bool required = false);
-  // The path of a file or folder of the project, as it is written; "" in `value`: there is none, which is a mistake.
+  // The path of a file or folder of the project, as it is written. There being none is a mistake.
   bool path(std::string_view name, std::string& value, std::string_view doc, bool required = false);
 
   bool is_file(const std::string& path) const;  // of the project

@@ -40,16 +40,13 @@ bool InputObject::object(std::string_view name, std::string_view doc, const Read
 }
 
 bool InputObject::path(std::string_view name, std::string& value, std::string_view doc, bool required) {
-  if (!fields_->string(name, value, doc, need(required))) return false;
-  const std::filesystem::path found = resolve(value, problems_->file());
-  if (std::filesystem::exists(found)) return true;
-  refuse(name, fields_->path(name) + ": there is no " + in_quotes(found.string()));
-  value.clear();
-  return false;
+  return fields_->string(name, value, doc, need(required)) &&
+         !resolve_file_or_folder(value, fields_->place(name), fields_->path(name), *problems_).empty();
 }
 
 bool InputObject::is_file(const std::string& path) const {
-  return std::filesystem::is_regular_file(resolve(path, problems_->file()));
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(resolve(path, problems_->file()), ignored);
 }
 
 void InputObject::refuse(std::string_view name, const std::string& message) {

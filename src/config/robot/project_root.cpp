@@ -56,6 +56,20 @@ std::string nearest_file(const fs::path& wanted) {
   return did_you_mean(wanted.filename().string(), names);
 }
 
+fs::path resolve_existing(std::string_view path, TextPlace place, std::string_view what, Problems& problems,
+                          bool or_folder) {
+  if (path.find('\0') == std::string_view::npos) {
+    fs::path file = resolve(path, problems.file());
+    std::error_code ignored;
+    if (fs::is_regular_file(file, ignored) || (or_folder && fs::is_directory(file, ignored))) return file;
+    problems.add(place, std::string(what) + ": there is no file " + (or_folder ? "or folder " : "") + in_quotes(path) +
+                            " in " + project_root(problems.file()).string() + nearest_file(file));
+  } else {
+    problems.add(place, std::string(what) + ": " + in_quotes(path) + " is no path");
+  }
+  return {};
+}
+
 }  // namespace
 
 fs::path project_root(const fs::path& file) {
@@ -85,16 +99,11 @@ fs::path resolve(std::string_view path, const fs::path& file) {
 }
 
 fs::path resolve_file(std::string_view path, TextPlace place, std::string_view what, Problems& problems) {
-  if (path.find('\0') == std::string_view::npos) {
-    fs::path file = resolve(path, problems.file());
-    std::error_code ignored;
-    if (fs::is_regular_file(file, ignored)) return file;
-    problems.add(place, std::string(what) + ": there is no file " + in_quotes(path) + " in " +
-                            project_root(problems.file()).string() + nearest_file(file));
-  } else {
-    problems.add(place, std::string(what) + ": " + in_quotes(path) + " is no path");
-  }
-  return {};
+  return resolve_existing(path, place, what, problems, false);
+}
+
+fs::path resolve_file_or_folder(std::string_view path, TextPlace place, std::string_view what, Problems& problems) {
+  return resolve_existing(path, place, what, problems, true);
 }
 
 std::filesystem::path user_folder(const char* variable, const char* below_home) {

@@ -26,6 +26,8 @@ std::filesystem::path resolve(std::string_view path, const std::filesystem::path
 // Resolves a path that must name an existing file. If there is none, it adds a problem at `place` with the nearest
 // existing file, and returns an empty path. `what` names the key for people: "urdf".
 std::filesystem::path resolve_file(std::string_view path, TextPlace place, std::string_view what, Problems& problems);
+std::filesystem::path resolve_file_or_folder(std::string_view path, TextPlace place, std::string_view what,
+                                             Problems& problems);
 
 // Where kadans keeps a user's files of one kind: below the folder that the variable names (XDG_CACHE_HOME), else below
 // this one of his home (.cache). Empty: nowhere. The folder need not be there.

@@ -41,15 +41,13 @@ void read_senses(InputObject& f, SensesConfig& senses) {
   f.number("imagined", senses.imagined, {0, 1}, "share of the pictures that show it where it is not");
 }
 
-void read_team(InputObject& f, TeamSetup& team, unsigned least) {
+void read_team(InputObject& f, TeamSetup& team) {
   f.text("name", team.name, "what the team is called");
-  if (f.path("team", team.folder, "the folder of the team, with its team.lua, from the project root", least > 0)) {
-    std::string decisions = team.folder + "/team.lua";
-    if (!f.is_file(decisions))
-      f.refuse("team", "team: the folder '" + team.folder + "' has no team.lua, a k.decisions");
-  }
-  if (!f.path("robot", team.robot, "the configuration of its robots") && team.robot.empty()) team.robot = "?";
-  f.whole("players", team.players, least, team_players_max, "robots of the team", least > 0);
+  if (f.path("team", team.folder, "the folder of the team, with its team.lua, from the project root", true) &&
+      !f.is_file(team.folder + "/team.lua"))
+    f.refuse("team", "team: the folder '" + team.folder + "' has no team.lua, a k.decisions");
+  f.path("robot", team.robot, "the configuration of its robots");
+  f.whole("players", team.players, 1, team_players_max, "robots of the team", true);
   f.whole("keeper", team.keeper, 0, team_players_max, "number of the keeper, 0: none");
   if (team.keeper > team.players)
     f.refuse("keeper", "keeper is number " + std::to_string(team.keeper) + ", but the team has " +
@@ -60,15 +58,6 @@ std::string number(double value) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.12g", value);
   return text.data();
-}
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out + "\"";
 }
 
 std::string world_model() {
@@ -103,18 +92,18 @@ std::string world_model() {
 std::string robot_fields(const MatchConfig& match, RobotId id) {
   const TeamSetup& team = match.team(id.side);
   const Pose2 at = world_pose(place_before(match, id), id.side == Side::home ? -1 : 1);
-  std::string text = "\"robot\": " + quoted(team.robot) +
+  std::string text = "\"robot\": " + json_text(team.robot) +
                      ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
                      ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) +
-                     " },\n    \"supervisor\": { \"decisions\": " + quoted(team.folder + "/team.lua") +
+                     " },\n    \"supervisor\": { \"decisions\": " + json_text(team.folder + "/team.lua") +
                      ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
   std::string peers;
   for (unsigned number = 1; number <= team.players; ++number) {
     const RobotId mate{id.side, static_cast<std::uint8_t>(number)};
-    if (!(mate == id)) peers += (peers.empty() ? "" : ", ") + quoted(robot_name(mate));
+    if (!(mate == id)) peers += (peers.empty() ? "" : ", ") + json_text(robot_name(mate));
   }
   if (!peers.empty())
-    text += ",\n    \"messages\": { \"name\": " + quoted(robot_name(id)) + ", \"peers\": [" + peers +
+    text += ",\n    \"messages\": { \"name\": " + json_text(robot_name(id)) + ", \"peers\": [" + peers +
             "], \"messages_per_minute\": 300, \"bytes_per_minute\": 150000 }";
   const SensesConfig& senses = match.senses;
   text +=
@@ -127,7 +116,7 @@ std::string robot_fields(const MatchConfig& match, RobotId id) {
 }
 
 std::string box(const std::string& name, const Point& at, double z_m, double x_m, double y_m, double height_m) {
-  return ",\n    { \"kind\": \"box\", \"name\": " + quoted(name) + ", \"size_m\": [" + number(x_m) + ", " +
+  return ",\n    { \"kind\": \"box\", \"name\": " + json_text(name) + ", \"size_m\": [" + number(x_m) + ", " +
          number(y_m) + ", " + number(height_m) + "], \"position_m\": [" + number(at.x_m) + ", " + number(at.y_m) +
          ", " + number(z_m) + "] }";
 }
@@ -139,7 +128,7 @@ std::string goals(const Field& field) {
   const double post_m = goal.post_m, y_m = (goal.width_m + post_m) / 2;
   for (const double end : {-1.0, 1.0}) {
     const std::string name = end < 0 ? "right" : "left";  // as the game controller sees it
-    const double x_m = end * (field.goal_line_x_m());
+    const double x_m = end * field.goal_line_x_m();
     text += box(name + "_post_1", {x_m, y_m}, goal.height_m / 2, post_m, post_m, goal.height_m);
     text += box(name + "_post_2", {x_m, -y_m}, goal.height_m / 2, post_m, post_m, goal.height_m);
     text += box(name + "_net", {x_m + end * goal.depth_m, 0}, 0.25, 0.05, goal.width_m, 0.5);
@@ -150,6 +139,15 @@ std::string goals(const Field& field) {
 }  // namespace
 
 std::string robot_name(RobotId id) { return (id.side == Side::home ? "home_" : "away_") + std::to_string(id.number); }
+
+std::string json_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + "\"";
+}
 
 std::vector<RobotId> MatchConfig::robots() const {
   std::vector<RobotId> all;
@@ -192,10 +190,10 @@ MatchConfig read_match(const std::filesystem::path& file) {
     f.object("rules", "times that differ from the rules of 2026", [&](InputObject& e) { read_rules(e, match.rules); });
     f.object(
         "home", "the team that defends the left goal first, and kicks off",
-        [&](InputObject& e) { read_team(e, match.teams[0], 1); }, true);
+        [&](InputObject& e) { read_team(e, match.teams[0]); }, true);
     match.teams[1].players = 0;
     f.object("away", "the other team; without one the goal is empty",
-             [&](InputObject& e) { read_team(e, match.teams[1], 1); });
+             [&](InputObject& e) { read_team(e, match.teams[1]); });
     std::size_t start = 0;
     f.choice("start", start, start_names, "where robots stand before a half: beside the field, or on it");
     match.start_on_field = start == 1;
@@ -224,10 +222,10 @@ std::string scenario_of(const MatchConfig& match) {
   const Field field = match.field();
   const Ball ball = league_ball(match.division);
   const std::vector<RobotId> robots = match.robots();
-  std::string text = "{ \"name\": " + quoted(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
+  std::string text = "{ \"name\": " + json_text(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
                      robot_fields(match, robots.front()) + ",\n  \"robots\": [";
   for (std::size_t i = 1; i < robots.size(); ++i) {
-    text += std::string(i == 1 ? "" : ",") + "\n    { \"name\": " + quoted(robot_name(robots[i])) + ", " +
+    text += std::string(i == 1 ? "" : ",") + "\n    { \"name\": " + json_text(robot_name(robots[i])) + ", " +
             robot_fields(match, robots[i]) + " }";
   }
   text += "],\n  \"network\": { \"delay_s\": " + number(match.delay_s) + ", \"jitter_s\": " + number(match.jitter_s) +

@@ -2,13 +2,14 @@
 // (docs/football.md). And the scenario of several robots that it is played in.
 //
 // A team is a folder with a `team.lua`, a k.decisions. All it knows comes by the world model, whose entries are those
-// of `world_model_of`; all it does it does by playing behaviors and by messages.
+// that docs/football.md lists; all it does it does by playing behaviors and by messages.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "football/field.h"
@@ -59,7 +60,8 @@ MatchConfig read_match(const std::filesystem::path& file);
 Pose2 place_before(const MatchConfig& match, RobotId id);
 Pose2 world_pose(const Pose2& of_team, double sign) noexcept;  // Match::sign of the team
 
-std::string robot_name(RobotId id);  // "home_1"
+std::string robot_name(RobotId id);            // "home_1"
+std::string json_text(std::string_view text);  // in JSON's quotes
 // The text of the scenario, for kadans::Simulation.
 std::string scenario_of(const MatchConfig& match);
 

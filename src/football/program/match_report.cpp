@@ -12,15 +12,6 @@ std::string line_of(const char* pattern, Values... values) {
   return text.data();
 }
 
-std::string json_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out + "\"";
-}
-
 std::string json_of(const Decision& decision) {
   return line_of("{\"time_s\": %.3f, \"half\": %d, \"remaining_s\": %.1f, \"text\": ",
                  1e-9 * static_cast<double>(decision.time_ns), decision.first_half ? 1 : 2, decision.remaining_s) +

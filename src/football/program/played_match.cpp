@@ -76,10 +76,7 @@ PlayedMatch::PlayedMatch(const MatchConfig& match, std::uint64_t seed)
     player.senses = std::make_unique<RobotSenses>(match_, simulation_, i, ids[i], seed);
     const Catalog& catalog = simulation_.catalog(i);
     player.arms = arms_of(*catalog.model);
-    if (const auto sent = catalog.signals.find("supervisor.sent")) {
-      player.sent_signal = *sent;
-      player.has_messages = true;
-    }
+    player.sent = catalog.signals.find("supervisor.sent");
     players_.push_back(std::move(player));
   }
   result_.match = match.name;
@@ -170,13 +167,9 @@ void PlayedMatch::heed(const RefereeReport& report) {
   for (const Decision& decision : report.decisions) {
     result_.decisions.push_back(decision);
     lines_.push_back(decision.line());
-    for (Player& player : players_) {
-      // A decision begins with the penalty's name and who it is: "pushing, home 1: ...".
-      const std::string who = ", " + std::string(player.told.id.side == Side::home ? "home " : "away ") +
-                              std::to_string(player.told.id.number) + ":";
-      if (decision.text.find(who) != std::string::npos) ++player.told.penalties;
-    }
   }
+  for (Player& player : players_)
+    player.told.penalties += static_cast<std::uint64_t>(std::ranges::count(report.penalised, player.told.id));
   if (report.ball) simulation_.world().put(ball_, {report.ball->x_m, report.ball->y_m, ball_radius_m_});
   for (const RobotPlacement& placed : report.robots) {
     for (std::size_t i = 0; i < players_.size(); ++i) {
@@ -258,11 +251,11 @@ bool PlayedMatch::step() {
     return false;
   }
   look();
-  for (Player& player : players_) {
-    const auto index = static_cast<std::size_t>(&player - players_.data());
-    if (!player.has_messages) continue;
-    const auto sent = static_cast<std::uint64_t>(simulation_.signal(index, player.sent_signal));
-    for (; player.told.messages < sent; ++player.told.messages) referee_.team_message(player.told.id.side, 0);
+  for (std::size_t i = 0; i < players_.size(); ++i) {
+    PlayedRobot& told = players_[i].told;
+    if (!players_[i].sent) continue;
+    const auto sent = static_cast<std::uint64_t>(simulation_.signal(i, *players_[i].sent));
+    for (; told.messages < sent; ++told.messages) referee_.team_message(told.id.side, 0);
   }
   if (match.state() == GameState::playing && !match.stopped()) result_.playing_s += step_s;
   heed(referee_.step(referee_step_ns, world_));

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,8 +52,8 @@ class PlayedMatch {
     PlayedRobot told;
     std::unique_ptr<RobotSenses> senses;
     LinkSet arms;
-    SignalId sent_signal = 0;
-    bool has_messages = false, was_upright = true;
+    std::optional<SignalId> sent;  // the signal that counts its messages, where it has mates
+    bool was_upright = true;
     Pose2 still;
     double still_s = 0, joints_still_s = 0;
     std::vector<double> off_m;

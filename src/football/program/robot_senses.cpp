@@ -41,40 +41,40 @@ void RobotSenses::placed(const Pose2& place) {
   late_views_.clear();
 }
 
-void RobotSenses::tell(std::uint32_t entry, std::int64_t time_ns, std::initializer_list<double> fields) {
-  Observation observation{.entry = entry, .time_ns = time_ns, .source = SeenSource::scenario};
+void RobotSenses::tell(std::uint32_t entry, std::initializer_list<double> fields) {
+  Observation observation{.entry = entry, .time_ns = now_ns(), .source = SeenSource::scenario};
   std::ranges::copy(fields, observation.fields.begin());
   simulation_.observe(number_, observation);
 }
 
 void RobotSenses::step(const WorldTruth& world, double sign) {
-  const std::int64_t now_ns = simulation_.time_ns() - simulation_.period_ns();  // of the last tick
-  const double now_s = 1e-9 * static_cast<double>(now_ns);
+  const std::int64_t at_ns = now_ns();
   const OdometryStatus& odometry = simulation_.status(number_).odometry;
-  localisation_.odometry(now_s, {odometry.path_x_m, odometry.path_y_m, odometry.path_heading_rad});
-  if (now_ns >= picture_due_ns_) {
-    picture_due_ns_ = now_ns + std::llround(1e9 / match_.senses.rate_Hz);
-    take_picture(world, sign, now_ns);
+  localisation_.odometry(1e-9 * static_cast<double>(at_ns),
+                         {odometry.path_x_m, odometry.path_y_m, odometry.path_heading_rad});
+  if (at_ns >= picture_due_ns_) {
+    picture_due_ns_ = at_ns + std::llround(1e9 / match_.senses.rate_Hz);
+    take_picture(world, sign);
   }
-  for (; !late_views_.empty() && late_views_.front().due_ns <= now_ns; late_views_.pop_front())
+  for (; !late_views_.empty() && late_views_.front().due_ns <= at_ns; late_views_.pop_front())
     (void)localisation_.view(late_views_.front().view);
-  for (; !late_.empty() && late_.front().due_ns <= now_ns; late_.pop_front())
+  for (; !late_.empty() && late_.front().due_ns <= at_ns; late_.pop_front())
     simulation_.observe(number_, late_.front().observation);
-  tell_place(now_ns);
-  tell_self(now_ns);
+  tell_place();
+  tell_self();
 }
 
-void RobotSenses::tell_place(std::int64_t now_ns) {
+void RobotSenses::tell_place() {
   belief_ = localisation_.estimate();
   const Pose2 centre = in_frame(belief_.pose, Pose2{});
-  tell(field_entry_, now_ns, {centre.x_m, centre.y_m, centre.theta_rad, belief_.known ? 1.0 : 0.0});
+  tell(field_entry_, {centre.x_m, centre.y_m, centre.theta_rad, belief_.known ? 1.0 : 0.0});
 }
 
-void RobotSenses::tell_self(std::int64_t now_ns) {
-  if (told_self_ns_ >= 0 && now_ns < told_self_ns_ + self_every_ns) return;
-  told_self_ns_ = now_ns;
+void RobotSenses::tell_self() {
+  if (now_ns() < self_due_ns_) return;
+  self_due_ns_ = now_ns() + self_every_ns;
   const TeamSetup& team = match_.team(id_.side);
-  tell(me_entry_, now_ns,
+  tell(me_entry_,
        {static_cast<double>(id_.number), static_cast<double>(team.keeper), static_cast<double>(team.players),
         field_.length_m, field_.width_m, field_.goal.width_m, field_.circle_radius_m, field_.penalty_mark_m});
 }
@@ -97,16 +97,15 @@ void RobotSenses::hear(Bytes packet) {
   }
   penalty_ = penalty;
   const double ours = control.kicking_team == no_team ? -1 : control.kicking_team == team_number_ ? 1 : 0;
-  tell(
-      game_entry_, simulation_.time_ns() - simulation_.period_ns(),
-      {static_cast<double>(control.state), static_cast<double>(control.set_play), ours, control.stopped ? 1.0 : 0.0,
-       static_cast<double>(penalty), static_cast<double>(control.remaining_s), static_cast<double>(control.secondary_s),
-       static_cast<double>(own->score) - static_cast<double>(others->score)});
+  tell(game_entry_, {static_cast<double>(control.state), static_cast<double>(control.set_play), ours,
+                     control.stopped ? 1.0 : 0.0, static_cast<double>(penalty),
+                     static_cast<double>(control.remaining_s), static_cast<double>(control.secondary_s),
+                     static_cast<double>(own->score) - static_cast<double>(others->score)});
 }
 
 void RobotSenses::hear_whistle() {
   ++whistles_;
-  tell(whistle_entry_, simulation_.time_ns() - simulation_.period_ns(), {static_cast<double>(whistles_)});
+  tell(whistle_entry_, {static_cast<double>(whistles_)});
 }
 
 bool RobotSenses::sees(const Point& at) const noexcept {
@@ -152,23 +151,23 @@ void RobotSenses::see_line(FieldView& view, const Pose2& camera, const Segment& 
   view.lines.push_back({noisy(seen->from), noisy(seen->to)});
 }
 
-void RobotSenses::take_picture(const WorldTruth& world, double sign, std::int64_t now_ns) {
+void RobotSenses::take_picture(const WorldTruth& world, double sign) {
   const RobotTruth& self = world.robot(id_);
   if (!self.upright) return;
   const Pose2 camera = world_pose(self.pose, sign);  // in the team's frame: a half turn is its own inverse
-  FieldView view{1e-9 * static_cast<double>(now_ns), {}, {}};
+  FieldView view{1e-9 * static_cast<double>(now_ns()), {}, {}};
   for (const Crossing& crossing : markings_.crossings)
     see_landmark(view, camera, static_cast<LandmarkKind>(crossing.kind), crossing.at);
   for (const Point& post : markings_.posts) see_landmark(view, camera, LandmarkKind::post, post);
   for (const Point& mark : markings_.marks) see_landmark(view, camera, LandmarkKind::mark, mark);
   see_landmark(view, camera, LandmarkKind::circle, {});
   for (const Segment& line : markings_.lines) see_line(view, camera, line);
-  const std::int64_t due_ns = now_ns + std::llround(1e9 * match_.senses.latency_s);
+  const std::int64_t due_ns = now_ns() + std::llround(1e9 * match_.senses.latency_s);
   late_views_.push_back({due_ns, std::move(view)});
-  see_robots(world, now_ns);
+  see_robots(world);
 }
 
-void RobotSenses::see_robots(const WorldTruth& world, std::int64_t now_ns) {
+void RobotSenses::see_robots(const WorldTruth& world) {
   struct Near {
     Point at;
     bool mate;
@@ -182,9 +181,9 @@ void RobotSenses::see_robots(const WorldTruth& world, std::int64_t now_ns) {
     if (sees(at) && !(random_.uniform() < match_.senses.missed)) near.push_back({noisy(at), other.side == id_.side});
   }
   std::ranges::sort(near, {}, [](const Near& one) { return norm(one.at); });
-  const std::int64_t due_ns = now_ns + std::llround(1e9 * match_.senses.latency_s);
+  const std::int64_t due_ns = now_ns() + std::llround(1e9 * match_.senses.latency_s);
   for (std::size_t i = 0; i < std::min(near.size(), robot_entries_.size()); ++i) {
-    Observation seen{.entry = robot_entries_[i], .time_ns = now_ns, .source = SeenSource::scenario};
+    Observation seen{.entry = robot_entries_[i], .time_ns = now_ns(), .source = SeenSource::scenario};
     seen.fields = {near[i].at.x_m, near[i].at.y_m, near[i].mate ? 1.0 : 0.0};
     late_.push_back({due_ns, seen});
   }

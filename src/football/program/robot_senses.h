@@ -46,13 +46,14 @@ class RobotSenses {
     FieldView view;
   };
 
-  void take_picture(const WorldTruth& world, double sign, std::int64_t now_ns);
+  void take_picture(const WorldTruth& world, double sign);
   void see_landmark(FieldView& view, const Pose2& camera, LandmarkKind kind, const Point& on_field);
   void see_line(FieldView& view, const Pose2& camera, const Segment& on_field);
-  void see_robots(const WorldTruth& world, std::int64_t now_ns);
-  void tell_place(std::int64_t now_ns);
-  void tell_self(std::int64_t now_ns);
-  void tell(std::uint32_t entry, std::int64_t time_ns, std::initializer_list<double> fields);
+  void see_robots(const WorldTruth& world);
+  void tell_place();
+  void tell_self();
+  std::int64_t now_ns() const noexcept { return simulation_.time_ns() - simulation_.period_ns(); }  // of the last tick
+  void tell(std::uint32_t entry, std::initializer_list<double> fields);
   bool sees(const Point& at) const noexcept;
   Point noisy(const Point& at);
   Point nothing();
@@ -70,7 +71,7 @@ class RobotSenses {
   Localisation::Estimate belief_;
   std::deque<Late> late_;
   std::deque<LateView> late_views_;
-  std::int64_t picture_due_ns_ = 0, told_self_ns_ = -1;
+  std::int64_t picture_due_ns_ = 0, self_due_ns_ = 0;
   std::uint32_t field_entry_, game_entry_, whistle_entry_, me_entry_;
   std::vector<std::uint32_t> robot_entries_;
   std::uint32_t whistles_ = 0;
