@@ -81,7 +81,6 @@ class Localisation {
   bool view(const FieldView& view);
 
   Estimate estimate() const;  // at the time of the newest odometry
-  std::size_t hypotheses() const noexcept { return hypotheses_.size(); }
 
  private:
   struct Hypothesis {

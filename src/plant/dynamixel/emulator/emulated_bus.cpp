@@ -50,7 +50,6 @@ void EmulatedBus::receive(std::span<const std::uint8_t> bytes, std::int64_t now_
     ++sent;
     const std::int64_t end_ns = begin_ns + std::llround(byte_ns * static_cast<double>(sent));
     free_ns_ = std::max(free_ns_, end_ns);
-    busy_ns_ += std::llround(byte_ns);
     if (disturbed(byte)) continue;
     heard_.push_back(byte);
     asked_ns_ = end_ns;
@@ -232,7 +231,6 @@ void EmulatedBus::answer(const Message& bytes, double delay_s) {
   std::size_t sent = 0;
   for (std::uint8_t byte : bytes) {
     ++sent;
-    busy_ns_ += std::llround(byte_ns);
     if (disturbed(byte)) continue;
     answers_.push_back({begin_ns + std::llround(byte_ns * static_cast<double>(bytes.size())) + usb_latency_ns_, byte});
   }

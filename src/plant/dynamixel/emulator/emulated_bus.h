@@ -40,7 +40,6 @@ class EmulatedBus {
   std::uint64_t instructions() const noexcept { return instructions_; }
   std::uint64_t sync_reads() const noexcept { return sync_reads_; }  // fast ones, too
   std::uint64_t not_understood() const noexcept { return not_understood_; }
-  std::int64_t busy_ns() const noexcept { return busy_ns_; }  // how long bytes were on the wire, in all
 
  private:
   using Message = std::vector<std::uint8_t>;
@@ -68,7 +67,6 @@ class EmulatedBus {
   std::int64_t asked_ns_ = INT64_MIN / 2;  // when the instruction that is answered was over
   std::deque<Arrival> answers_;
   std::uint64_t instructions_ = 0, sync_reads_ = 0, not_understood_ = 0;
-  std::int64_t busy_ns_ = 0;
 };
 
 }  // namespace kadans::dynamixel
