@@ -75,6 +75,7 @@ TEST_CASE("A test of a record that cannot be one is refused with what is wrong")
   CHECK(has(refusal(test_of("gone.mcap", "true")), "stumble.json:1:"));
   CHECK(has(refusal(test_of("gone.mcap", "true")), "record: there is no file"));
   CHECK(has(refusal(test_of("stumble.mcap", "true", R"("seed": 3, )")), "seed: comes with the record"));
+  CHECK(has(refusal(test_of("stumble.mcap", "true", R"("network": {}, )")), "network: comes with the record"));
   CHECK(has(refusal(test_of("stumble.mcap", "joint.l_kne.position_rad > 0")), "stumble.json:1:"));
   CHECK(has(refusal(test_of("stumble.mcap", "true", R"("with": ["gone.lua"], )")), "gone.lua"));
   CHECK(has(refusal(R"({"name": "nothing", "checks": []})"), "robot"));

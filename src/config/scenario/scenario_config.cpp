@@ -348,8 +348,9 @@ void record_test_fields(Fields& f, ScenarioConfig& scenario, Problems& problems)
     if (f.has("with")) problems.add(f.place("with"), "with: only a scenario that repeats a record has one");
     return;
   }
-  for (const char* const key : {"robot", "plant", "seed", "repeat", "start_pose", "set", "randomise", "behaviors",
-                                "events", "pushes", "faults", "robots", "world", "bus", "joystick", "sight"}) {
+  for (const char* const key : {"robot",     "plant",   "seed",   "repeat",  "start_pose", "set",        "randomise",
+                                "behaviors", "events",  "pushes", "carried", "faults",     "supervisor", "perception",
+                                "robots",    "network", "world",  "bus",     "joystick",   "sight"}) {
     if (f.has(key)) problems.add(f.place(key), std::string(key) + ": comes with the record, which is repeated");
   }
   const std::filesystem::path file = std::filesystem::absolute(scenario.file).parent_path() / scenario.record;
