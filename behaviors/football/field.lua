@@ -1,12 +1,10 @@
 -- Where things are on the field, in the team's frame: origin at the centre, x toward the goal that the team attacks,
 -- y to the left. The robot knows its own place from the entry `field` of its world model.
-local field = {}
+local walk = require "walking"
 
-local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
-local function within(value, least, most) return math.max(least, math.min(most, value)) end
-field.angle, field.within = angle, within
+local field = { angle = walk.angle, distance = walk.distance }
 
-function field.distance(a, b) return math.sqrt((a.x_m - b.x_m) ^ 2 + (a.y_m - b.y_m) ^ 2) end
+function field.within(value, least, most) return math.max(least, math.min(most, value)) end
 
 -- The robot's own pose, and whether it trusts it; nil before it was ever told.
 function field.pose(s)
@@ -17,20 +15,19 @@ function field.pose(s)
   return {
     x_m = -(c * centre.x_m - n * centre.y_m),
     y_m = -(n * centre.x_m + c * centre.y_m),
-    heading_rad = angle(heading_rad),
+    heading_rad = walk.angle(heading_rad),
     known = centre.known > 0.5,
   }
 end
 
 -- What is seen from the robot at (x_m, y_m), on the field; and back.
 function field.from_robot(pose, x_m, y_m)
-  local c, n = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-  return { x_m = pose.x_m + c * x_m - n * y_m, y_m = pose.y_m + n * x_m + c * y_m }
+  local at_x_m, at_y_m = walk.seen_from(pose, x_m, y_m)
+  return { x_m = at_x_m, y_m = at_y_m }
 end
 function field.to_robot(pose, place)
-  local c, n = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-  local x_m, y_m = place.x_m - pose.x_m, place.y_m - pose.y_m
-  return { x_m = c * x_m + n * y_m, y_m = c * y_m - n * x_m }
+  local x_m, y_m = walk.as_seen(pose, place)
+  return { x_m = x_m, y_m = y_m }
 end
 
 -- The robots that are seen, on the field: { x_m =, y_m =, mate = true or false }.

@@ -19,8 +19,7 @@ function ball.watch(m, s, known)
   local picture_s = s.time_s - seen.age_s
   if known.seen_s and picture_s < known.seen_s + 1e-4 then return known end
   local at = known.at[math.floor(100 * picture_s + 0.5) % ticks] or walk.at(m)
-  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
-  local x_m, y_m = at.x_m + c * seen.x_m - n * seen.y_m, at.y_m + n * seen.x_m + c * seen.y_m
+  local x_m, y_m = walk.seen_from(at, seen.x_m, seen.y_m)
   known.seen_s = picture_s
   if known.x_m and (x_m - known.x_m) ^ 2 + (y_m - known.y_m) ^ 2 < elsewhere_m ^ 2 then
     known.x_m, known.y_m = known.x_m + gain * (x_m - known.x_m), known.y_m + gain * (y_m - known.y_m)
@@ -52,14 +51,14 @@ function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s)
   local left = ux * (at.y_m - b.y_m) - uy * (at.x_m - b.x_m)       -- and to the left of its way
   if math.abs(left) > 0.04 then m.vars.side = left > 0 and -1 or 1 end  -- on its left: the ball is before the right foot
   local place = walk.to_kick(b, rad, m.vars.side, rad)
-  local off_m = math.sqrt((place.x_m - at.x_m) ^ 2 + (place.y_m - at.y_m) ^ 2)
+  local off_m = walk.distance(place, at)
   if behind > 0.15 and math.abs(left) < 0.15 + 0.7 * (behind - 0.15) then
     if off_m > 0.5 then
       toward(m, at, place.x_m, place.y_m, most_m_s)
     else
       walk.beside(m, place)
       if off_m < 0.2 and math.abs(walk.angle(rad - at.heading_rad)) < 0.3 then
-        local far_m = math.sqrt((target.x_m - b.x_m) ^ 2 + (target.y_m - b.y_m) ^ 2) + beyond_m
+        local far_m = walk.distance(target, b) + beyond_m
         walk.kick(m, b, rad, math.min(far_m, 4.5), roll_m_s2)
       end
     end

@@ -7,6 +7,20 @@ local function angle(rad) return math.atan2(math.sin(rad), math.cos(rad)) end
 local function within(value, most) return math.max(-most, math.min(most, value)) end
 walk.angle, walk.within = angle, within
 
+-- What is x_m ahead of `at` and y_m to the left of it, in the frame of `at`; and a place of that frame, as it is seen from
+-- `at`. Both return two numbers.
+function walk.seen_from(at, x_m, y_m)
+  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
+  return at.x_m + c * x_m - n * y_m, at.y_m + n * x_m + c * y_m
+end
+function walk.as_seen(at, place)
+  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
+  local x_m, y_m = place.x_m - at.x_m, place.y_m - at.y_m
+  return c * x_m + n * y_m, c * y_m - n * x_m
+end
+
+function walk.distance(a, b) return math.sqrt((a.x_m - b.x_m) ^ 2 + (a.y_m - b.y_m) ^ 2) end
+
 -- The fastest that it walks, alone: together the shares of these may not exceed 1.5.
 local fastest = { forward_m_s = 0.6, backward_m_s = 0.2, left_m_s = 0.15, turn_rad_s = 0.8 }
 
@@ -114,8 +128,7 @@ function walk.to(m, goal, near, most_m_s)
   local wanted_rad = far_m > 0.5 and math.atan2(y_m, x_m) or (goal.heading_rad or at.heading_rad)
   local turn_rad = angle(wanted_rad - at.heading_rad)
   if far_m < near.m and math.abs(turn_rad) < near.rad then return true end
-  local ahead_m = math.cos(at.heading_rad) * x_m + math.sin(at.heading_rad) * y_m
-  local left_m = math.cos(at.heading_rad) * y_m - math.sin(at.heading_rad) * x_m
+  local ahead_m, left_m = walk.as_seen(at, goal)
   local facing = math.max(0, math.cos(turn_rad)) ^ 2
   walk.go(m, walk.slowed {
     forward_m_s = math.max(-0.1, within(0.8 * ahead_m, most_m_s or 0.3) * facing),
@@ -138,14 +151,13 @@ end
 -- it is.
 function walk.beside(m, place)
   local at = walk.at(m)
-  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
-  local x_m, y_m = place.x_m - at.x_m, place.y_m - at.y_m
+  local ahead_m, left_m = walk.as_seen(at, place)
   walk.go(m, walk.slowed {
-    forward_m_s = math.max(-0.15, math.min(0.25, 0.9 * (c * x_m + n * y_m))),
-    left_m_s = within(1.2 * (c * y_m - n * x_m), 0.12),
+    forward_m_s = math.max(-0.15, math.min(0.25, 0.9 * ahead_m)),
+    left_m_s = within(1.2 * left_m, 0.12),
     turn_rad_s = within(1.5 * angle(place.heading_rad - at.heading_rad), 0.5),
   })
-  return math.sqrt(x_m ^ 2 + y_m ^ 2)
+  return walk.distance(place, at)
 end
 
 return walk

@@ -20,12 +20,8 @@ k.events(orders)
 -- A place that is given from where the robot is, in the frame of walk.at.
 local function from_here(m, data)
   local at = walk.at(m)
-  local c, n = math.cos(at.heading_rad), math.sin(at.heading_rad)
-  return {
-    x_m = at.x_m + c * data.x_m - n * data.y_m,
-    y_m = at.y_m + n * data.x_m + c * data.y_m,
-    heading_rad = walk.angle(at.heading_rad + (data.heading_rad or 0)),
-  }
+  local x_m, y_m = walk.seen_from(at, data.x_m, data.y_m)
+  return { x_m = x_m, y_m = y_m, heading_rad = walk.angle(at.heading_rad + (data.heading_rad or 0)) }
 end
 
 -- Whatever it does just now; what the order means from where the robot is, is reckoned when its legs are its own.
@@ -41,7 +37,7 @@ end
 -- The same place does not make it walk again for what odometry and noise say.
 local function go(m, order)
   local at = walk.at(m)
-  local off_m = math.sqrt((order.place.x_m - at.x_m) ^ 2 + (order.place.y_m - at.y_m) ^ 2)
+  local off_m = walk.distance(order.place, at)
   local off_rad = math.abs(walk.angle(order.place.heading_rad - at.heading_rad))
   if walk.stands(m) and off_m < 0.25 and off_rad < 0.35 then return end
   if walk.to(m, order.place, { m = 0.1, rad = 0.15 }, order.data.most_m_s or P.most_m_s) then walk.stop(m) end

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
+#include "config/broken.h"
 #include "football/program/match_report.h"
-#include "kadans/signal/input_error.h"
 
 namespace match_test {
 
@@ -28,17 +28,8 @@ fs::path match_of(const std::string& text) {
 
 // What is said about a file with these lines after its name.
 std::string refusal(const std::string& rest, const std::string& name = "drawn") {
-  try {
-    (void)read_match(match_of("{ \"name\": \"" + name + "\",\n" + rest + "\n}\n"));
-  } catch (const InputError& error) {
-    std::string all;
-    for (const auto& problem : error.problems()) {
-      std::string text = problem.text();
-      all += text.substr(text.find("match.json:") + 11) + "\n";
-    }
-    return all;
-  }
-  return "";
+  const fs::path file = match_of("{ \"name\": \"" + name + "\",\n" + rest + "\n}\n");
+  return kadans::refusal(file.string(), KADANS_SOURCE_DIR, [&] { (void)read_match(file); });
 }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
