@@ -394,7 +394,10 @@ void Safety::declare_signals(SignalTable& table, const RobotModel& model) const 
     table.add({prefix + ".level", "", "Rung of the joint, or of the robot if that is worse."},
               &joints_[i].level_number);
     if (joints_[i].limiter.passive()) continue;
-    table.add({prefix + ".temperature_C", "C", "Temperature of the motor's winding, by the thermal model."},
+    table.add({.name = prefix + ".temperature_C",
+               .unit = "C",
+               .doc = "Temperature of the motor's winding, by the thermal model.",
+               .slow_Hz = 10},
               &joints_[i].watch.thermal().temperature_C());
   }
 }

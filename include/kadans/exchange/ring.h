@@ -70,6 +70,14 @@ class Ring {
   // holds until the element is dropped.
   const T& peek(std::size_t i = 0) const noexcept { return slots_[(own(tail_) + i) & mask]; }
 
+  // Consumer thread only: the elements from `i` on; i + to.size() <= size() as last asked. They stay in the queue.
+  void copy_out(std::size_t i, std::span<T> to) const noexcept {
+    const std::size_t start = (own(tail_) + i) & mask;
+    const std::size_t before_end = std::min(to.size(), Capacity - start);
+    std::copy_n(slots_.begin() + static_cast<std::ptrdiff_t>(start), before_end, to.begin());
+    std::copy_n(slots_.begin(), to.size() - before_end, to.begin() + static_cast<std::ptrdiff_t>(before_end));
+  }
+
   // Consumer thread only: removes the first `count` elements, count <= size() as last asked.
   void drop(std::size_t count) noexcept {
     Memory::at(tail_).store(own(tail_) + static_cast<std::uint32_t>(count), std::memory_order_release);

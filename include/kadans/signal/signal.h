@@ -22,6 +22,9 @@ struct Signal {
   std::string name;  // "joint.l_knee.position_rad": topic, part, quantity with its unit
   std::string unit;
   std::string doc;  // one sentence
+  // What changes over seconds, such as a temperature: records hold it this often unless they are told otherwise. 0: in
+  // each tick.
+  double slow_Hz = 0;
 };
 
 // Tells signals apart by name in another process too, whose table may have other numbers.

@@ -227,7 +227,8 @@ void SimRun::describe(RecordWriter& record) const {
 void SimRun::start_record() {
   const bool flies = record_plan_.flight.kept_s > 0;
   if (options_.no_record && !options_.report.wanted() && !flies) return;
-  recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals, record_plan_.settings, record_plan_.flight);
+  recorder_ = std::make_unique<Recorder>(assembly_.catalog().signals, record_plan_.settings, record_plan_.flight,
+                                         Recorder::Wait::in_place);
   if (open_record()) {
     describe(recorder_->file());
   } else if (!flies) {

@@ -98,9 +98,12 @@ SignalChoice parse_signal_choice(const std::string& text, const std::string& opt
 
 std::vector<std::uint32_t> ticks_between(const SignalChoice& choice, const SignalTable& signals,
                                          double control_period_s) {
-  if (choice.rates_Hz.empty()) return {};
   const std::vector<std::string> names = signals.names();
   std::vector<std::uint32_t> ticks(names.size(), choice.others ? 1 : 0);
+  for (SignalId id = 0; choice.others && id < signals.size(); ++id) {
+    const double rate_Hz = signals.info(id).slow_Hz;
+    if (rate_Hz > 0) ticks[id] = static_cast<std::uint32_t>(std::max(1.0, std::round(1 / (rate_Hz * control_period_s))));
+  }
   for (const NumberEntry& entry : choice.rates_Hz) {
     const std::uint32_t between = ticks_of(entry, choice.file, control_period_s);
     const std::vector<std::size_t> chosen = matching(entry.key, names);

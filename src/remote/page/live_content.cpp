@@ -99,10 +99,8 @@ void LiveChannels::put_json(std::size_t channel, std::int64_t time_ns, const std
 void LiveChannels::take(const LatestRow::View& row) {
   if (row.values.empty()) return;
   for (std::size_t i = 0; i < topics_.size(); ++i) {
-    values_.clear();
-    for (const SignalId id : topics_[i].signals) values_.push_back(row.values[id]);
-    payload_.resize(cdr_bytes(values_.size(), Precision::full));
-    write_cdr(payload_, values_, Precision::full);
+    payload_.resize(cdr_bytes(topics_[i].signals.size(), Precision::full));
+    write_cdr(payload_, topics_[i], row.values, Precision::full);
     channels_[i].put(static_cast<std::uint64_t>(row.time_ns), payload_);
   }
   for (std::size_t i = 0; i < viewers_.channels().size(); ++i) {

@@ -75,7 +75,6 @@ class LiveChannels {
   std::string description_, drives_told_;
   ByteWriter message_;
   std::vector<std::byte> payload_;
-  std::vector<double> values_;
 };
 
 // The files that clients may fetch: the first robot's URDF and the meshes that the robots' URDFs name, of at most 16 MB

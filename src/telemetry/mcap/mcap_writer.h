@@ -1,9 +1,9 @@
 // Writes MCAP, the log file format that robotics tools read (https://mcap.dev/spec).
 //
 // Messages are collected in a chunk in memory. When the chunk holds chunk_period_ns of log time or chunk_bytes, it is
-// compressed, gets its CRC, and is appended to the file in one block together with its message indexes. Each chunk
-// repeats the schemas and channels of its messages. So a file that is cut short at any byte, by a full disk or a killed
-// process, can be read up to the last whole chunk. close() adds the summary that lets readers seek.
+// compressed, gets its CRC, and is appended to the file in one block together with its message indexes. A schema and a
+// channel stand before their first message, and in the summary. So a file that is cut short at any byte, by a full disk
+// or a killed process, can be read up to the last whole chunk. close() adds the summary that lets readers seek.
 //
 // One thread at a time. Disk errors are a state, not exceptions: calls return false, error() says why, and the file
 // keeps its whole chunks. The same calls make the same bytes: nothing in the file comes from a clock or the machine.
@@ -61,7 +61,7 @@ class RecordFile {
 struct McapSettings {
   std::int64_t chunk_period_ns = 500'000'000;  // of log time
   std::size_t chunk_bytes = 1U << 20U;         // before compression
-  int compression_level = -1;                  // of zstd, -7..19, less is faster; 0: not compressed
+  int compression_level = -3;                  // of zstd, -7..19, less is faster; 0: not compressed
 };
 
 class McapWriter {
@@ -95,7 +95,7 @@ class McapWriter {
  private:
   struct Schema {
     std::string name, encoding, text;
-    std::uint32_t chunk = 0;  // number of the last chunk that carries it
+    bool written = false;
   };
   struct Indexed {  // as it stands in the file
     std::uint64_t time_ns = 0, offset = 0;
@@ -104,7 +104,7 @@ class McapWriter {
     std::string topic, encoding;
     std::uint16_t schema = 0;
     TextMap metadata;
-    std::uint32_t chunk = 0;
+    bool written = false;
     std::uint64_t messages = 0;
     std::vector<Indexed> index;  // of the open chunk
   };
@@ -150,7 +150,6 @@ class McapWriter {
   std::vector<std::byte> packed_;  // room for the open chunk, compressed
   ByteWriter block_;               // the bytes that go to the file in one piece
   std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
-  std::uint32_t chunk_number_ = 1;
 
   std::uint64_t messages_ = 0, start_ns_ = 0, end_ns_ = 0;
   ByteWriter chunk_indexes_;  // already encoded for the summary: a record of some hours has tens of thousands of them

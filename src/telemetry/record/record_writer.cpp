@@ -1,7 +1,5 @@
 #include "record_writer.h"
 
-#include <algorithm>
-#include <cstring>
 #include <numeric>
 #include <utility>
 
@@ -23,10 +21,6 @@ constexpr const char* parameters_schema = R"({
     "parameters": { "type": "array", "items": { "type": "object",
       "properties": { "name": { "type": "string" }, "value": { "type": "number" } } } } }
 })";
-
-bool same(std::span<const double> a, std::span<const double> b) noexcept {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
-}
 
 }  // namespace
 
@@ -107,9 +101,7 @@ bool RecordWriter::row(std::uint64_t tick, std::int64_t time_ns, std::span<const
 }
 
 bool RecordWriter::put(Topic& topic, std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
-  values_.resize(topic.signals.signals.size());
-  std::ranges::transform(topic.signals.signals, values_.begin(), [&](SignalId id) { return row[id]; });
-  const bool stands = topic.written && same(values_, topic.values);
+  const bool stands = topic.written && is_cdr(topic.payload, topic.signals, row, settings_.precision);
   if (stands && tick - topic.tick < settings_.standstill_ticks) {
     topic.waits = true;
     topic.waiting_tick = tick;
@@ -117,18 +109,17 @@ bool RecordWriter::put(Topic& topic, std::uint64_t tick, std::int64_t time_ns, s
     return true;
   }
   bool written = true;
-  if (!stands && topic.waits) written = put_values(topic, topic.waiting_tick, topic.waiting_ns);
+  if (!stands && topic.waits) written = put_last(topic, topic.waiting_tick, topic.waiting_ns);
   topic.waits = false;
   topic.written = true;
   topic.tick = tick;
-  topic.values.swap(values_);
-  return put_values(topic, tick, time_ns) && written;
+  topic.payload.resize(cdr_bytes(topic.signals.signals.size(), settings_.precision));
+  write_cdr(topic.payload, topic.signals, row, settings_.precision);
+  return put_last(topic, tick, time_ns) && written;
 }
 
-bool RecordWriter::put_values(const Topic& topic, std::uint64_t tick, std::int64_t time_ns) {
-  payload_.resize(cdr_bytes(topic.values.size(), settings_.precision));
-  write_cdr(payload_, topic.values, settings_.precision);
-  return file_.write(topic.channel, static_cast<std::uint32_t>(tick), time_ns, payload_);
+bool RecordWriter::put_last(const Topic& topic, std::uint64_t tick, std::int64_t time_ns) {
+  return file_.write(topic.channel, static_cast<std::uint32_t>(tick), time_ns, topic.payload);
 }
 
 bool RecordWriter::put_viewers(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
@@ -202,7 +193,7 @@ bool RecordWriter::close() {
   for (Topic& topic : topics_) {
     if (!std::exchange(topic.waits, false)) continue;
     topic.tick = topic.waiting_tick;
-    (void)put_values(topic, topic.waiting_tick, topic.waiting_ns);
+    (void)put_last(topic, topic.waiting_tick, topic.waiting_ns);
   }
   return file_.close();
 }

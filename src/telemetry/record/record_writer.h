@@ -76,8 +76,8 @@ class RecordWriter {
   struct Topic {
     SignalTopic signals;
     std::uint16_t channel = 0;
-    std::vector<double> values = {};  // values of the last row that was written
-    std::uint64_t tick = 0;           // its tick
+    std::vector<std::byte> payload = {};  // the last message that was written
+    std::uint64_t tick = 0;               // its tick
     bool written = false;
     bool waits = false;  // unwritten rows with the same values followed; the last one:
     std::uint64_t waiting_tick = 0;
@@ -85,7 +85,7 @@ class RecordWriter {
   };
 
   bool put(Topic& topic, std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
-  bool put_values(const Topic& topic, std::uint64_t tick, std::int64_t time_ns);
+  bool put_last(const Topic& topic, std::uint64_t tick, std::int64_t time_ns);
   bool put_viewers(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   bool put_parameters(std::int64_t time_ns);
   std::uint16_t add_json(const char* topic, const char* schema, const char* text);
@@ -100,8 +100,6 @@ class RecordWriter {
   std::uint16_t log_ = 0, transitions_ = 0, active_ = 0, emitted_ = 0, faults_ = 0, timing_ = 0,
                 parameters_channel_ = 0, inputs_ = 0, behavior_inputs_ = 0, states_ = 0;
   std::vector<double> parameters_;  // the values that were last written
-  std::vector<double> values_;      // of one message
-  std::vector<std::byte> payload_;  // the encoded `values_`
   ByteWriter message_;
 };
 

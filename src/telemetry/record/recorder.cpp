@@ -8,14 +8,14 @@ namespace kadans {
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 
-Recorder::Recorder(const SignalTable& signals, const RecorderSettings& settings, const FlightSettings& flight)
+Recorder::Recorder(const SignalTable& signals, const RecorderSettings& settings, const FlightSettings& flight, Wait wait)
     : signals_(signals),
       signal_count_(signals.size()),
       settings_(settings),
       file_(std::make_unique<RecordWriter>(signals, settings)),
       flight_(flight.kept_s > 0 ? std::make_unique<FlightRecorder>(signals, flight, settings) : nullptr),
       stride_(flight_ ? 1 : file_->stride()),
-      ring_(std::make_unique<Rows>()),
+      ring_(wait == Wait::in_ring ? std::make_unique<Rows>() : nullptr),
       row_(signals.size()) {
   if (head_size + signal_count_ > Rows::capacity()) throw std::invalid_argument("too many signals for the record");
 }
@@ -59,6 +59,14 @@ bool Recorder::open_new(const std::string& path) {
 
 void Recorder::record(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) noexcept {
   if (stride_ == 0 || tick % stride_ != 0) return;
+  if (!ring_) {
+    if (row.size() == signal_count_ && in_place_.row.empty()) {
+      in_place_ = {tick, time_ns, row};
+    } else {
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+    }
+    return;
+  }
   std::array<double, head_size> head{};
   std::memcpy(&head[0], &tick, sizeof tick);
   std::memcpy(&head[1], &time_ns, sizeof time_ns);
@@ -80,8 +88,12 @@ bool Recorder::push(std::span<const double> head, std::span<const double> row) n
 }
 
 bool Recorder::drain() {
+  if (!in_place_.row.empty()) {
+    put_row(in_place_.tick, in_place_.time_ns, in_place_.row);
+    in_place_.row = {};
+  }
   const std::size_t row_size = head_size + signal_count_ + (inputs_ring_ ? 0 : word_count_);
-  for (std::size_t waiting = ring_->size() / row_size; waiting > 0; --waiting) {
+  for (std::size_t waiting = ring_ ? ring_->size() / row_size : 0; waiting > 0; --waiting) {
     take_row();
     ring_->drop(row_size);
     if (inputs_ring_) inputs_ring_->drop(word_count_);
@@ -104,26 +116,30 @@ void Recorder::take_row() {
   std::int64_t time_ns = 0;
   std::memcpy(&tick, &ring_->peek(0), sizeof tick);
   std::memcpy(&time_ns, &ring_->peek(1), sizeof time_ns);
-  for (std::size_t i = 0; i < row_.size(); ++i) row_[i] = ring_->peek(head_size + i);
-  take_events(time_ns);
-  if (tick > last_tick_) period_ns_ = (time_ns - last_time_ns_) / static_cast<std::int64_t>(tick - last_tick_);
-  last_tick_ = tick;
-  last_time_ns_ = time_ns;
+  ring_->copy_out(head_size, row_);
   const bool behind = inputs_ring_ == nullptr;
   const Rows& from = behind ? *ring_ : *inputs_ring_;
   const std::size_t first = behind ? head_size + signal_count_ : 0;
   for (std::size_t i = 0; i < word_count_; ++i) std::memcpy(&words_[i], &from.peek(first + i), sizeof words_[i]);
-  if (flight_) flight_->row(tick, time_ns, row_, words_);
-  if (!opened_ || (!is_open() && error().empty())) return;  // closed, or not yet
-  ++rows_;
-  if (!file_->row(tick, time_ns, row_)) ++lost_;
-  if (encoder_) take_inputs(tick, time_ns);
+  put_row(tick, time_ns, row_);
 }
 
-void Recorder::take_inputs(std::uint64_t tick, std::int64_t time_ns) {
-  if (!encoder_->add(tick, time_ns, words_, row_)) {
+void Recorder::put_row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
+  take_events(time_ns);
+  if (tick > last_tick_) period_ns_ = (time_ns - last_time_ns_) / static_cast<std::int64_t>(tick - last_tick_);
+  last_tick_ = tick;
+  last_time_ns_ = time_ns;
+  if (flight_) flight_->row(tick, time_ns, row, words_);
+  if (!opened_ || (!is_open() && error().empty())) return;  // closed, or not yet
+  ++rows_;
+  if (!file_->row(tick, time_ns, row)) ++lost_;
+  if (encoder_) take_inputs(tick, time_ns, row);
+}
+
+void Recorder::take_inputs(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {
+  if (!encoder_->add(tick, time_ns, words_, row)) {
     put_inputs();
-    (void)encoder_->add(tick, time_ns, words_, row_);
+    (void)encoder_->add(tick, time_ns, words_, row);
   }
   if (encoder_->full()) put_inputs();
 }

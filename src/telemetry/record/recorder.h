@@ -1,10 +1,11 @@
 // Records a run into an MCAP file and into the memory of a flight recorder: rows of signals from the control thread,
 // events from the behavior thread, faults from the supervisor.
 //
-// The control thread only copies its row into a ring buffer. Another thread, or the lockstep loop between ticks, calls
-// drain(), which passes the rows to the open file (record_writer.h) and to the flight recorder. When the ring is full
-// because nobody drains it, rows are dropped; when the disk fails, rows are lost. Both are counted, and drops are also
-// noted in the record itself. The sequence number of a message is its tick, so a gap is visible.
+// The control thread only copies its row into a ring buffer. Another thread calls drain(), which passes the rows to the
+// open file (record_writer.h) and to the flight recorder. When the ring is full because nobody drains it, rows are
+// dropped; when the disk fails, rows are lost. Both are counted, and drops are also noted in the record itself. The
+// sequence number of a message is its tick, so a gap is visible. A lockstep loop that drains after each tick needs no
+// ring: the row waits where it is.
 //
 // Threads: record() control thread; events() behavior thread; fault() supervisor thread; counters any thread; all
 // others the draining thread.
@@ -31,12 +32,18 @@ namespace kadans {
 
 class Recorder final : public RecordSink {
  public:
-  // Make it before the loop, when all signals are declared. The table must outlive it.
-  explicit Recorder(const SignalTable& signals, const RecorderSettings& settings = {},
-                    const FlightSettings& flight = {});
-  explicit Recorder(SignalTable&&, const RecorderSettings& = {}, const FlightSettings& = {}) = delete;
+  enum class Wait : std::uint8_t {
+    in_ring,   // until another thread drains
+    in_place,  // the row that record() is given stays until drain(), which is called after each tick on its thread
+  };
 
-  // Before the first row: the inputs of the run are kept, too. `behaviors` and `states` must outlive the recorder.
+  // Make it before the loop, when all signals are declared. The table must outlive it.
+  explicit Recorder(const SignalTable& signals, const RecorderSettings& settings = {}, const FlightSettings& flight = {},
+                    Wait wait = Wait::in_ring);
+  explicit Recorder(SignalTable&&, const RecorderSettings& = {}, const FlightSettings& = {},
+                    Wait = Wait::in_ring) = delete;
+
+  // Before the first row, of a recorder with a ring: the inputs of the run are kept, too. `behaviors` and `states` must outlive the recorder.
   struct Inputs {
     std::unique_ptr<InputPieces> pieces = {};  // nullptr: they are not kept
     RecordedInputs* behaviors = nullptr;
@@ -85,8 +92,9 @@ class Recorder final : public RecordSink {
   bool open_new(const std::string& path);
   bool begin_file(const std::string& path);
   void take_row();
+  void put_row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   bool push(std::span<const double> head, std::span<const double> row) noexcept;
-  void take_inputs(std::uint64_t tick, std::int64_t time_ns);
+  void take_inputs(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   void put_inputs();
   void take_behavior_inputs();
   void take_events(std::int64_t until_ns);
@@ -107,7 +115,13 @@ class Recorder final : public RecordSink {
   std::vector<std::uint64_t> words_;
   ByteWriter message_, for_file_, for_flight_;
   // The second is there when files hold inputs; for the flight recorder alone they stand behind the rows.
+  // Neither when rows wait in place.
   std::unique_ptr<Rows> ring_, inputs_ring_;
+  struct {
+    std::uint64_t tick = 0;
+    std::int64_t time_ns = 0;
+    std::span<const double> row;  // empty: none waits
+  } in_place_;
   std::vector<std::span<const double>> pushed_;  // a row with its inputs
   std::atomic<std::uint32_t> dropped_{0};
   EventLog events_;

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <set>
 #include <string_view>
+#include <utility>
 
 namespace kadans {
 namespace {
@@ -161,6 +162,20 @@ class Definition {
   std::vector<std::string> nested_;
 };
 
+// Returns what is behind.
+std::byte* write_numbers(std::byte* to, std::span<const double> values, Precision precision) noexcept {
+  if (precision == Precision::full) {
+    std::memcpy(to, values.data(), values.size_bytes());
+    return to + values.size_bytes();
+  }
+  for (const double value : values) {
+    const auto single = static_cast<float>(value);
+    std::memcpy(to, &single, sizeof single);
+    to += sizeof single;
+  }
+  return to;
+}
+
 }  // namespace
 
 std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision precision,
@@ -174,6 +189,10 @@ std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision preci
       SignalTopic topic;
       Definition(table, precision, topic).add(root);
       topic.every_ticks = rate;
+      for (const SignalId id : topic.signals) {
+        if (topic.runs.empty() || topic.runs.back().first + topic.runs.back().count != id) topic.runs.push_back({id, 0});
+        ++topic.runs.back().count;
+      }
       const auto same = [&](const SignalTopic& other) { return other.topic == topic.topic; };
       if (std::ranges::any_of(topics, same)) {
         topic.topic += "/every_" + std::to_string(rate);
@@ -185,18 +204,28 @@ std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision preci
   return topics;
 }
 
+void write_cdr(std::span<std::byte> payload, const SignalTopic& topic, std::span<const double> row,
+               Precision precision) noexcept {
+  std::byte* to = std::ranges::copy(cdr_beginning, payload.data()).out;
+  for (const auto& [first, count] : topic.runs) to = write_numbers(to, row.subspan(first, count), precision);
+}
+
+bool is_cdr(std::span<const std::byte> payload, const SignalTopic& topic, std::span<const double> row,
+            Precision precision) noexcept {
+  const std::byte* at = payload.data() + cdr_head_bytes;
+  return std::ranges::all_of(topic.runs, [&](const SignalTopic::Run& run) {
+    const std::span<const double> values = row.subspan(run.first, run.count);
+    const std::byte* from = std::exchange(at, at + cdr_bytes(run.count, precision) - cdr_head_bytes);
+    if (precision == Precision::full) return std::memcmp(from, values.data(), values.size_bytes()) == 0;
+    return std::ranges::all_of(values, [&](double value) {
+      const auto single = static_cast<float>(value);
+      return std::memcmp(std::exchange(from, from + sizeof single), &single, sizeof single) == 0;
+    });
+  });
+}
+
 void write_cdr(std::span<std::byte> payload, std::span<const double> values, Precision precision) noexcept {
-  std::ranges::copy(cdr_beginning, payload.begin());
-  std::byte* to = payload.data() + cdr_head_bytes;
-  if (precision == Precision::full) {
-    std::memcpy(to, values.data(), values.size_bytes());
-    return;
-  }
-  for (const double value : values) {
-    const auto single = static_cast<float>(value);
-    std::memcpy(to, &single, sizeof single);
-    to += sizeof single;
-  }
+  (void)write_numbers(std::ranges::copy(cdr_beginning, payload.data()).out, values, precision);
 }
 
 bool read_cdr(std::span<const std::byte> payload, std::span<double> values, Precision precision) noexcept {

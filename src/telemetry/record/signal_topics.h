@@ -33,6 +33,12 @@ struct SignalTopic {
   std::vector<SignalId> signals;  // in the order of the message
   std::string description;  // in the same order, one line for each signal: name, unit and sentence, separated by tabs
   std::uint32_t every_ticks = 1;
+  // The same signals as runs of neighbours in the table.
+  struct Run {
+    SignalId first;
+    std::uint32_t count;
+  };
+  std::vector<Run> runs = {};
 };
 
 // Call it before the loop. The topics with the highest rate come first, then in the order in which the table first
@@ -46,6 +52,12 @@ inline std::size_t cdr_bytes(std::size_t values, Precision precision) noexcept {
   return cdr_head_bytes + values * (precision == Precision::full ? sizeof(double) : sizeof(float));
 }
 
+// The message of a topic. `row` holds all signals; payload.size() == cdr_bytes(topic.signals.size(), precision)
+void write_cdr(std::span<std::byte> payload, const SignalTopic& topic, std::span<const double> row,
+               Precision precision) noexcept;
+// Whether that message is `payload`, which the call above has written.
+[[nodiscard]] bool is_cdr(std::span<const std::byte> payload, const SignalTopic& topic, std::span<const double> row,
+                          Precision precision) noexcept;
 // payload.size() == cdr_bytes(values.size(), precision)
 void write_cdr(std::span<std::byte> payload, std::span<const double> values, Precision precision) noexcept;
 // False when the payload is not what write_cdr makes of values.size() values; then nothing is read.
