@@ -180,6 +180,7 @@ struct ReplayOptions {
   std::vector<std::string> with;                                  // files that take the place of the record's
   std::string then_simulate;  // a scenario in which a run on threads goes on; "": none
   double at_s = 0;            // when
+  std::string written;        // record of what the repetition of a run on threads computes; "": none
 };
 
 void add_replay(CLI::App& app, ReplayOptions& options);

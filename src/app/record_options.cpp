@@ -31,7 +31,8 @@ RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, b
   plan.settings.subjects = viewer_subjects(assembly);
   plan.settings.parameters = &catalog.parameters;
   plan.flight = {.kept_s = options.flight_s.value_or(flies ? config.flight_s : 0),
-                 .bytes = static_cast<std::size_t>(config.flight_MB * 1e6)};
+                 .bytes = static_cast<std::size_t>(config.flight_MB * 1e6),
+                 .every_ticks = flight_ticks(catalog.signals, assembly.robot().engine.control_period_s, false)};
   plan.file_bytes = static_cast<std::uint64_t>(config.file_MB * 1e6);
   plan.folder_bytes = static_cast<std::uint64_t>(options.folder_MB.value_or(config.folder_MB) * 1e6);
   return plan;

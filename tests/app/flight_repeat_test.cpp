@@ -84,6 +84,23 @@ TEST_CASE("A flight record is repeated with its fault, its commands and its late
   }
 }
 
+TEST_CASE("A flight record in little memory has the signals of its last part, and --record writes those of all ticks") {
+  const fs::path project = project_copy("flight_little");
+  REQUIRE(edit(project / "config/tulip/robot.json", "\"urdf\":", "\"record\": {\"flight_MB\": 1.5}, \"urdf\":"));
+  const std::string flight = latched_flight(project).string();
+  const auto first_row = [&](const std::string& record) {
+    const std::string table = run("log csv " + record + " joint.l_knee.position_rad", project).out;
+    return std::stod(table.substr(table.find('\n') + 1));
+  };
+  CHECK(run("replay " + flight + " --record " + flight, project).exit_code == 2);
+  const Outcome outcome = run("replay " + flight + " --record whole.mcap", project);
+  CHECK_MESSAGE(outcome.exit_code == 0, (outcome.out + outcome.err));
+  CHECK_MESSAGE(has(outcome.out, " at 0.002 s: "), outcome.out);
+  CHECK(first_row(flight) > 1);
+  CHECK(first_row("whole.mcap") == doctest::Approx(0.002));
+  CHECK(run("log diff " + flight + " whole.mcap --json", project).exit_code < 2);
+}
+
 TEST_CASE("What needs the behaviors of a run says that a flight record has none") {
   const fs::path project = project_copy("flight_no_behaviors");
   const std::string flight = latched_flight(project).string();

@@ -115,7 +115,9 @@ TEST_CASE("A record goes on in the world of a scenario, which judges what become
   scenario("tulip", R"("set": {"joint.*.torque_scale": 0.05},)");
   CHECK(run(replay + "0.8", project).exit_code != 0);
   scenario("tulip", R"("pushes": [{"link": "torso", "at_s": 0.1, "impulse_Ns": [0, 9, 0]}],)");
-  CHECK(has(run(replay + "0.8", project).err, "has events, pushes or faults"));
+  CHECK(has(run(replay + "0.8", project).err, "has events, pushes, faults or a robot"));
+  scenario("tulip", R"("supervisor": {"rate_Hz": 10},)");
+  CHECK(has(run(replay + "0.8", project).err, "has a supervisor, perception, sight or a joystick"));
   scenario("jiwiy", "");
   CHECK(has(run(replay + "0.8", project).err, "after.json: is of another robot than the record"));
   scenario("tulip", "");

@@ -152,6 +152,51 @@ TEST_CASE("FlightMemory keeps the inputs of its ticks, what came down and saved 
   }
 }
 
+TEST_CASE("FlightMemory drops signals before inputs where its bytes do not suffice, but not the last third of them") {
+  RandomStream random(1, "noise");
+  const InputLayout layout{.joints = 1, .state_bytes = 50};
+  const std::size_t bytes = 600'000;  // a fifth of them are the encoder's
+  const auto kept = [&](double kept_s, std::size_t noisy_words) {
+    FlightMemory memory(20, {.kept_s = kept_s, .bytes = bytes, .inputs = layout});
+    std::vector<std::uint64_t> words(layout.words());
+    std::vector<double> row(20);
+    for (std::uint64_t tick = 0; tick < 20'000; ++tick) {
+      for (double& value : row) value = random.uniform();
+      for (std::size_t w = 0; w < noisy_words; ++w) words[w] = random.next();
+      memory.add(tick, static_cast<std::int64_t>(tick) * ms, row, words);
+    }
+    struct {
+      std::size_t blocks = 0, with_rows = 0;
+    } counted;
+    FlightMemory::Rows rows;
+    for (std::uint64_t block = memory.first(); block < memory.end(); ++block) {
+      REQUIRE(memory.read(block, rows));
+      CHECK_FALSE(rows.inputs.empty());
+      CHECK(rows.last_ns == static_cast<std::int64_t>(block * 100 + 99) * ms);
+      ++counted.blocks;
+      if (!rows.ticks.empty()) {
+        ++counted.with_rows;
+        CHECK(rows.ticks.front() == block * 100);
+        CHECK(rows.values.size() == 20 * rows.ticks.size());
+      } else {
+        CHECK(counted.with_rows == 0);  // the oldest
+      }
+    }
+    CHECK(memory.rows() == 100 * counted.with_rows);
+    CHECK(memory.packed_bytes() <= bytes);
+    return counted;
+  };
+  const auto few = kept(10, 1);  // 8 bytes of inputs a tick, and 80 of signals
+  CHECK(few.blocks == 101);
+  CHECK(few.with_rows > 35);
+  CHECK(few.with_rows < 55);
+  const auto many = kept(100, 3);
+  CHECK(many.with_rows >= 18);
+  CHECK(many.with_rows < 24);
+  CHECK(many.blocks > 80);
+  CHECK(many.blocks < 150);
+}
+
 TEST_CASE("FlightMemory packs what moves slowly, and what stands still into next to nothing") {
   RandomStream random(1, "noise");
   FlightMemory memory(10, {.kept_s = 30, .bytes = 8U << 20U});
@@ -254,6 +299,31 @@ TEST_CASE("A record that is opened and closed meanwhile does not disturb the fli
   REQUIRE(robot.flight().begin(flight.path()));
   robot.flight().finish();
   CHECK(read_dump(flight.path()).knee.size() == 3000);
+}
+
+TEST_CASE("A dump loses no rows to those that come while it is written") {
+  const ScratchFile file;
+  RandomStream random(1, "noise");
+  const SignalTable table = robot_table();
+  const InputLayout layout{.joints = 1, .state_bytes = 50};
+  FlightRecorder flight(table, {.kept_s = 100, .bytes = 600'000, .inputs = layout}, {});
+  std::vector<std::uint64_t> words(layout.words());
+  std::uint64_t tick = 0;
+  const auto run = [&](std::uint64_t ticks) {
+    for (const std::uint64_t end = tick + ticks; tick < end; ++tick) {
+      for (std::size_t w = 0; w < 3; ++w) words[w] = random.next();
+      flight.row(tick, static_cast<std::int64_t>(tick) * ms, std::array{random.uniform(), random.uniform()}, words);
+      if (tick % 20 == 19) flight.step();
+    }
+  };
+  run(20'000);
+  REQUIRE(flight.begin(file.path()));
+  run(2'000);
+  CHECK_FALSE(flight.busy());
+  McapReader reader(file.path());
+  for (McapMessage message; reader.next(message);) {
+  }
+  CHECK(reader.metadata().at("recorder").at("dropped_rows") == "0");
 }
 
 TEST_CASE("A dump tells how many rows did not fit into the memory, and holds those before and after") {

@@ -136,7 +136,9 @@ TEST_CASE("McapWriter puts a chunk into the file when its time or its size is fu
   CHECK(one_chunk > empty);
   REQUIRE(writer.write(channel, 3, 100 * ms, bytes_of(payload)));
   CHECK(writer.file_bytes() == one_chunk);
-  REQUIRE(writer.write(channel, 4, 100 * ms, bytes_of(payload)));
+  REQUIRE(writer.write(channel, 4, 100 * ms, bytes_of(payload)));  // 993 bytes
+  CHECK(writer.file_bytes() == one_chunk);
+  REQUIRE(writer.write(channel, 5, 100 * ms, bytes_of("{}")));
   CHECK(writer.file_bytes() > one_chunk);
 }
 
@@ -169,19 +171,28 @@ TEST_CASE("McapWriter: a file cut anywhere streams every message of the chunks b
   }
 }
 
-TEST_CASE("McapWriter: each chunk alone tells the schemas and channels of its messages") {
-  const ScratchFile file, alone;
-  McapWriter writer;
-  write_run(writer, file.path(), 1000);
-  REQUIRE(writer.close());
-  const std::vector<std::byte> whole = file.bytes();
-  for (const ChunkEnd& chunk : chunk_ends(whole, 100)) {
-    std::vector<std::byte> bytes(whole.begin(), whole.begin() + mcap_magic.size());
-    bytes.insert(bytes.end(), whole.begin() + static_cast<std::ptrdiff_t>(chunk.start),
-                 whole.begin() + static_cast<std::ptrdiff_t>(chunk.offset));
-    alone.write(bytes);
-    CHECK(read_all(alone.path()).sequences.size() == 100);
+TEST_CASE("McapWriter: a schema and a channel stand once in front of their first message, and in the summary") {
+  const ScratchFile file;
+  McapWriter writer({.compression_level = 0});
+  REQUIRE(writer.open(file.path()));
+  const auto schema = writer.add_schema("sample.Schema", "jsonschema", "{}");
+  const auto channel = writer.add_channel("/sample", "json", schema);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    REQUIRE(writer.write(channel, i, i * 10 * ms, bytes_of("{}")));
+    REQUIRE(writer.flush());
   }
+  REQUIRE(writer.close());
+  CHECK(read_all(file.path()).sequences.size() == 100);
+  const std::vector<std::byte> whole = file.bytes();
+  const auto times = [&](std::string_view text) {
+    std::size_t count = 0;
+    for (auto at = whole.begin();; ++at, ++count) {
+      at = std::ranges::search(at, whole.end(), bytes_of(text).begin(), bytes_of(text).end()).begin();
+      if (at == whole.end()) return count;
+    }
+  };
+  CHECK(times("sample.Schema") == 2);
+  CHECK(times("/sample") == 2);
 }
 
 TEST_CASE("McapWriter: a file nobody closed reads up to the last whole chunk") {

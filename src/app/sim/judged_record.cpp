@@ -148,8 +148,12 @@ class ThenSimulation final : public JudgedRun {
           {.file = options.record, .message = "its behaviors played in a process of their own, so they cannot go on"});
     if (!scenario.robots.empty()) refuse("has further robots: a record goes on alone");
     if (!scenario.bus.type.name.empty()) refuse("has a bus: a record goes on in its world itself");
-    if (!(scenario.events.empty() && scenario.pushes.empty() && scenario.faults.empty()))
-      refuse("has events, pushes or faults: a record goes on in its world, with its quantities and checks alone");
+    const char* const alone = ": a record goes on in its world, with its quantities and checks alone";
+    if (!(scenario.events.empty() && scenario.pushes.empty() && scenario.faults.empty() && scenario.carried.empty()))
+      refuse(std::string("has events, pushes, faults or a robot that is carried") + alone);
+    if (scenario.supervisor.given || !scenario.perception.empty() || !scenario.sight.ball.name.empty() ||
+        !scenario.joystick.recording.empty())
+      refuse(std::string("has a supervisor, perception, sight or a joystick") + alone);
     if (read_robot(scenario.robot, scenario.plugins).config.model.joint_names() !=
         run_.assembly().robot().model.joint_names())
       refuse("is of another robot than the record");

@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/run/observers.h"
+#include "app/services.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
 #include "input_files.h"
@@ -17,6 +18,7 @@
 #include "run_branches.h"
 #include "signal/number_text.h"
 #include "telemetry/reading/record_comparison.h"
+#include "telemetry/record/recorder.h"
 
 namespace kadans {
 namespace {
@@ -226,6 +228,11 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
                         ->check(number_within(0.001, scenario_duration_max_s))
                         ->needs(then);
   then->needs(at);
+  replay
+      ->add_option("--record", options.written,
+                   "Of a run on threads: write all signals, as they are computed again, into this record")
+      ->type_name("FILE")
+      ->excludes(then);
   replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
@@ -310,6 +317,35 @@ std::string first_of(const std::vector<SignalDifference>& differences, Assembly&
   return "";
 }
 
+// All signals that a repetition computes, its faults and its lines, in a record.
+class RepetitionRecord final : public RunObserver {
+ public:
+  // Throws InputError when the file cannot be made.
+  RepetitionRecord(const std::string& file, RepeatedRun& run)
+      : recorder_(run.assembly().catalog().signals,
+                  {.subjects = viewer_subjects(run.assembly()), .parameters = &run.assembly().catalog().parameters}, {},
+                  Recorder::Wait::in_place) {
+    if (!recorder_.open(file)) throw InputError({.message = recorder_.error()});
+    describe_robots(recorder_.file(), robot_texts(run.assembly()), 0);
+    run.log().add(recorder_.events());
+  }
+
+  void tick(double, std::span<const double> row) override { row_ = row; }
+  void fault(const Fault& fault) override { recorder_.fault(fault); }
+  void between_ticks(const RunMark& mark) override {
+    recorder_.record(mark.ticks - 1, mark.time_ns, row_);
+    (void)recorder_.drain();
+  }
+  // Throws InputError when the file is not whole.
+  void close() {
+    if (!recorder_.close()) throw InputError({.message = recorder_.error()});
+  }
+
+ private:
+  Recorder recorder_;
+  std::span<const double> row_;
+};
+
 // A run on threads: its files come out of the record.
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   const bool flight = is_flight_record(options.record);
@@ -325,8 +361,12 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
                        : !options.with.empty()    ? RepeatedRun::Behaviors::leading
                        : played_elsewhere(inputs) ? RepeatedRun::Behaviors::none
                                                   : RepeatedRun::Behaviors::compared);
+  std::optional<RepetitionRecord> written;
+  std::vector<RunObserver*> observers;
+  if (!options.written.empty()) observers.push_back(&written.emplace(options.written, repeated));
   catch_interrupts();
-  repeated.go(interrupted);
+  repeated.go(interrupted, observers);
+  if (written) written->close();
   if (interrupted()) return exit_interrupted;
   std::vector<std::string> notes = notes_of(repeated, inputs, !options.with.empty());
   const std::string first = first_of(repeated.comparison().differences(), repeated.assembly());
@@ -341,12 +381,19 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
 
 int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
+  std::error_code none;
+  if (fs::equivalent(options.record, options.written, none))
+    throw InputError({.file = "--record", .message = options.written + " is the record that is repeated"});
   if (!options.then_simulate.empty()) return run_then_simulation(options);
   if (inputs.fact("clock") == clock_of_threads) return repeat_run(options, inputs);
   if (!options.with.empty())
     throw InputError(
         {.file = "--with",
          .message = "is for records of kadans run; " + options.record + " was simulated: change its files"});
+  if (!options.written.empty())
+    throw InputError({.file = "--record",
+                      .message = "is for records of kadans run; " + options.record +
+                                 " was simulated: kadans sim writes another record of it"});
   std::unique_ptr<UnpackedInputs> unpacked;
   if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record, options.allow_plugins);
   RunChoices choices = choices_of(inputs.run, options.record);

@@ -53,6 +53,10 @@ std::uint32_t ticks_of(const NumberEntry& entry, const std::string& file, double
              number_text(1 / (whole * control_period_s)));
 }
 
+std::uint32_t about(double rate_Hz, double control_period_s) {
+  return static_cast<std::uint32_t>(std::max(1.0, std::round(1 / (rate_Hz * control_period_s))));
+}
+
 }  // namespace
 
 void record_fields(Fields& f, RecordConfig& record) {
@@ -101,8 +105,7 @@ std::vector<std::uint32_t> ticks_between(const SignalChoice& choice, const Signa
   const std::vector<std::string> names = signals.names();
   std::vector<std::uint32_t> ticks(names.size(), choice.others ? 1 : 0);
   for (SignalId id = 0; choice.others && id < signals.size(); ++id) {
-    const double rate_Hz = signals.info(id).slow_Hz;
-    if (rate_Hz > 0) ticks[id] = static_cast<std::uint32_t>(std::max(1.0, std::round(1 / (rate_Hz * control_period_s))));
+    if (signals.info(id).slow_Hz > 0) ticks[id] = about(signals.info(id).slow_Hz, control_period_s);
   }
   for (const NumberEntry& entry : choice.rates_Hz) {
     const std::uint32_t between = ticks_of(entry, choice.file, control_period_s);
@@ -110,6 +113,20 @@ std::vector<std::uint32_t> ticks_between(const SignalChoice& choice, const Signa
     if (chosen.empty() && !not_in_every_run(entry.key))
       refuse(choice.file, entry.place, "no signal is called " + in_quotes(entry.key) + meant(entry.key, names));
     for (const std::size_t i : chosen) ticks[i] = between;
+  }
+  if (std::ranges::count(ticks, 1U) == std::ssize(ticks)) ticks.clear();
+  return ticks;
+}
+
+std::vector<std::uint32_t> flight_ticks(const SignalTable& signals, double control_period_s, bool repeats) {
+  constexpr double beside_Hz = 100;
+  const std::vector<std::string> names = signals.names();
+  std::vector<std::uint32_t> ticks = ticks_between({}, signals, control_period_s);
+  ticks.resize(names.size(), 1);
+  for (const char* const pattern : {"control.*", "*.control.*", "plant.*", "*.plant.*"}) {
+    for (const std::size_t i : matching(pattern, names)) {
+      if (repeats) ticks[i] = std::max(ticks[i], about(beside_Hz, control_period_s));
+    }
   }
   return ticks;
 }

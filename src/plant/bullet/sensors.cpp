@@ -21,6 +21,10 @@ double read_encoder(const EncoderSettings& encoder, RandomStream& noise, double 
   return reading;
 }
 
+// No device tells more than the 24 bits of single precision: what they leave out is far below any noise.
+double told(double reading) { return static_cast<double>(static_cast<float>(reading)); }
+Vec3 told(const btVector3& reading) { return {told(reading.x()), told(reading.y()), told(reading.z())}; }
+
 }  // namespace
 
 Sensors::Sensors(const RobotModel& model, const PlantSettings& settings, std::uint64_t seed)
@@ -57,7 +61,7 @@ void Sensors::sample_joint(std::size_t index, const Drive::State& drive, double 
   JointSample& sample = frame_.joints[index];
   sample.position_rad = read_encoder(encoders_[index], joint_noise_[index], position_rad);
   sample.motor_position_rad = read_encoder(encoders_[index], joint_noise_[index], drive.rotor_rad);
-  sample.motor_effort_Nm = drive.motor_torque_Nm;
+  sample.motor_effort_Nm = told(drive.motor_torque_Nm);
   ++sample.sequence;
 }
 
@@ -66,10 +70,10 @@ void Sensors::sample_imu(double dt_s, const ImuInput& imu) {
   btVector3 force = -gravity_m_s2_;
   if (dt_s > 0) force += (imu.velocity_m_s - last_velocity_m_s_) / dt_s;
   last_velocity_m_s_ = imu.velocity_m_s;
-  frame_.imu.angular_velocity_rad_s = from_bullet(world_to_imu * imu.angular_velocity_rad_s + gyro_bias_rad_s_ +
-                                                  normal_vector(imu_noise_, imu_.gyro_noise_rad_s));
-  frame_.imu.acceleration_m_s2 = from_bullet(world_to_imu * force + accelerometer_bias_m_s2_ +
-                                             normal_vector(imu_noise_, imu_.accelerometer_noise_m_s2));
+  frame_.imu.angular_velocity_rad_s = told(world_to_imu * imu.angular_velocity_rad_s + gyro_bias_rad_s_ +
+                                           normal_vector(imu_noise_, imu_.gyro_noise_rad_s));
+  frame_.imu.acceleration_m_s2 = told(world_to_imu * force + accelerometer_bias_m_s2_ +
+                                      normal_vector(imu_noise_, imu_.accelerometer_noise_m_s2));
   ++frame_.imu.sequence;
 }
 
@@ -78,7 +82,7 @@ void Sensors::sample_foot(std::size_t index, const FootLoad& load) {
   for (std::size_t i = 0; i < sensors_per_foot; ++i) {
     double force_N = load.pressure_N[i];
     if (feet_[index].noise_N > 0) force_N += feet_[index].noise_N * foot_noise_[index].normal();
-    sample.force_N[i] = std::max(0.0, force_N);
+    sample.force_N[i] = told(std::max(0.0, force_N));
   }
   ++sample.sequence;
 }

@@ -60,7 +60,7 @@ class RecordFile {
 
 struct McapSettings {
   std::int64_t chunk_period_ns = 500'000'000;  // of log time
-  std::size_t chunk_bytes = 1U << 20U;         // before compression
+  std::size_t chunk_bytes = 1U << 19U;         // before compression
   int compression_level = -4;                  // of zstd, -7..19, less is faster; 0: not compressed
 };
 

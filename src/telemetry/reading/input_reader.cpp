@@ -151,7 +151,7 @@ bool TickReader::take_inputs(const McapMessage& message) {
   const auto first = head.take<std::uint64_t>();
   const auto count = head.take<std::uint32_t>();
   const bool reached =
-      head.ok() && count > 0 && count <= InputEncoder::ticks_max && reach(first + count - 1) && first >= first_;
+      head.ok() && count > 0 && count <= InputEncoder::ticks_max && reach(first) && reach(first + count - 1);
   if (reached && decoder_->decode(message.payload, *this, ticks_)) return true;
   ticks_.clear();
   return stop(printed("its inputs are damaged from %.3f s on", 1e-9 * static_cast<double>(message.time_ns)));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <numeric>
 #include <utility>
 
 #include <zstd.h>
@@ -60,11 +61,13 @@ void FlightMemory::ZstdDelete::operator()(ZSTD_CCtx_s* context) const noexcept {
 
 FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
     : signals_(signals),
+      every_ticks_(settings.every_ticks),
       kept_ns_(std::llround(settings.kept_s * 1e9)),
       zstd_(ZSTD_createCCtx()),
       store_(settings.bytes - input_bytes(settings)),
       planes_(block_rows * row_bytes(signals)),
-      packed_(ZSTD_compressBound(planes_.size())) {
+      packed_(ZSTD_compressBound(planes_.size())),
+      held_(signals) {
   if (zstd_ == nullptr) throw std::bad_alloc();
   if (settings.inputs) encoder_ = std::make_unique<InputEncoder>(*settings.inputs, std::vector<bool>{});
   ticks_.reserve(block_rows);
@@ -82,7 +85,10 @@ void FlightMemory::add(std::uint64_t tick, std::int64_t time_ns, std::span<const
   }
   ticks_.push_back(tick);
   times_.push_back(static_cast<std::uint64_t>(time_ns));
-  for (const double value : row.first(signals_)) values_.push_back(static_cast<float>(value));
+  for (std::size_t i = 0; i < signals_; ++i) {
+    if (every_ticks_.empty() || tick % every_ticks_[i] == 0) held_[i] = static_cast<float>(row[i]);
+  }
+  values_.insert(values_.end(), held_.begin(), held_.end());
   if (ticks_.size() == block_rows) seal();
 }
 
@@ -98,68 +104,136 @@ void FlightMemory::seal() {
   if (rows == 0 && behaviors_.size() + states_.size() == 0) return;
   if (encoder_ != nullptr && rows > 0) encoder_->encode(inputs_);
   if (rows > 0) last_ns_ = static_cast<std::int64_t>(times_.back());
-  const std::size_t bytes = rows * row_bytes(signals_) + inputs_.size() + behaviors_.size() + states_.size();
-  planes_.resize(std::max(planes_.size(), bytes));
-  std::byte* to = put_column<std::uint64_t>(planes_.data(), rows, [&](std::size_t row) { return ticks_[row]; });
+  while (!blocks_.empty() && blocks_.front().last_ns < last_ns_ - kept_ns_) drop_oldest_whole();
+  Block block{.rows = rows,
+              .last_ns = last_ns_,
+              .inputs = static_cast<std::uint32_t>(inputs_.size()),
+              .behaviors = static_cast<std::uint32_t>(behaviors_.size()),
+              .states = static_cast<std::uint32_t>(states_.size())};
+  const std::size_t behind = inputs_.size() + behaviors_.size() + states_.size();
+  planes_.resize(std::max({planes_.size(), rows * row_bytes(signals_), behind}));
+  std::byte* to = planes_.data();
+  for (ByteWriter* part : {&inputs_, &behaviors_, &states_}) {
+    to = std::ranges::copy(part->bytes(), to).out;
+    part->clear();
+  }
+  block.lost = !pack(behind, block.taken);
+  to = put_column<std::uint64_t>(planes_.data(), rows, [&](std::size_t row) { return ticks_[row]; });
   to = put_column<std::uint64_t>(to, rows, [&](std::size_t row) { return times_[row]; });
   for (std::size_t i = 0; i < signals_; ++i) {
     to = put_column<std::uint32_t>(
         to, rows, [&](std::size_t row) { return std::bit_cast<std::uint32_t>(values_[row * signals_ + i]); });
   }
-  Block block{.offset = head_,
-              .size = 0,
-              .rows = rows,
-              .last_ns = last_ns_,
-              .inputs = static_cast<std::uint32_t>(inputs_.size()),
-              .behaviors = static_cast<std::uint32_t>(behaviors_.size()),
-              .states = static_cast<std::uint32_t>(states_.size())};
-  for (ByteWriter* part : {&inputs_, &behaviors_, &states_}) {
-    to = std::ranges::copy(part->bytes(), to).out;
-    part->clear();
+  if (!block.lost && !pack(rows * row_bytes(signals_), block.signals)) {
+    block.lost = true;
+    store_.drop(block.taken);
   }
-  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(bytes)));
-  const std::size_t packed =
-      ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), planes_.data(), bytes, compression_level);
+  signal_bytes_ += block.signals.size;
   ticks_.clear();
   times_.clear();
   values_.clear();
-  while (!blocks_.empty() && blocks_.front().last_ns < block.last_ns - kept_ns_) blocks_.pop_front();
-  ++end_;
-  if (ZSTD_isError(packed) == 0 && packed <= store_.size()) {  // else it is out of memory, or too large
-    make_room(packed);
-    std::copy_n(packed_.begin(), packed, store_.begin() + static_cast<std::ptrdiff_t>(head_));
-    block.offset = head_;
-    block.size = packed;
-    head_ += packed;
-  }
   blocks_.push_back(block);
+  ++end_;
 }
 
-// The oldest stand behind the head, in their order, then those at the front of the store. Lost blocks are in nobody's
-// way; they go with the next one that is.
-void FlightMemory::make_room(std::size_t size) {
-  const auto drop_while = [&](auto in_the_way) {
-    for (;;) {
-      const auto oldest = std::ranges::find_if(blocks_, [](const Block& block) { return block.size > 0; });
-      if (oldest == blocks_.end() || !in_the_way(*oldest)) return;
-      blocks_.erase(blocks_.begin(), oldest + 1);
-    }
-  };
-  if (store_.size() - head_ < size) {
-    drop_while([&](const Block& block) { return block.offset >= head_; });
-    head_ = 0;
-  }
-  drop_while([&](const Block& block) { return block.offset < head_ + size && block.offset + block.size > head_; });
+// The first bytes of planes_, in the place of what is older. False: out of memory, or too large.
+bool FlightMemory::pack(std::size_t bytes, Part& part) {
+  if (bytes == 0) return true;
+  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(bytes)));
+  const std::size_t packed =
+      ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), planes_.data(), bytes, compression_level);
+  if (ZSTD_isError(packed) != 0 || packed > store_.bytes()) return false;
+  while (!store_.has_room(packed) && !blocks_.empty()) drop_oldest();
+  if (!store_.has_room(packed)) return false;
+  part = store_.put(std::span(packed_).first(packed));
+  return true;
 }
+
+// Signals, while there are many, because a repetition computes them again; else all of a block.
+void FlightMemory::drop_oldest() noexcept {
+  if (first() < spare_before_) return drop_oldest_whole();
+  const auto oldest = std::ranges::find_if(blocks_, [](const Block& block) { return block.signals.size > 0; });
+  if (encoder_ == nullptr || oldest == blocks_.end() || signal_bytes_ < store_.bytes() / 3) return drop_oldest_whole();
+  signal_bytes_ -= oldest->signals.size;
+  store_.drop(oldest->signals);
+}
+
+void FlightMemory::drop_oldest_whole() noexcept {
+  signal_bytes_ -= blocks_.front().signals.size;
+  store_.drop(blocks_.front().signals);
+  store_.drop(blocks_.front().taken);
+  blocks_.pop_front();
+}
+
+FlightMemory::Store::Store(std::size_t bytes)
+    : pages_(bytes / (page_bytes + sizeof(std::uint32_t)) * page_bytes), next_(pages_.size() / page_bytes) {
+  free_ = next_.size();
+  std::iota(next_.begin(), next_.end(), 1U);
+}
+
+FlightMemory::Part FlightMemory::Store::put(std::span<const std::byte> bytes) {
+  const Part part{.page = first_free_, .size = static_cast<std::uint32_t>(bytes.size())};
+  for (; !bytes.empty(); bytes = bytes.subspan(std::min(page_bytes, bytes.size()))) {
+    std::ranges::copy(bytes.first(std::min(page_bytes, bytes.size())), pages_.data() + first_free_ * page_bytes);
+    first_free_ = next_[first_free_];
+    --free_;
+  }
+  return part;
+}
+
+std::vector<std::byte> FlightMemory::Store::get(Part part) const {
+  std::vector<std::byte> bytes(part.size);
+  std::span<std::byte> left = bytes;
+  for (std::uint32_t page = part.page; !left.empty(); page = next_[page]) {
+    const std::size_t count = std::min(page_bytes, left.size());
+    std::copy_n(pages_.data() + page * page_bytes, count, left.data());
+    left = left.subspan(count);
+  }
+  return bytes;
+}
+
+void FlightMemory::Store::drop(Part& part) noexcept {
+  const std::size_t pages = pages_in(part.size);
+  if (pages == 0) return;
+  std::uint32_t last = part.page;
+  for (std::size_t i = 1; i < pages; ++i) last = next_[last];
+  next_[last] = std::exchange(first_free_, part.page);
+  free_ += pages;
+  part = {};
+}
+
+namespace {
+
+// Empty: the bytes do not unpack to so many.
+std::vector<std::byte> unpacked(std::span<const std::byte> packed, std::size_t size) {
+  std::vector<std::byte> bytes(size);
+  if (ZSTD_decompress(bytes.data(), size, packed.data(), packed.size()) != size) bytes.clear();
+  return bytes;
+}
+
+}  // namespace
 
 bool FlightMemory::read(std::uint64_t block, Rows& rows) const {
   if (block < first() || block >= end_) return false;
   const Block& found = blocks_[static_cast<std::size_t>(block - first())];
-  if (found.size == 0) return false;
-  const std::size_t behind = std::size_t{found.inputs} + found.behaviors + found.states;
-  std::vector<std::byte> planes(found.rows * row_bytes(signals_) + behind);
-  const std::size_t size = ZSTD_decompress(planes.data(), planes.size(), store_.data() + found.offset, found.size);
-  if (size != planes.size()) return false;
+  if (found.lost) return false;
+  rows = {.last_ns = found.last_ns};
+  if (found.taken.size > 0) {
+    const std::vector<std::byte> taken =
+        unpacked(store_.get(found.taken), std::size_t{found.inputs} + found.behaviors + found.states);
+    if (taken.empty()) return false;
+    ByteReader reader(taken);
+    const auto take = [&reader](std::size_t size) {
+      const std::span<const std::byte> bytes = reader.take_bytes(size);
+      return std::vector<std::byte>(bytes.begin(), bytes.end());
+    };
+    rows.inputs = take(found.inputs);
+    rows.behaviors = take(found.behaviors);
+    while (reader.left() > 0) rows.states.push_back(take(reader.take<std::uint32_t>()));
+  }
+  if (found.signals.size == 0) return true;
+  const std::vector<std::byte> planes = unpacked(store_.get(found.signals), found.rows * row_bytes(signals_));
+  if (planes.empty()) return false;
   rows.ticks.resize(found.rows);
   rows.times_ns.resize(found.rows);
   rows.values.resize(found.rows * signals_);
@@ -173,35 +247,26 @@ bool FlightMemory::read(std::uint64_t block, Rows& rows) const {
       rows.values[row * signals_ + i] = static_cast<double>(std::bit_cast<float>(bits));
     });
   }
-  rows.inputs.assign(from, from + found.inputs);
-  from += found.inputs;
-  rows.behaviors.assign(from, from + found.behaviors);
-  ByteReader states({from + found.behaviors, found.states});
-  rows.states.clear();
-  while (states.left() > 0) {
-    const std::span<const std::byte> state = states.take_bytes(states.take<std::uint32_t>());
-    rows.states.emplace_back(state.begin(), state.end());
-  }
   return true;
 }
 
 std::uint64_t FlightMemory::rows() const noexcept {
   std::uint64_t rows = 0;
-  for (const Block& block : blocks_) rows += block.rows;
+  for (const Block& block : blocks_) rows += block.lost || block.signals.size > 0 ? block.rows : 0;
   return rows;
 }
 
 std::size_t FlightMemory::packed_bytes() const noexcept {
   std::size_t bytes = 0;
-  for (const Block& block : blocks_) bytes += block.size;
+  for (const Block& block : blocks_) bytes += std::size_t{block.taken.size} + block.signals.size;
   return bytes;
 }
 
 namespace {
 
-// A dump holds all signals in each tick, in the precision of the memory.
-RecorderSettings dump_settings(RecorderSettings record) {
-  record.every_ticks.clear();
+// A dump holds what the memory does.
+RecorderSettings dump_settings(RecorderSettings record, const FlightSettings& memory) {
+  record.every_ticks = memory.every_ticks;
   record.precision = Precision::single;
   record.file.chunk_bytes = std::size_t{256} << 10U;  // it is made while the run goes on: little memory
   return record;
@@ -212,7 +277,7 @@ RecorderSettings dump_settings(RecorderSettings record) {
 FlightRecorder::FlightRecorder(const SignalTable& signals, const FlightSettings& settings,
                                const RecorderSettings& record)
     : signals_(signals),
-      record_(dump_settings(record)),
+      record_(dump_settings(record, settings)),
       kept_ns_(std::llround(settings.kept_s * 1e9)),
       layout_(settings.inputs),
       memory_(signals.size(), settings) {
@@ -278,7 +343,9 @@ void FlightRecorder::step() {
   if (!busy()) return;
   for (std::size_t i = 0; i < blocks_a_step && next_block_ < end_block_; ++i) {
     next_block_ = std::max(next_block_, memory_.first());
-    if (!memory_.read(next_block_++, rows_)) continue;
+    const bool kept = memory_.read(next_block_++, rows_);
+    memory_.spare_before(next_block_);
+    if (!kept) continue;
     const std::size_t signals = signals_.size();
     written_rows_ += rows_.ticks.size();
     for (std::size_t row = 0; row < rows_.ticks.size(); ++row) {
@@ -286,6 +353,7 @@ void FlightRecorder::step() {
       (void)dump_->row(rows_.ticks[row], rows_.times_ns[row],
                        std::span<const double>(rows_.values).subspan(row * signals, signals));
     }
+    write_happenings(rows_.last_ns);
     if (layout_) write_inputs();
   }
   if (next_block_ < end_block_) return;
@@ -295,12 +363,13 @@ void FlightRecorder::step() {
   if (!dump_->close()) error_ = dump_->error();
   dump_.reset();
   rows_ = {};
+  memory_.spare_before(0);
   ++dumps_;
 }
 
 // Behind the rows of their ticks.
 void FlightRecorder::write_inputs() {
-  const std::int64_t time_ns = rows_.times_ns.empty() ? last_ns_ : rows_.times_ns.back();
+  const std::int64_t time_ns = rows_.last_ns;
   if (!rows_.inputs.empty()) (void)dump_->inputs(rows_.inputs, time_ns);
   if (!rows_.behaviors.empty()) (void)dump_->behavior_inputs(rows_.behaviors, time_ns);
   for (const std::vector<std::byte>& state : rows_.states) (void)dump_->state(state, time_ns);

@@ -24,18 +24,20 @@ namespace kadans {
 // Rows are collected in blocks of 100 (0.1 s at 1 kHz). A full block is transposed: it stores signal by signal. Each
 // value is in single precision, as the difference of its bits from the bits of the row before; the lowest bytes of all
 // rows come first, then the next bytes. So a signal that stands still or moves slowly becomes mostly zeros, and zstd
-// compresses them: 30 s of TULip's 220 signals at 1 kHz take 7 MB, a third of a record. Packed blocks lie in a ring
-// buffer of bytes, and the oldest blocks are dropped. Ticks and times keep all their bits.
+// compresses them: 30 s of TULip's 220 signals at 1 kHz take 7 MB, a third of a record. The oldest blocks are dropped.
+// Ticks and times keep all their bits.
 //
 // With inputs a block also holds what its ticks took from outside, what came down from the behavior thread, and the
 // state of the control engine when one was saved (input_stream.h), so that what is kept can be repeated. They share the
-// bytes.
+// bytes. Where these do not suffice for both, signals are dropped first, because a repetition computes them again; a
+// third of the bytes stays for them.
 //
 // One thread at a time.
 struct FlightSettings {
   double kept_s = 0;                          // 0: no flight recorder
   std::size_t bytes = std::size_t{8} << 20U;  // for all of it; when they do not suffice, less than kept_s is kept
   std::optional<InputLayout> inputs = {};     // of a flight record
+  std::vector<std::uint32_t> every_ticks = {};  // for each signal: ticks between its values; empty: all in each tick
 };
 
 class FlightMemory {
@@ -47,6 +49,7 @@ class FlightMemory {
     // With inputs, as messages of a record: of the ticks, of the behavior thread, and states.
     std::vector<std::byte> inputs, behaviors;
     std::vector<std::vector<std::byte>> states;
+    std::int64_t last_ns = 0;  // time of the last row, also when the rows are no longer stored
   };
 
   // Allocates its memory in the constructor.
@@ -60,39 +63,72 @@ class FlightMemory {
   void add_behavior_inputs(std::span<const std::byte> events) { behaviors_.put(events); }
   void add_state(const EngineStates::Saved& state);
   void seal();  // ends the block, which may hold no rows, only what came down after them
+  // Blocks before this one are written: they go first when there is no room.
+  void spare_before(std::uint64_t block) noexcept { spare_before_ = block; }
 
   // Blocks are numbered from 0; those in [first(), end()) are stored.
   std::uint64_t first() const noexcept { return end_ - blocks_.size(); }
   std::uint64_t end() const noexcept { return end_; }
-  // Of all blocks in [first(), end()), also of those that read() refuses.
+  // Of all blocks in [first(), end()) whose signals were not dropped, also of those that read() refuses.
   std::uint64_t rows() const noexcept;
-  // False when the block is no longer stored, was too large for the memory, or its memory is damaged.
+  // False when the block is no longer stored, was too large for the memory, or its memory is damaged. No rows: its
+  // signals were dropped.
   [[nodiscard]] bool read(std::uint64_t block, Rows& rows) const;
   std::size_t packed_bytes() const noexcept;
 
  private:
   static constexpr std::size_t block_rows = 100;
+  struct Part {
+    std::uint32_t page = 0, size = 0;  // packed; 0: it is not there
+  };
   struct Block {
-    std::size_t offset, size, rows;  // size 0: its rows are lost, only their number is known
-    std::int64_t last_ns;
-    std::uint32_t inputs, behaviors, states;  // bytes of each, behind the rows
+    std::size_t rows = 0;
+    std::int64_t last_ns = 0;
+    std::uint32_t inputs = 0, behaviors = 0, states = 0;  // bytes of each
+    Part taken = {}, signals = {};                        // packed: these three; the rows
+    bool lost = false;                                    // too large: only the number of its rows is known
+  };
+
+  // A fixed number of bytes, in pages.
+  class Store {
+   public:
+    explicit Store(std::size_t bytes);
+    std::size_t bytes() const noexcept { return pages_.size(); }
+    // Whether so many more bytes fit.
+    bool has_room(std::size_t size) const noexcept { return pages_in(size) <= free_; }
+    Part put(std::span<const std::byte> bytes);  // has_room(bytes.size())
+    std::vector<std::byte> get(Part part) const;
+    void drop(Part& part) noexcept;
+
+   private:
+    static constexpr std::size_t page_bytes = 256;
+    static constexpr std::size_t pages_in(std::size_t size) noexcept { return (size + page_bytes - 1) / page_bytes; }
+    std::vector<std::byte> pages_;
+    std::vector<std::uint32_t> next_;  // page behind a page, of a part or of the free ones
+    std::uint32_t first_free_ = 0;
+    std::size_t free_ = 0;
   };
   struct ZstdDelete {
     void operator()(ZSTD_CCtx_s* context) const noexcept;
   };
 
-  void make_room(std::size_t size);
+  bool pack(std::size_t bytes, Part& part);
+  void drop_oldest() noexcept;
+  void drop_oldest_whole() noexcept;
 
   std::size_t signals_;
+  std::vector<std::uint32_t> every_ticks_;
   std::int64_t kept_ns_;
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
-  std::vector<std::byte> store_, planes_, packed_;
-  std::size_t head_ = 0;  // offset of the next block
+  Store store_;
+  std::vector<std::byte> planes_, packed_;
+  std::size_t signal_bytes_ = 0;  // of all that is stored
   std::int64_t last_ns_ = 0;
   std::deque<Block> blocks_;
-  std::uint64_t end_ = 0;
+  std::uint64_t end_ = 0, spare_before_ = 0;
   std::vector<std::uint64_t> ticks_, times_;  // of the open block
   std::vector<float> values_;                 // row by row
+  std::vector<float> held_;                   // the last row: a signal stands still between its values
   std::unique_ptr<InputEncoder> encoder_;     // nullptr: without inputs
   ByteWriter inputs_, behaviors_, states_;
 };
@@ -105,8 +141,8 @@ class FlightMemory {
 // Use it on the draining thread only.
 class FlightRecorder {
  public:
-  // `record` says how a dump is written; its rates are ignored, because all signals are kept in each tick. `signals`
-  // must outlive this object.
+  // `record` says how a dump is written; its rates are ignored, those of the memory count. `signals` must outlive this
+  // object.
   FlightRecorder(const SignalTable& signals, const FlightSettings& settings, const RecorderSettings& record);
 
   void row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row,
