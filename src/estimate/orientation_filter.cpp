@@ -11,6 +11,7 @@ namespace kadans {
 namespace {
 
 constexpr double gravity_m_s2 = 9.81;
+constexpr double aligning_s = 0.1;
 
 void require(bool ok, const char* field, double value, const char* range) {
   if (!ok) throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + " must be " + range);
@@ -90,10 +91,10 @@ void OrientationFilter::correct(const Vec3& specific_force_m_s2, double norm_m_s
   const double scale = state_.gravity_weight / norm_m_s2;
   const Vec3 error{scale * (f[1] * up[2] - f[2] * up[1]), scale * (f[2] * up[0] - f[0] * up[2]),
                    scale * (f[0] * up[1] - f[1] * up[0])};
-  const double gain_per_s = config_.accelerometer_gain_per_s;
-  const double aligning_per_s = gain_per_s > 0 ? std::max(gain_per_s, 1 / state_.aligned_s) : 0;
+  double gain_per_s = config_.accelerometer_gain_per_s;
+  if (gain_per_s > 0 && state_.aligned_s < aligning_s) gain_per_s = std::max(gain_per_s, 1 / state_.aligned_s);
   // After a long gap at most the whole error is taken back.
-  state_.orientation = multiply(state_.orientation, turn(error, std::min(1.0, aligning_per_s * elapsed_s)));
+  state_.orientation = multiply(state_.orientation, turn(error, std::min(1.0, gain_per_s * elapsed_s)));
   learn_bias(error, elapsed_s);
 }
 

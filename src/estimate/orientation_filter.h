@@ -36,7 +36,7 @@ class OrientationFilter {
 
   // The gyro's reading, and the specific force, in the base frame; elapsed_s since the last reading, > 0. Roll and
   // pitch start from the first specific force between 0.5 and 1.5 g. That one may be of a body that is just set down, so
-  // until 1 / accelerometer_gain_per_s has passed they are the mean of all so far: the gain is 1 / aligned_s. A gyro reading or time that is not finite changes
+  // for the first 0.1 s they are the mean of all so far: the gain is 1 / aligned_s. A gyro reading or time that is not finite changes
   // nothing; a specific force that is not finite is left out.
   void update(const Vec3& gyro_rad_s, const Vec3& specific_force_m_s2, double elapsed_s) noexcept;
 

@@ -106,7 +106,7 @@ constexpr std::array<Breakage, 71> breakages = {{
     {"kick", "behaviors/lib/walking.lua", "rolls = 0.71", "rolls = 1.1", "the ball goes, m"},
     {"kick", "behaviors/tulip/kick.lua", "P.rad, P.far_m", "P.rad + 0.4, P.far_m", "the ball goes straight, m"},
     {"fetch", "behaviors/tulip/fetch.lua", "near_m  = { 0.6", "near_m  = { 1.2", "is before the ball, m"},
-    {"go_to_ball", "behaviors/lib/ball.lua", "c * seen.x_m - n * seen.y_m", "c * seen.x_m + n * seen.y_m", "a goal"},
+    {"go_to_ball", "behaviors/lib/ball.lua", "seen.x_m, seen.y_m)", "seen.x_m, -seen.y_m)", "a goal"},
     {"walk", robot, "\"lift_m\": 0.03279", "\"lift_m\": 0", "stays up"},
     {"walk", "", "for_s=6", "for_s=60", "stands still at the end"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},

@@ -329,7 +329,7 @@ TEST_CASE("A dump loses no rows to those that come while it is written") {
 TEST_CASE("A dump tells how many rows did not fit into the memory, and holds those before and after") {
   const ScratchFile file;
   const SignalTable table = robot_table();
-  FlightRecorder flight(table, {.kept_s = 5, .bytes = 500}, {});
+  FlightRecorder flight(table, {.kept_s = 5, .bytes = 800}, {});
   RandomStream random(1, "noise");
   for (std::uint64_t tick = 0; tick < 430; ++tick) {
     const bool loud = tick / 100 % 2 == 1;  // such a block is larger than the memory
