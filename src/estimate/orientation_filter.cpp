@@ -11,7 +11,6 @@ namespace kadans {
 namespace {
 
 constexpr double gravity_m_s2 = 9.81;
-constexpr double aligning_s = 0.1;
 
 void require(bool ok, const char* field, double value, const char* range) {
   if (!ok) throw std::invalid_argument(std::string(field) + " = " + std::to_string(value) + " must be " + range);
@@ -51,14 +50,12 @@ void OrientationFilter::update(const Vec3& gyro_rad_s, const Vec3& specific_forc
   if (!state_.initialised) {
     last_gyro_rad_s_ = state_.angular_velocity_rad_s = gyro_rad_s;
     if (norm_m_s2 > 0.5 * gravity_m_s2 && norm_m_s2 < 1.5 * gravity_m_s2) initialise(f);
-    state_.aligned_s = elapsed_s;
     return;
   }
   Vec3 mean_rad_s;
   for (std::size_t i = 0; i < 3; ++i)  // of both ends of the step: what is left is of third order in the step
     mean_rad_s[i] = (gyro_rad_s[i] + last_gyro_rad_s_[i]) / 2 - state_.gyro_bias_rad_s[i];
   last_gyro_rad_s_ = gyro_rad_s;
-  state_.aligned_s += elapsed_s;
   state_.orientation = multiply(state_.orientation, turn(mean_rad_s, elapsed_s));
   correct(f, norm_m_s2, elapsed_s);
   state_.orientation = normalized(state_.orientation);
@@ -91,10 +88,9 @@ void OrientationFilter::correct(const Vec3& specific_force_m_s2, double norm_m_s
   const double scale = state_.gravity_weight / norm_m_s2;
   const Vec3 error{scale * (f[1] * up[2] - f[2] * up[1]), scale * (f[2] * up[0] - f[0] * up[2]),
                    scale * (f[0] * up[1] - f[1] * up[0])};
-  double gain_per_s = config_.accelerometer_gain_per_s;
-  if (gain_per_s > 0 && state_.aligned_s < aligning_s) gain_per_s = std::max(gain_per_s, 1 / state_.aligned_s);
   // After a long gap at most the whole error is taken back.
-  state_.orientation = multiply(state_.orientation, turn(error, std::min(1.0, gain_per_s * elapsed_s)));
+  state_.orientation =
+      multiply(state_.orientation, turn(error, std::min(1.0, config_.accelerometer_gain_per_s * elapsed_s)));
   learn_bias(error, elapsed_s);
 }
 

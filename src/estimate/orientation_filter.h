@@ -29,14 +29,12 @@ class OrientationFilter {
     double gravity_weight = 0;         // 1: the accelerometer is trusted fully, 0: not at all
     bool gyro_bias_saturated = false;  // an axis' bias is at its maximum
     bool initialised = false;          // has seen gravity once; before, the orientation is the identity
-    double aligned_s = 0;              // since then
   };
 
   explicit OrientationFilter(const Config& config);  // throws std::invalid_argument naming field, value and range
 
   // The gyro's reading, and the specific force, in the base frame; elapsed_s since the last reading, > 0. Roll and
-  // pitch start from the first specific force between 0.5 and 1.5 g. That one may be of a body that is just set down, so
-  // for the first 0.1 s they are the mean of all so far: the gain is 1 / aligned_s. A gyro reading or time that is not finite changes
+  // pitch start from the first specific force between 0.5 and 1.5 g. A gyro reading or time that is not finite changes
   // nothing; a specific force that is not finite is left out.
   void update(const Vec3& gyro_rad_s, const Vec3& specific_force_m_s2, double elapsed_s) noexcept;
 

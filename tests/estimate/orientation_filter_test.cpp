@@ -58,16 +58,9 @@ TEST_CASE("Before it has felt gravity the orientation is the identity") {
 
 TEST_CASE("A wrong tilt is corrected by gravity at the rate of the accelerometer's gain") {
   OrientationFilter filter({.accelerometer_gain_per_s = 0.5, .gyro_bias_gain_per_s2 = 0});
-  run(filter, 2, {}, at_rest(from_roll_pitch_yaw(0, 0.1, 0)));
+  filter.update({}, at_rest(from_roll_pitch_yaw(0, 0.1, 0)), dt_s);
   run(filter, 2, {}, {0, 0, 9.81});
   CHECK(roll_pitch_yaw(filter.state().orientation)[1] == doctest::Approx(0.1 * std::exp(-0.5 * 2)).epsilon(0.01));
-}
-
-TEST_CASE("For its first 0.1 s the tilt is the mean of all readings, so that one while the body is set down does not last") {
-  OrientationFilter filter({.accelerometer_gain_per_s = 0.5, .gyro_bias_gain_per_s2 = 0});
-  filter.update({}, at_rest(from_roll_pitch_yaw(0, 0.1, 0)), dt_s);
-  run(filter, 0.098, {}, {0, 0, 9.81});
-  CHECK(roll_pitch_yaw(filter.state().orientation)[1] == doctest::Approx(0.1 / 99).epsilon(0.01));
 }
 
 TEST_CASE("A constant rotation about a slanted axis is followed without error") {
