@@ -171,9 +171,8 @@ struct ReferenceOptions {
 void add_reference(CLI::App& app, ReferenceOptions& options);
 int run_reference(const CommandLine& line, const ReferenceOptions& options);
 
-// `kadans replay`: runs a record again, with the files on the disk or with those inside the record, and compares every
-// recorded signal in every tick, bit for bit. It prints that everything is the same, or where the runs differ and which
-// inputs changed. With the record's own files, only a change of the program or of its libraries can make a difference.
+// `kadans replay`: runs a record again, with the files on the disk or inside it, and compares every recorded signal in
+// every tick, bit for bit. It prints that all is the same, or where the runs differ and which inputs changed.
 struct ReplayOptions {
   std::string record;
   bool from_record = false, allow_plugins = false, json = false;  // the first: its files, not those on the disk

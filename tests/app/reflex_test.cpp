@@ -133,8 +133,9 @@ return k.behavior "held_or_loose" {
   CHECK(has(sim.out, "no faults"));
   const Switching found = switching_of(rows_of("states.mcap", project));
   CHECK(found.switches > 40);
-  // Up to 10 ms until a behavior tick sees it and one until the switch; a foot that bounces in that tick begins anew.
-  CHECK(found.apart_max <= 22);
+  // Up to 10 ms until a behavior tick sees it and one until the switch; a foot that bounces in that tick begins anew,
+  // twice at most.
+  CHECK(found.apart_max <= 33);
   CHECK(found.step_max_Nm < 0.02 * limit_Nm);
 }
 

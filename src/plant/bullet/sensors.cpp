@@ -72,8 +72,8 @@ void Sensors::sample_imu(double dt_s, const ImuInput& imu) {
   last_velocity_m_s_ = imu.velocity_m_s;
   frame_.imu.angular_velocity_rad_s = told(world_to_imu * imu.angular_velocity_rad_s + gyro_bias_rad_s_ +
                                            normal_vector(imu_noise_, imu_.gyro_noise_rad_s));
-  frame_.imu.acceleration_m_s2 = told(world_to_imu * force + accelerometer_bias_m_s2_ +
-                                      normal_vector(imu_noise_, imu_.accelerometer_noise_m_s2));
+  frame_.imu.acceleration_m_s2 =
+      told(world_to_imu * force + accelerometer_bias_m_s2_ + normal_vector(imu_noise_, imu_.accelerometer_noise_m_s2));
   ++frame_.imu.sequence;
 }
 

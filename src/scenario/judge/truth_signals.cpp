@@ -88,7 +88,9 @@ void TruthSignals::update_limits(double dt_s) noexcept {
     state_.position_rad = std::min(state_.position_rad, inside);
     if (!joint.passive()) {
       const double left_Nm = truth.motor_torque_max_Nm[i] - std::abs(truth.motor_torque_Nm[i]);
-      state_.motor_torque_share = std::max(state_.motor_torque_share, 1 - left_Nm / joint.effort_max_Nm);
+      // A torque at its limit in all substeps has a mean that is rounded.
+      const double left_share = std::abs(left_Nm) < 1e-12 * joint.effort_max_Nm ? 0 : left_Nm / joint.effort_max_Nm;
+      state_.motor_torque_share = std::max(state_.motor_torque_share, 1 - left_share);
       state_.torque_share = std::max(state_.torque_share, std::abs(truth.drive_torque_Nm[i]) / joint.effort_max_Nm);
     }
     if (joint.velocity_max_rad_s > 0) {

@@ -17,13 +17,13 @@ struct PlayReport {
     std::array<char, state_max> state{};  // path of its innermost active state, the first of several
   };
 
-  std::uint32_t orders = 0;              // taken so far
-  std::uint32_t orders_refused = 0;      // of them
-  std::array<char, why_max> refusal{};   // of the last one that was refused
-  std::uint32_t taken_over = 0;          // how often something else was played, because nothing decided any more
-  std::uint32_t phase = 0;               // as PlayStatus
-  std::uint32_t not_done = 0;            // behaviors that ended otherwise than with done
-  std::uint32_t count = 0;               // of those that play now, as far as they are listed
+  std::uint32_t orders = 0;             // taken so far
+  std::uint32_t orders_refused = 0;     // of them
+  std::array<char, why_max> refusal{};  // of the last one that was refused
+  std::uint32_t taken_over = 0;         // how often something else was played, because nothing decided any more
+  std::uint32_t phase = 0;              // as PlayStatus
+  std::uint32_t not_done = 0;           // behaviors that ended otherwise than with done
+  std::uint32_t count = 0;              // of those that play now, as far as they are listed
   std::array<Playing, behaviors_max> playing{};
 };
 static_assert(std::is_trivially_copyable_v<PlayReport>);

@@ -34,9 +34,9 @@ namespace kadans {
 //
 // One thread at a time.
 struct FlightSettings {
-  double kept_s = 0;                          // 0: no flight recorder
-  std::size_t bytes = std::size_t{8} << 20U;  // for all of it; when they do not suffice, less than kept_s is kept
-  std::optional<InputLayout> inputs = {};     // of a flight record
+  double kept_s = 0;                            // 0: no flight recorder
+  std::size_t bytes = std::size_t{8} << 20U;    // for all of it; when they do not suffice, less than kept_s is kept
+  std::optional<InputLayout> inputs = {};       // of a flight record
   std::vector<std::uint32_t> every_ticks = {};  // for each signal: ticks between its values; empty: all in each tick
 };
 

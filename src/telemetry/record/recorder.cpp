@@ -8,7 +8,8 @@ namespace kadans {
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 
-Recorder::Recorder(const SignalTable& signals, const RecorderSettings& settings, const FlightSettings& flight, Wait wait)
+Recorder::Recorder(const SignalTable& signals, const RecorderSettings& settings, const FlightSettings& flight,
+                   Wait wait)
     : signals_(signals),
       signal_count_(signals.size()),
       settings_(settings),

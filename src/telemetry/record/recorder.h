@@ -38,12 +38,13 @@ class Recorder final : public RecordSink {
   };
 
   // Make it before the loop, when all signals are declared. The table must outlive it.
-  explicit Recorder(const SignalTable& signals, const RecorderSettings& settings = {}, const FlightSettings& flight = {},
-                    Wait wait = Wait::in_ring);
+  explicit Recorder(const SignalTable& signals, const RecorderSettings& settings = {},
+                    const FlightSettings& flight = {}, Wait wait = Wait::in_ring);
   explicit Recorder(SignalTable&&, const RecorderSettings& = {}, const FlightSettings& = {},
                     Wait = Wait::in_ring) = delete;
 
-  // Before the first row, of a recorder with a ring: the inputs of the run are kept, too. `behaviors` and `states` must outlive the recorder.
+  // Before the first row, of a recorder with a ring: the inputs of the run are kept, too. `behaviors` and `states` must
+  // outlive the recorder.
   struct Inputs {
     std::unique_ptr<InputPieces> pieces = {};  // nullptr: they are not kept
     RecordedInputs* behaviors = nullptr;

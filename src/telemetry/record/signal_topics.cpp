@@ -190,7 +190,8 @@ std::vector<SignalTopic> signal_topics(const SignalTable& table, Precision preci
       Definition(table, precision, topic).add(root);
       topic.every_ticks = rate;
       for (const SignalId id : topic.signals) {
-        if (topic.runs.empty() || topic.runs.back().first + topic.runs.back().count != id) topic.runs.push_back({id, 0});
+        if (topic.runs.empty() || topic.runs.back().first + topic.runs.back().count != id)
+          topic.runs.push_back({id, 0});
         ++topic.runs.back().count;
       }
       const auto same = [&](const SignalTopic& other) { return other.topic == topic.topic; };
