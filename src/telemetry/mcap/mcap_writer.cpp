@@ -16,7 +16,7 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t message_head = mcap_record_head + 22;  // record head, channel, sequence, two times
-constexpr std::size_t definitions_bytes = std::size_t{128} << 10U;
+constexpr std::size_t definitions_bytes = std::size_t{64} << 10U;
 
 }  // namespace
 
