@@ -26,13 +26,14 @@ RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, b
   const SignalChoice choice =
       options.signals.empty() ? config.signals : parse_signal_choice(options.signals, "--signals");
   RecordPlan plan;
-  plan.settings.every_ticks = ticks_between(choice, catalog.signals, assembly.robot().engine.control_period_s);
+  const double control_period_s = assembly.robot().engine.control_period_s;
+  plan.settings.every_ticks = ticks_between(choice, catalog.signals, control_period_s);
   plan.settings.precision = config.single_precision ? Precision::single : Precision::full;
   plan.settings.subjects = viewer_subjects(assembly);
   plan.settings.parameters = &catalog.parameters;
   plan.flight = {.kept_s = options.flight_s.value_or(flies ? config.flight_s : 0),
-                 .bytes = static_cast<std::size_t>(config.flight_MB * 1e6),
-                 .every_ticks = flight_ticks(catalog.signals, assembly.robot().engine.control_period_s, false)};
+                 .bytes = static_cast<std::size_t>(config.flight_MB * 1e6)};
+  if (plan.flight.kept_s > 0) plan.flight.every_ticks = ticks_between({}, catalog.signals, control_period_s);
   plan.file_bytes = static_cast<std::uint64_t>(config.file_MB * 1e6);
   plan.folder_bytes = static_cast<std::uint64_t>(options.folder_MB.value_or(config.folder_MB) * 1e6);
   return plan;

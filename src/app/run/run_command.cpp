@@ -325,7 +325,7 @@ class WallClockRun {
       for (std::uint32_t i = 0; i < hand_overs.down.size(); ++i) hand_overs.down[i]->tell(&*taken_, i);
       layout.state_bytes = static_cast<std::uint32_t>(states_->bytes_max());
       plan.flight.inputs = layout;
-      plan.flight.every_ticks = flight_ticks(assembly_.catalog().signals, period_s, true);
+      plan.flight.every_ticks = repeated_flight_ticks(assembly_.catalog().signals, period_s);
       plan.inputs.states = &*states_;
       inputs.pack();
       std::size_t beside = states_->bytes_max() + (recorded ? 0 : RecordedInputs::flight_bytes);

@@ -40,21 +40,23 @@ std::string meant(const std::string& pattern, const std::vector<std::string>& na
   return ", did you mean '" + near + pattern.substr(dot) + "'?";
 }
 
+// The nearest whole number, at least 1.
+std::uint32_t ticks_near(double rate_Hz, double control_period_s) {
+  constexpr double most = std::numeric_limits<std::uint32_t>::max();
+  return static_cast<std::uint32_t>(std::clamp(std::round(1 / (rate_Hz * control_period_s)), 1.0, most));
+}
+
 // Throws when the rate is none that ticks can have.
 std::uint32_t ticks_of(const NumberEntry& entry, const std::string& file, double control_period_s) {
   if (entry.value == 0) return 0;
   if (entry.value == each_tick) return 1;
   const double ticks = 1 / (entry.value * control_period_s);
-  const double whole = std::max(1.0, std::round(ticks));
-  if (std::abs(ticks - whole) <= 1e-3 * whole) return static_cast<std::uint32_t>(whole);
+  const std::uint32_t whole = ticks_near(entry.value, control_period_s);
+  if (std::abs(ticks - whole) <= 1e-3 * whole) return whole;
   refuse(file, entry.value_place,
          "'" + entry.key + "' at " + number_text(entry.value) + " Hz: must be the control rate, " +
              number_text(1 / control_period_s) + " Hz, divided by a whole number, such as " +
              number_text(1 / (whole * control_period_s)));
-}
-
-std::uint32_t about(double rate_Hz, double control_period_s) {
-  return static_cast<std::uint32_t>(std::max(1.0, std::round(1 / (rate_Hz * control_period_s))));
 }
 
 }  // namespace
@@ -102,11 +104,11 @@ SignalChoice parse_signal_choice(const std::string& text, const std::string& opt
 
 std::vector<std::uint32_t> ticks_between(const SignalChoice& choice, const SignalTable& signals,
                                          double control_period_s) {
-  const std::vector<std::string> names = signals.names();
-  std::vector<std::uint32_t> ticks(names.size(), choice.others ? 1 : 0);
+  std::vector<std::uint32_t> ticks(signals.size(), choice.others ? 1 : 0);
   for (SignalId id = 0; choice.others && id < signals.size(); ++id) {
-    if (signals.info(id).slow_Hz > 0) ticks[id] = about(signals.info(id).slow_Hz, control_period_s);
+    if (signals.info(id).slow_Hz > 0) ticks[id] = ticks_near(signals.info(id).slow_Hz, control_period_s);
   }
+  const std::vector<std::string> names = choice.rates_Hz.empty() ? std::vector<std::string>{} : signals.names();
   for (const NumberEntry& entry : choice.rates_Hz) {
     const std::uint32_t between = ticks_of(entry, choice.file, control_period_s);
     const std::vector<std::size_t> chosen = matching(entry.key, names);
@@ -118,15 +120,14 @@ std::vector<std::uint32_t> ticks_between(const SignalChoice& choice, const Signa
   return ticks;
 }
 
-std::vector<std::uint32_t> flight_ticks(const SignalTable& signals, double control_period_s, bool repeats) {
+std::vector<std::uint32_t> repeated_flight_ticks(const SignalTable& signals, double control_period_s) {
   constexpr double beside_Hz = 100;
   const std::vector<std::string> names = signals.names();
   std::vector<std::uint32_t> ticks = ticks_between({}, signals, control_period_s);
   ticks.resize(names.size(), 1);
   for (const char* const pattern : {"control.*", "*.control.*", "plant.*", "*.plant.*"}) {
-    for (const std::size_t i : matching(pattern, names)) {
-      if (repeats) ticks[i] = std::max(ticks[i], about(beside_Hz, control_period_s));
-    }
+    for (const std::size_t i : matching(pattern, names))
+      ticks[i] = std::max(ticks[i], ticks_near(beside_Hz, control_period_s));
   }
   return ticks;
 }

@@ -48,9 +48,9 @@ SignalChoice parse_signal_choice(const std::string& text, const std::string& opt
 std::vector<std::uint32_t> ticks_between(const SignalChoice& choice, const SignalTable& signals,
                                          double control_period_s);
 
-// The same for a flight record, which holds all signals: in each tick, but slow ones as they say. Where `repeats`, what
-// control objects compute and the truth of a simulated plant 100 times a second, because a repetition computes the one
-// again and the other is beside the robot.
-std::vector<std::uint32_t> flight_ticks(const SignalTable& signals, double control_period_s, bool repeats);
+// The same for a flight record that can be repeated. It holds all signals: in each tick, but slow ones as they say, and
+// what control objects compute and the truth of a simulated plant 100 times a second, because a repetition computes the
+// one again and the other is beside the robot.
+std::vector<std::uint32_t> repeated_flight_ticks(const SignalTable& signals, double control_period_s);
 
 }  // namespace kadans

@@ -61,7 +61,6 @@ void FlightMemory::ZstdDelete::operator()(ZSTD_CCtx_s* context) const noexcept {
 
 FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
     : signals_(signals),
-      every_ticks_(settings.every_ticks),
       kept_ns_(std::llround(settings.kept_s * 1e9)),
       zstd_(ZSTD_createCCtx()),
       store_(settings.bytes - input_bytes(settings)),
@@ -69,6 +68,8 @@ FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
       packed_(ZSTD_compressBound(planes_.size())),
       held_(signals) {
   if (zstd_ == nullptr) throw std::bad_alloc();
+  for (SignalId id = 0; id < signals; ++id)
+    rates_[settings.every_ticks.empty() ? 1 : settings.every_ticks[id]].push_back(id);
   if (settings.inputs) encoder_ = std::make_unique<InputEncoder>(*settings.inputs, std::vector<bool>{});
   ticks_.reserve(block_rows);
   times_.reserve(block_rows);
@@ -85,8 +86,9 @@ void FlightMemory::add(std::uint64_t tick, std::int64_t time_ns, std::span<const
   }
   ticks_.push_back(tick);
   times_.push_back(static_cast<std::uint64_t>(time_ns));
-  for (std::size_t i = 0; i < signals_; ++i) {
-    if (every_ticks_.empty() || tick % every_ticks_[i] == 0) held_[i] = static_cast<float>(row[i]);
+  for (const auto& [every_ticks, signals] : rates_) {
+    if (tick % every_ticks != 0) continue;
+    for (const SignalId id : signals) held_[id] = static_cast<float>(row[id]);
   }
   values_.insert(values_.end(), held_.begin(), held_.end());
   if (ticks_.size() == block_rows) seal();

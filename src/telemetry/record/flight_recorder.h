@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -117,7 +118,7 @@ class FlightMemory {
   void drop_oldest_whole() noexcept;
 
   std::size_t signals_;
-  std::vector<std::uint32_t> every_ticks_;
+  std::map<std::uint32_t, std::vector<SignalId>> rates_;  // the signals by the ticks between their values
   std::int64_t kept_ns_;
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
   Store store_;
@@ -170,7 +171,6 @@ class FlightRecorder {
   const std::string& file() const noexcept { return file_; }    // of the last dump; "": none
   const std::string& error() const noexcept { return error_; }  // of the last dump
   std::uint32_t dumps() const noexcept { return dumps_; }       // complete or failed
-  std::size_t packed_bytes() const noexcept { return memory_.packed_bytes(); }
 
  private:
   static constexpr std::int64_t aftermath_ns = 1'000'000'000;
