@@ -20,26 +20,39 @@ namespace kadans {
 
 inline constexpr double gravity_of_balance_m_s2 = 9.81;
 inline constexpr double lowest_com_m = 0.1;  // over the feet's frames; a robot does not stand below this
-inline constexpr double moment_s = 0.001;    // how far ahead velocities are computed
 
 // The links that the options left_foot and right_foot name. Throws OptionError.
 std::array<std::size_t, 2> two_feet(const ObjectSetup& setup);
 
-// The kinematics, now or a moment ahead. The state a moment ahead is the measured state, moved on with the filtered
-// joint velocities and the gyro. So the velocity of any point is the difference between the two, and no measured
-// position is differentiated.
-class BodyAhead {
+// Where the links and the centre of mass are and how they move, from the filtered joint velocities and the gyro; no
+// position is differentiated. The base's origin is at 0 and at rest.
+class MovingBody {
  public:
-  explicit BodyAhead(const RobotModel& model) : kinematics_(model), joint_count_(model.joints.size()) {}
+  // Keeps a reference to the model.
+  explicit MovingBody(const RobotModel& model) : model_(&model), kinematics_(model) {}
 
-  // Puts the base's origin at 0 and turns the base by `upright` and by its rotation in ahead_s.
-  void update(const ControlInput& input, const Quat& upright, double ahead_s) noexcept;
+  // `upright` is the base's orientation.
+  void update(const ControlInput& input, const Quat& upright) noexcept;
 
-  const Kinematics& kinematics() const noexcept { return kinematics_; }  // as of the last update
+  // As of the last update.
+  const Kinematics& kinematics() const noexcept { return kinematics_; }
+  const Vec3& com_m() const noexcept { return com_m_; }
+  const Vec3& com_velocity_m_s() const noexcept { return com_velocity_m_s_; }
+  const Vec3& velocity_m_s(std::size_t link) const noexcept {
+    return links_[link].linear_m_s;
+  }                                                                         // of its frame's origin
+  Vec3 velocity_m_s(std::size_t link, const Vec3& point_m) const noexcept;  // of a point of it, from the base's origin
 
  private:
+  struct Velocity {
+    Vec3 linear_m_s{}, angular_rad_s{};
+  };
+  void add_up() noexcept;
+
+  const RobotModel* model_;
   Kinematics kinematics_;
-  std::size_t joint_count_;
+  std::array<Velocity, max_joints + 1> links_{};
+  Vec3 com_m_{}, com_velocity_m_s_{};
 };
 
 inline constexpr double standing_share_per_s = 5;  // how fast a balance object's share of torque may change
@@ -64,10 +77,8 @@ class Standing {
   const Kinematics& kinematics() const noexcept { return body_.kinematics(); }
 
  private:
-  Vec3 com_over_feet(const ControlInput& input, double ahead_s) noexcept;
-
   std::array<std::size_t, 2> feet_;
-  BodyAhead body_;
+  MovingBody body_;
   Vec3 com_m_{}, velocity_m_s_{};
   double dcm_x_m_ = 0, dcm_y_m_ = 0;
 };
@@ -101,7 +112,7 @@ class DcmMeasure {
 
   const OverFoot& over(std::size_t foot) const noexcept { return over_[foot]; }  // 0 left, 1 right
   const Quat& upright() const noexcept { return upright_; }                      // of the base in the heading frame
-  const Vec3& com_m() const noexcept { return com_m_; }                          // from the base's origin
+  const Vec3& com_m() const noexcept { return body_.com_m(); }                   // from the base's origin
   const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }      // links, left and right
   const Kinematics& kinematics() const noexcept { return body_.kinematics(); }   // the base's origin at 0
   double rate_per_s() const noexcept { return rate_per_s_; }                     // w0
@@ -110,10 +121,9 @@ class DcmMeasure {
   double dcm(std::size_t axis, const OverFoot& over) const noexcept;
 
   std::array<std::size_t, 2> feet_;
-  BodyAhead body_;
+  MovingBody body_;
   std::array<OverFoot, 2> over_{};
   Quat upright_{1, 0, 0, 0};
-  Vec3 com_m_{};
   double rate_per_s_ = 1;
   bool keeps_ = false;
   double heading_rad_ = 0, yaw_rad_ = 0;

@@ -168,23 +168,21 @@ void SupportForces::start(const ControlInput&) noexcept {
   for (BalanceJoint& part : parts_) part.effort_Nm = 0;
 }
 
-Vec3 SupportForces::com_over_feet(const ControlInput& input, double ahead_s) noexcept {
-  const BaseStatus& base = input.status.base;
-  body_.update(input, from_roll_pitch_yaw(base.roll_rad, base.pitch_rad, 0), ahead_s);
-  const Vec3 com = body_.kinematics().com_m();
-  Vec3 middle{};
-  for (Foot& foot : feet_) {
-    foot.point_m = transform(body_.kinematics().link(foot.link), foot.at_m);
-    for (std::size_t k = 0; k < 3; ++k) middle[k] += foot.point_m[k] / static_cast<double>(feet_.size());
-  }
-  return {com[0] - middle[0], com[1] - middle[1], com[2] - middle[2]};
-}
-
 // False when it does not stand, or something is not measured.
 bool SupportForces::measure(const ControlInput& input) noexcept {
-  const Vec3 next = com_over_feet(input, moment_s);
-  com_m_ = com_over_feet(input, 0);
-  for (std::size_t k = 0; k < 3; ++k) velocity_m_s_[k] = (next[k] - com_m_[k]) / moment_s;
+  const BaseStatus& base = input.status.base;
+  body_.update(input, from_roll_pitch_yaw(base.roll_rad, base.pitch_rad, 0));
+  com_m_ = body_.com_m();
+  velocity_m_s_ = body_.com_velocity_m_s();
+  const double share = 1 / static_cast<double>(feet_.size());
+  for (Foot& foot : feet_) {
+    foot.point_m = transform(body_.kinematics().link(foot.link), foot.at_m);
+    const Vec3 moves_m_s = body_.velocity_m_s(foot.link, foot.point_m);
+    for (std::size_t k = 0; k < 3; ++k) {
+      com_m_[k] -= share * foot.point_m[k];
+      velocity_m_s_[k] -= share * moves_m_s[k];
+    }
+  }
   const double time_s = std::sqrt(std::max(com_m_[2], lowest_com_m) / gravity_of_balance_m_s2);
   state_.dcm_x_m = com_m_[0] + time_s * velocity_m_s_[0];
   state_.dcm_y_m = com_m_[1] + time_s * velocity_m_s_[1];
@@ -195,7 +193,7 @@ void SupportForces::find_force(const BaseStatus& base) noexcept {
   const Config& c = config_;
   State& s = state_;
   Vec3 low{}, high{};  // how far the feet reach from their middle
-  const Vec3 com = body_.kinematics().com_m();
+  const Vec3& com = body_.com_m();
   for (const Foot& foot : feet_) {
     for (std::size_t k = 0; k < 2; ++k) {
       const double at_m = foot.point_m[k] - (com[k] - com_m_[k]);
@@ -217,7 +215,7 @@ void SupportForces::find_force(const BaseStatus& base) noexcept {
 }
 
 void SupportForces::load_legs() noexcept {
-  const Vec3 com = body_.kinematics().com_m();
+  const Vec3& com = body_.com_m();
   for (std::size_t i = 0; i < feet_.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) points_m_[i][k] = feet_[i].point_m[k] - com[k];
   }

@@ -92,12 +92,11 @@ class SupportForces final : public ControlObject {
     Vec3 force_N{};
   };
   void declare_signals(Declaration& declaration);
-  Vec3 com_over_feet(const ControlInput& input, double ahead_s) noexcept;
   bool measure(const ControlInput& input) noexcept;
   void find_force(const BaseStatus& base) noexcept;
   void load_legs() noexcept;
 
-  BodyAhead body_;
+  MovingBody body_;
   std::vector<Foot> feet_;
   std::vector<BalanceJoint> parts_;
   double weight_N_;

@@ -13,6 +13,7 @@ namespace {
 constexpr double walk_rate_max_rad_s = 7;
 constexpr double kick_rate_max_rad_s = 15;
 constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
+constexpr double within = 0.8;  // of the sole: a pressure farther out is at its edge
 enum Channel : std::uint32_t {
   forward_channel,
   left_channel,
@@ -98,6 +99,10 @@ void DcmWalk::declare_plan(Declaration& d) {
               &c.side_rate_share);
   d.parameter({"trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured."},
               &c.trust_per_s);
+  d.parameter({"settle_s", "s", 0, 1, c.settle_s, "After a landing, in which the measured xi comes to be trusted."},
+              &c.settle_s);
+  d.parameter({"edge_share", "", 0, 2, c.edge_share, "Of the measured pressure across, for where xi will be."},
+              &c.edge_share);
   d.parameter({"ankle_gain", "", 0, 20, c.ankle_gain, "Shift of the pressure per error of xi."}, &c.ankle_gain);
   d.parameter({"shift_x_m", "m", -0.1, 0.1, c.shift_x_m, "Where the pressure is meant to be, before a foot's frame."},
               &c.shift_x_m);
@@ -295,7 +300,7 @@ void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcep
     plan_.begin(plan_config_, sight(input));
     landed(input);
   }
-  feel_ground(input.dt_s);
+  feel_ground(input);
   see_ball();
   const std::uint32_t kicks = plan_.state().kicks;
   if (plan_.advance(plan_config_, wanted_, sight(input), input.dt_s)) landed(input);
@@ -311,11 +316,15 @@ void DcmWalk::step(const ControlInput& input, ActuationFrame& actuation) noexcep
   write(input, actuation);
 }
 
-// A foot that bears the robot lies flat, but not while it lands or leaves.
-void DcmWalk::feel_ground(double dt_s) noexcept {
+// A foot that bears the robot lies flat, but not while it lands or leaves, nor while the pressure is at its edge.
+void DcmWalk::feel_ground(const ControlInput& input) noexcept {
   const WalkPlan::State& s = plan_.state();
-  const double share = s.time_s / std::max(s.step_s, dt_s), rate = std::min(dt_s / config_.slope_s, 1.0);
+  const double share = s.time_s / std::max(s.step_s, input.dt_s), rate = std::min(input.dt_s / config_.slope_s, 1.0);
+  const FootStatus& foot = input.status.feet[s.stance];
   if (s.phase == WalkPlan::Phase::steps && !(share > 0.3 && share < 0.8)) return;
+  if (!(std::abs(foot.cop_y_m) < within * sole_side_m && foot.cop_x_m < within * sole_front_m &&
+        foot.cop_x_m > -within * sole_back_m))
+    return;
   const DcmMeasure::OverFoot& over = over_feet_.over(s.stance);
   const double most = config_.slope_max;
   slope_.x_m += rate * (std::clamp(over.toe_up_m, -most, most) - slope_.x_m);

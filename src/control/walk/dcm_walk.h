@@ -90,7 +90,7 @@ class DcmWalk final : public ControlObject {
   void reckon(const OdometryStatus& now) noexcept;
   void see_ball() noexcept;
   bool stands() const noexcept;
-  void feel_ground(double dt_s) noexcept;
+  void feel_ground(const ControlInput& input) noexcept;
   void landed(const ControlInput& input) noexcept;
   Efforts bearing(std::size_t leg, double share, double in_sole_x_m, const ControlInput& input) noexcept;
   void turn(const Efforts& swing_Nm, const ControlInput& input) noexcept;

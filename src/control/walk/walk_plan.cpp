@@ -7,7 +7,10 @@ namespace kadans {
 namespace {
 
 constexpr int times_tried = 16;
-constexpr double late_s = 0.25;  // a foot that finds no ground until then counts as put down
+constexpr double late_s = 0.25;    // a foot that finds no ground until then counts as put down
+constexpr double astray_m = 0.03;  // by which xi is nearer to the foot that was to swing: then the other one does
+constexpr double flat_s = 0.05;    // after a landing, from which on the foot lies flat
+constexpr double smooth_s = 0.02;  // of the measured pressure
 
 // A robot that sank rests while xi is over the feet, and steps on when it is up again and xi near the middle.
 constexpr double safe_share = 0.5, held_share = 0.9;  // of a sole before and behind: to begin to rest, to go on with it
@@ -25,12 +28,12 @@ void WalkPlan::begin(const Config& c, const Sight& sight) noexcept {
   sway(c, sight);
 }
 
-// The foot that bears less will swing.
+// The foot that is farther from xi will swing.
 void WalkPlan::sway(const Config& c, const Sight& sight) noexcept {
   State& s = state_;
   s.phase = Phase::sways;
   s.time_s = 0;
-  s.stance = sight.force_N[0] >= sight.force_N[1] ? 0 : 1;
+  s.stance = std::abs(sight.over[0].dcm_y_m) <= std::abs(sight.over[1].dcm_y_m) ? 0 : 1;
   leave(sight);
   s.dcm = {sight.over[s.stance].dcm_x_m, sight.over[s.stance].dcm_y_m};
   s.step_s = c.step_s;
@@ -70,9 +73,15 @@ void WalkPlan::look(const Config& c, const Sight& sight, double dt_s) noexcept {
   const Vec3 &a = sight.over[s.stance].foot_m, &b = sight.over[other].foot_m;
   const double p_x_m = (1 - share) * sight.cop_x_m[s.stance] + share * (b[0] - a[0] + sight.cop_x_m[other]);
   const double p_y_m = (1 - share) * sight.cop_y_m[s.stance] + share * (b[1] - a[1] + sight.cop_y_m[other]);
-  const DcmMeasure::OverFoot& seen = sight.over[s.stance];
-  s.dcm.x_m += dt_s * (sight.rate_per_s * (s.dcm.x_m - p_x_m) + c.trust_per_s * (seen.dcm_x_m - s.dcm.x_m));
-  s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + c.trust_per_s * (seen.dcm_y_m - s.dcm.y_m));
+  const DcmMeasure::OverFoot &seen = sight.over[s.stance], &beside = sight.over[other];
+  const GroundPoint missed{(1 - share) * seen.dcm_x_m + share * (beside.dcm_x_m + b[0] - a[0]) - s.dcm.x_m,
+                           (1 - share) * seen.dcm_y_m + share * (beside.dcm_y_m + b[1] - a[1]) - s.dcm.y_m};
+  const double trust_per_s =
+      c.trust_per_s * (s.phase == Phase::steps && c.settle_s > 0 ? std::min(s.time_s / c.settle_s, 1.0) : 1.0);
+  s.dcm.x_m += dt_s * (sight.rate_per_s * (s.dcm.x_m - p_x_m) + trust_per_s * missed.x_m);
+  s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + trust_per_s * missed.y_m);
+  if (s.phase == Phase::steps && s.time_s > flat_s)
+    s.in_sole_y_m += std::min(dt_s / smooth_s, 1.0) * (sight.cop_y_m[s.stance] - s.in_sole_y_m);
 }
 
 // Where the other foot goes, and xi relative to it at the landing, when nothing disturbs. A step that prepares a kick
@@ -105,13 +114,15 @@ void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
   const double wanted_s = s.kick.kicks() ? c.kick.step_s : c.step_s;
   const double least_s = s.kick.kicks() ? c.kick.strike_s + c.kick.after_s : c.step_min_s;
   const double earliest_s = std::max(least_s, s.time_s), latest_s = std::max(c.step_max_s, earliest_s);
+  const double from_x_m = s.in_sole_x_m, from_y_m = c.edge_share * s.in_sole_y_m;
+  // xi at the earliest time, and by how much it grows from one time to the next.
+  const double apart_s = (latest_s - earliest_s) / (times_tried - 1), wait_s = earliest_s - s.time_s;
+  GroundPoint ran{(s.dcm.x_m - from_x_m) * std::exp(w_x * wait_s), (s.dcm.y_m - from_y_m) * std::exp(w_y * wait_s)};
+  const GroundPoint grows{std::exp(w_x * apart_s), std::exp(w_y * apart_s)};
   double least = 1e9, best_s = wanted_s;
   GroundPoint best;
-  for (int i = 0; i < times_tried; ++i) {
-    const double t_s = earliest_s + (latest_s - earliest_s) * i / (times_tried - 1);
-    const double left_s = t_s - s.time_s;
-    const double x_m = s.in_sole_x_m + (s.dcm.x_m - s.in_sole_x_m) * std::exp(w_x * left_s);
-    const double y_m = s.dcm.y_m * std::exp(w_y * left_s);
+  for (int i = 0; i < times_tried; ++i, ran = {ran.x_m * grows.x_m, ran.y_m * grows.y_m}) {
+    const double t_s = earliest_s + i * apart_s, x_m = from_x_m + ran.x_m, y_m = from_y_m + ran.y_m;
     const double p = c.place_weight, all = 1 + p;
     const GroundPoint at{std::clamp((x_m - s.meant.offset.x_m + p * s.meant.step.x_m) / all, -c.reach_m, c.reach_m),
                          sign * std::clamp(sign * (y_m - s.meant.offset.y_m + p * s.meant.step.y_m) / all,
@@ -131,8 +142,8 @@ void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
     s.step_s = best_s;
   }
   // The pressure goes beyond xi where xi is ahead of what was meant.
-  const double from_x_m = s.kick.kicks() ? s.meant.begun_x_m : s.meant.offset.x_m;
-  const double meant_x_m = from_x_m * std::exp(w_x * std::min(s.time_s, wanted_s));
+  const double begun_x_m = s.kick.kicks() ? s.meant.begun_x_m : s.meant.offset.x_m;
+  const double meant_x_m = begun_x_m * std::exp(w_x * std::min(s.time_s, wanted_s));
   s.in_sole_x_m = std::clamp(c.shift_x_m + c.ankle_gain * (s.dcm.x_m - meant_x_m), -c.sole.heel_m, c.sole.toe_m);
 }
 
@@ -168,6 +179,7 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   const GroundPoint way{b[0] - a[0], b[1] - a[1]};
   step_time_s_ = s.time_s;
   s.stance = 1 - s.stance;
+  s.in_sole_y_m = 0;
   trim(c, sight);
   s.dcm = {s.dcm.x_m - way.x_m, s.dcm.y_m - way.y_m};
   leave(sight);
@@ -218,6 +230,12 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
   if (s.phase == Phase::rests) rest(c, wanted, sight);
   if (s.phase == Phase::bears || s.phase == Phase::rests) return false;
   if (s.phase == Phase::sways) {
+    if (std::abs(s.dcm.y_m - s.feet.from_m[1]) + astray_m < std::abs(s.dcm.y_m)) {
+      const double time_s = s.time_s;
+      sway(c, sight);
+      s.time_s = time_s;
+      return true;
+    }
     const double reached_m = c.width_m / (std::exp(c.side_rate_share * sight.rate_per_s * c.step_s) + 1);
     if (std::abs(s.dcm.y_m) > reached_m && s.time_s < c.sway_s) return false;
     s.phase = Phase::steps;

@@ -45,6 +45,8 @@ class WalkPlan {
     double place_weight = 0.05, time_weight = 0.05;  // of place and time beside that of the offset, 1
     double side_rate_share = 0.9;  // w across of the one along: the ankle roll's spring carries a part
     double trust_per_s = 30;       // observer gain for the measured xi
+    double settle_s = 0;           // after a landing, in which the measured xi comes to be trusted
+    double edge_share = 0;         // how much of the measured pressure across counts for where xi will be
     double ankle_gain = 1.0;       // shift of the pressure per error of xi
     double shift_x_m = 0.0;        // where the pressure is meant to be, before the foot's frame
     double trim_per_s = 0.3;       // how fast the meant speed is corrected by the measured one
@@ -96,6 +98,7 @@ class WalkPlan {
     Meant meant;
     GroundPoint dcm;  // over the stance foot
     double in_sole_x_m = 0;
+    double in_sole_y_m = 0;   // the measured pressure, smoothed: the spring of the ankle roll decides it
     KickSwing kick;           // of this step
     bool prepares = false;    // the next step shall kick
     std::uint32_t kicks = 0;  // that were made
