@@ -23,6 +23,7 @@ struct Pendulum {
   GroundPoint com, velocity_m_s;
   bool lands = false;  // the swing foot is on the ground in this tick
   double sunk_m = 0;
+  double beside_m = 0;  // of the pressure, to the left of the foot's middle
 
   explicit Pendulum(double forward_m_s = 0, double left_m_s = 0) {
     wanted.velocity = {.forward_m_s = forward_m_s, .left_m_s = left_m_s};
@@ -41,11 +42,12 @@ struct Pendulum {
       seen.force_N[i] = bears ? (lands ? 20 : 70) : 0;
     }
     seen.cop_x_m[state().stance] = state().in_sole_x_m;
+    seen.cop_y_m[state().stance] = beside_m;
     return seen;
   }
   GroundPoint pressure() const {
     const GroundPoint &a = foot[state().stance], &b = foot[1 - state().stance];
-    if (state().phase == Phase::steps) return {a.x_m + state().in_sole_x_m, a.y_m};
+    if (state().phase == Phase::steps) return {a.x_m + state().in_sole_x_m, a.y_m + beside_m};
     const GroundPoint goal = plan.goal(config, sight());
     const double y_m = a.y_m + 2 * state().dcm.y_m - goal.y_m;
     return {(a.x_m + b.x_m) / 2, std::clamp(y_m, std::min(a.y_m, b.y_m), std::max(a.y_m, b.y_m))};
@@ -82,6 +84,57 @@ TEST_CASE("WalkPlan sways first, then lifts the foot that bears less") {
   robot.run(0.35);
   CHECK(robot.state().phase == Phase::steps);
   CHECK(std::abs(robot.state().dcm.y_m) < 0.1);
+}
+
+TEST_CASE("WalkPlan stands on the foot that xi is near, and on the other one when xi goes there while it sways") {
+  for (const double side : {1, -1}) {
+    Pendulum robot;
+    robot.com.y_m = 0.03 * side;
+    robot.plan.begin(robot.config, robot.sight());
+    CHECK(robot.state().stance == (side > 0 ? 0 : 1));
+    robot.config.sway_s = 1;
+    for (int i = 0; i < 150; ++i) {
+      robot.com.y_m = -0.035 * side;
+      robot.velocity_m_s = {};
+      robot.tick();
+    }
+    CHECK(robot.state().phase == Phase::sways);
+    CHECK(robot.state().stance == (side > 0 ? 1 : 0));
+  }
+}
+
+TEST_CASE("WalkPlan foresees where xi will be from a pressure that is beside the foot's middle") {
+  for (const double beside_m : {0.02, -0.02}) {
+    std::array<double, 2> missed_m{};
+    for (const int foresees : {0, 1}) {
+      Pendulum robot;
+      robot.config.edge_share = foresees;
+      robot.run(3);
+      robot.next_step();
+      robot.beside_m = beside_m;
+      robot.run(0.15);
+      const WalkPlan::State then = robot.state();
+      const double foreseen_m = then.feet.foothold.y_m + then.meant.offset.y_m;
+      robot.run(then.step_s - then.time_s - 2 * dt_s);
+      missed_m[foresees] = std::abs(robot.sight().over[then.stance].dcm_y_m - foreseen_m);
+    }
+    CHECK(missed_m[1] < 0.7 * missed_m[0]);
+  }
+}
+
+TEST_CASE("WalkPlan believes a foot's measured xi as far as that foot bears") {
+  Pendulum robot;
+  robot.run(3);
+  robot.next_step();
+  WalkPlan::Sight sight = robot.sight();
+  WalkPlan told = robot.plan, wrong = robot.plan;
+  const std::size_t stance = robot.state().stance;
+  sight.force_N[stance] = 10;
+  sight.force_N[1 - stance] = 90;
+  (void)told.advance(robot.config, robot.wanted, sight, dt_s);
+  sight.over[stance].dcm_y_m += 0.3;
+  (void)wrong.advance(robot.config, robot.wanted, sight, dt_s);
+  CHECK(wrong.state().dcm.y_m - told.state().dcm.y_m == doctest::Approx(0.1 * 0.3 * robot.config.trust_per_s * dt_s));
 }
 
 TEST_CASE("WalkPlan walks at the velocity that is meant, in any direction") {

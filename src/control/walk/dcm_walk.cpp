@@ -99,8 +99,8 @@ void DcmWalk::declare_plan(Declaration& d) {
               &c.side_rate_share);
   d.parameter({"trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured."},
               &c.trust_per_s);
-  d.parameter({"settle_s", "s", 0, 1, c.settle_s, "After a landing, in which the measured xi comes to be trusted."},
-              &c.settle_s);
+  d.parameter({"by_load", "", 0, 1, c.by_load, "How far the feet's loads decide which one's measured xi counts."},
+              &c.by_load);
   d.parameter({"edge_share", "", 0, 2, c.edge_share, "Of the measured pressure across, for where xi will be."},
               &c.edge_share);
   d.parameter({"ankle_gain", "", 0, 20, c.ankle_gain, "Shift of the pressure per error of xi."}, &c.ankle_gain);

@@ -40,6 +40,23 @@ void WalkPlan::sway(const Config& c, const Sight& sight) noexcept {
   from_com_m_ = {sight.over[s.stance].com_m[0], sight.over[s.stance].com_m[1]};
 }
 
+// Whether the first step begins, or the other foot turns out to be the one that xi is near.
+bool WalkPlan::swayed(const Config& c, const Sight& sight) noexcept {
+  State& s = state_;
+  const double time_s = s.time_s;
+  if (std::abs(s.dcm.y_m - s.feet.from_m[1]) + astray_m < std::abs(s.dcm.y_m)) {
+    sway(c, sight);
+    s.time_s = time_s;
+    return true;
+  }
+  const double reached_m = c.width_m / (std::exp(c.side_rate_share * sight.rate_per_s * c.step_s) + 1);
+  if (std::abs(s.dcm.y_m) > reached_m && time_s < c.sway_s) return false;
+  s.phase = Phase::steps;
+  s.time_s = 0;
+  leave(sight);
+  return true;
+}
+
 // The other foot is about to leave the ground.
 void WalkPlan::leave(const Sight& sight) noexcept {
   const Vec3 &a = sight.over[state_.stance].foot_m, &b = sight.over[1 - state_.stance].foot_m;
@@ -74,12 +91,11 @@ void WalkPlan::look(const Config& c, const Sight& sight, double dt_s) noexcept {
   const double p_x_m = (1 - share) * sight.cop_x_m[s.stance] + share * (b[0] - a[0] + sight.cop_x_m[other]);
   const double p_y_m = (1 - share) * sight.cop_y_m[s.stance] + share * (b[1] - a[1] + sight.cop_y_m[other]);
   const DcmMeasure::OverFoot &seen = sight.over[s.stance], &beside = sight.over[other];
-  const GroundPoint missed{(1 - share) * seen.dcm_x_m + share * (beside.dcm_x_m + b[0] - a[0]) - s.dcm.x_m,
-                           (1 - share) * seen.dcm_y_m + share * (beside.dcm_y_m + b[1] - a[1]) - s.dcm.y_m};
-  const double trust_per_s =
-      c.trust_per_s * (s.phase == Phase::steps && c.settle_s > 0 ? std::min(s.time_s / c.settle_s, 1.0) : 1.0);
-  s.dcm.x_m += dt_s * (sight.rate_per_s * (s.dcm.x_m - p_x_m) + trust_per_s * missed.x_m);
-  s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + trust_per_s * missed.y_m);
+  const double of_other = c.by_load * share;
+  const GroundPoint missed{seen.dcm_x_m + of_other * (beside.dcm_x_m + b[0] - a[0] - seen.dcm_x_m) - s.dcm.x_m,
+                           seen.dcm_y_m + of_other * (beside.dcm_y_m + b[1] - a[1] - seen.dcm_y_m) - s.dcm.y_m};
+  s.dcm.x_m += dt_s * (sight.rate_per_s * (s.dcm.x_m - p_x_m) + c.trust_per_s * missed.x_m);
+  s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + c.trust_per_s * missed.y_m);
   if (s.phase == Phase::steps && s.time_s > flat_s)
     s.in_sole_y_m += std::min(dt_s / smooth_s, 1.0) * (sight.cop_y_m[s.stance] - s.in_sole_y_m);
 }
@@ -229,20 +245,7 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
   look(c, sight, dt_s);
   if (s.phase == Phase::rests) rest(c, wanted, sight);
   if (s.phase == Phase::bears || s.phase == Phase::rests) return false;
-  if (s.phase == Phase::sways) {
-    if (std::abs(s.dcm.y_m - s.feet.from_m[1]) + astray_m < std::abs(s.dcm.y_m)) {
-      const double time_s = s.time_s;
-      sway(c, sight);
-      s.time_s = time_s;
-      return true;
-    }
-    const double reached_m = c.width_m / (std::exp(c.side_rate_share * sight.rate_per_s * c.step_s) + 1);
-    if (std::abs(s.dcm.y_m) > reached_m && s.time_s < c.sway_s) return false;
-    s.phase = Phase::steps;
-    s.time_s = 0;
-    leave(sight);
-    return true;
-  }
+  if (s.phase == Phase::sways) return swayed(c, sight);
   if (s.prepares && s.time_s < 1.5 * dt_s && KickSwing::reaches(c.kick, wanted.kick, side_of(1 - s.stance)))
     s.kick.begin(c.kick, wanted.kick);
   s.prepares = false;

@@ -45,11 +45,11 @@ class WalkPlan {
     double place_weight = 0.05, time_weight = 0.05;  // of place and time beside that of the offset, 1
     double side_rate_share = 0.9;  // w across of the one along: the ankle roll's spring carries a part
     double trust_per_s = 30;       // observer gain for the measured xi
-    double settle_s = 0;           // after a landing, in which the measured xi comes to be trusted
-    double edge_share = 0;         // how much of the measured pressure across counts for where xi will be
-    double ankle_gain = 1.0;       // shift of the pressure per error of xi
-    double shift_x_m = 0.0;        // where the pressure is meant to be, before the foot's frame
-    double trim_per_s = 0.3;       // how fast the meant speed is corrected by the measured one
+    double by_load = 1;       // 1: each foot's measured xi counts by its load; 0: that of the stance foot alone does
+    double edge_share = 0;    // how much of the measured pressure across counts for where xi will be
+    double ankle_gain = 1.0;  // shift of the pressure per error of xi
+    double shift_x_m = 0.0;   // where the pressure is meant to be, before the foot's frame
+    double trim_per_s = 0.3;  // how fast the meant speed is corrected by the measured one
     double trim_max_m_s = 0.1;
     double touch_N = 15;          // a foot that bears this has landed
     double early_share = 0.6;     // of a swing, before which no landing counts
@@ -134,6 +134,7 @@ class WalkPlan {
   bool between_feet(const Config& config, double share) const noexcept;
   void rest(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
   void sway(const Config& config, const Sight& sight) noexcept;
+  bool swayed(const Config& config, const Sight& sight) noexcept;
 
   State state_;
   GroundPoint from_com_m_;  // the centre of mass over the stance foot at the last landing
