@@ -30,7 +30,6 @@ local hips = { velocity_max_rad_s = 3.63, acceleration_max_rad_s2 = 150 }
 local knees = { velocity_max_rad_s = 7, acceleration_max_rad_s2 = 250 }
 local fade_s, trim = 0.03, 0.1  -- in which the torques from before a landing go; share of an error that two steps correct
 local joints = { "hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch" }
-
 local left = { side = 1, stands = "left_stands", swings = "left_swings", holding = "l_holds", moving = "l_swings" }
 local right = { side = -1, stands = "right_stands", swings = "right_swings", holding = "r_holds", moving = "r_swings" }
 for _, joint in ipairs(joints) do left[joint], right[joint] = "l_" .. joint, "r_" .. joint end
