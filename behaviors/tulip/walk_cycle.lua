@@ -7,28 +7,28 @@ local floor = require "floor"
 local walk = require "walking"
 
 local P = k.params {
-  forward_m_s = { 0.3, min = -0.1, max = 0.5, unit = "m/s", doc = "velocity forward" },
+  forward_m_s = { 0.3, min = 0, max = 0.45, unit = "m/s", doc = "velocity forward" },
   for_s       = { 1e5, min = 0, max = 1e5, unit = "s", doc = "how long it walks" },
-  sure_s      = { 0.209, min = 0.02, max = 1, unit = "s", doc = "from when on a contact is the landing" },
-  bend_s      = { 0.167, min = 0.02, max = 1, unit = "s", doc = "until when the swinging knee bends; then it stretches" },
-  bend_rad    = { 0.542, min = 0, max = 1.5, unit = "rad", doc = "how far it bends" },
-  land_rad    = { 0.349, min = 0, max = 1, unit = "rad", doc = "the knee that lands" },
+  sure_s      = { 0.196, min = 0.02, max = 1, unit = "s", doc = "from when on a contact is the landing" },
+  bend_s      = { 0.161, min = 0.02, max = 1, unit = "s", doc = "until when the swinging knee bends; then it stretches" },
+  bend_rad    = { 0.474, min = 0, max = 1.5, unit = "rad", doc = "how far it bends" },
+  land_rad    = { 0.286, min = 0, max = 1, unit = "rad", doc = "the knee that lands" },
   bear_rad    = { 0.286, min = 0, max = 1, unit = "rad", doc = "the knee that bears" },
-  flat_s      = { 0.0436, min = 0, max = 1, unit = "s", doc = "until when the foot behind stays flat" },
-  toe_rad     = { -0.0963, min = -0.5, max = 0.5, unit = "rad", doc = "pitch of the sole that swings" },
-  ahead_m     = { 0.0257, min = -0.3, max = 0.3, unit = "m", doc = "foothold ahead of the hips" },
-  ahead_s     = { 0.0616, min = 0, max = 1, unit = "s", doc = "and per velocity of the hips" },
-  ahead_share = { 0.267, min = -2, max = 2, doc = "and per distance of the hips from the foot that stands" },
-  slower_s    = { 0.0776, min = -1, max = 1, unit = "s", doc = "and less, per velocity that is wanted" },
-  aside_m     = { 0.082, min = -0.3, max = 0.3, unit = "m", doc = "foothold beside the middle of the hips" },
-  aside_s     = { 0.103, min = 0, max = 1, unit = "s", doc = "and per velocity" },
-  aside_share = { -0.242, min = -2, max = 2, doc = "and per distance" },
+  flat_s      = { 0.0525, min = 0, max = 1, unit = "s", doc = "until when the foot behind stays flat" },
+  toe_rad     = { -0.0897, min = -0.5, max = 0.5, unit = "rad", doc = "pitch of the sole that swings" },
+  ahead_m     = { 0.0272, min = -0.3, max = 0.3, unit = "m", doc = "foothold ahead of the hips" },
+  ahead_s     = { 0.0716, min = 0, max = 1, unit = "s", doc = "and per velocity of the hips" },
+  ahead_share = { 0.353, min = -2, max = 2, doc = "and per distance of the hips from the foot that stands" },
+  slower_s    = { 0.0662, min = -1, max = 1, unit = "s", doc = "and less, per velocity that is wanted" },
+  aside_m     = { 0.0787, min = -0.3, max = 0.3, unit = "m", doc = "foothold beside the middle of the hips" },
+  aside_s     = { 0.0892, min = 0, max = 1, unit = "s", doc = "and per velocity" },
+  aside_share = { -0.298, min = -2, max = 2, doc = "and per distance" },
 }
 
 local bone_m, half_m = 0.275, 0.085  -- thigh and shank; from the middle of the hips to each
-local hips = { velocity_max_rad_s = 3.63, acceleration_max_rad_s2 = 150 }
+local hips = { velocity_max_rad_s = 3.29, acceleration_max_rad_s2 = 150 }
 local knees = { velocity_max_rad_s = 7, acceleration_max_rad_s2 = 250 }
-local fade_s, trim = 0.03, 0.1  -- in which the torques from before a landing go; share of an error that two steps correct
+local fade_s, trim = 0.029, 0.2  -- in which the torques from before a landing go; share of an error that two steps correct
 local joints = { "hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch" }
 local left = { side = 1, stands = "left_stands", swings = "left_swings", holding = "l_holds", moving = "l_swings" }
 local right = { side = -1, stands = "right_stands", swings = "right_swings", holding = "r_holds", moving = "r_swings" }
@@ -82,8 +82,8 @@ local function aim(m, s)
   local v, o = m.vars, s.odometry
   if v.at then
     local time_s, ahead_m, left_m = s.time_s - v.at.time_s, walk.as_seen(v.at, o)
-    v.forward_m_s = walk.within(v.forward_m_s + trim * (P.forward_m_s - ahead_m / time_s), 0.6)
-    v.left_m_s = walk.within(v.left_m_s - trim * left_m / time_s, 0.3)
+    v.forward_m_s = walk.within(v.forward_m_s + trim * (P.forward_m_s - ahead_m / time_s), 1.5)
+    v.left_m_s = walk.within(v.left_m_s - trim * left_m / time_s, 0.6)
   end
   v.at = { x_m = o.x_m, y_m = o.y_m, heading_rad = o.heading_rad, time_s = s.time_s }
 end

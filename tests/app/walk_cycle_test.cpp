@@ -76,7 +76,7 @@ TEST_CASE("Without the bumpless switch the legs of walk_cycle would change their
   const auto project = project_copy("walk_cycle_step");
   REQUIRE(edit(project / "config/tulip/robot.json", "  \"control\": {\n",
                "  \"control\": {\n    \"switch_fade_s\": 0.001, \"switch_step_max\": 1,\n"));
-  REQUIRE(edit(project / "behaviors/tulip/walk_cycle.lua", "fade_s, trim = 0.03, 0.1", "fade_s, trim = 0, 0.1"));
+  REQUIRE(edit(project / "behaviors/tulip/walk_cycle.lua", "fade_s, trim = 0.029, 0.2", "fade_s, trim = 0, 0.2"));
   CHECK(changes_of(walked(project)).step_max_Nm > 0.1 * limit_Nm);
 }
 
