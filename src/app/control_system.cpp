@@ -28,6 +28,7 @@ void add_shipped_types(ControlObjectTypes& types) {
   ADD_TYPE(dcm_step);
   ADD_TYPE(dcm_walk);
   ADD_TYPE(stance);
+  ADD_TYPE(stance_leg);
   ADD_TYPE(support_forces);
   ADD_TYPE(gravity_compensation);
   ADD_TYPE(gaze);

@@ -34,7 +34,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 71> breakages = {{
+constexpr std::array<Breakage, 72> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -107,6 +107,7 @@ constexpr std::array<Breakage, 71> breakages = {{
     {"kick", "behaviors/tulip/kick.lua", "P.rad, P.far_m", "P.rad + 0.4, P.far_m", "the ball goes straight, m"},
     {"fetch", "behaviors/tulip/fetch.lua", "near_m  = { 0.6", "near_m  = { 1.2", "is before the ball, m"},
     {"go_to_ball", "behaviors/lib/ball.lua", "seen.x_m, seen.y_m)", "seen.x_m, -seen.y_m)", "a goal"},
+    {"walk_cycle", "behaviors/tulip/walk_cycle.lua", "c:use(a.stands)", "c:use(a.swings)", "stays up"},
     {"walk", robot, "\"lift_m\": 0.03279", "\"lift_m\": 0", "stays up"},
     {"walk", "", "for_s=6", "for_s=60", "stands still at the end"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},

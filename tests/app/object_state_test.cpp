@@ -38,6 +38,7 @@ std::vector<Row> rows() {
                         {"dcm_step", leg_robot, all, feet},
                         {"dcm_walk", leg_robot, all, feet},
                         {"stance", leg_robot, all, feet},
+                        {"stance_leg", leg_robot, {1, 2, 3, 4}, {{{"foot", "l_foot"}}}},
                         {"support_forces", leg_robot, all, {{{"feet", "l_foot r_foot l_shank"}}}},
                         {"gravity_compensation", leg_robot, {2, 3, 4}},
                         {"gaze", head, {0, 1, 2, 3, 4, 5, 6}, test::eyes()},

@@ -15,7 +15,7 @@ using namespace kadans::program;
 
 namespace {
 
-constexpr double limit_Nm = 25, held = 16;
+constexpr double limit_Nm = 25, held = 512;
 
 // What a record tells of the switches from the tenth of a second on.
 struct Switching {
@@ -126,7 +126,7 @@ return k.behavior "held_or_loose" {
 )");
   const auto scenario = project / "config/scenarios/touched_feet.json";
   REQUIRE(edit(scenario, "\"touched\"]", "\"held_or_loose\"]"));
-  REQUIRE(edit(scenario, "== (engine.control_sets == 16)", "== (engine.control_sets == 16) or safety.faults == 0"));
+  REQUIRE(edit(scenario, "== (engine.control_sets == 512)", "== (engine.control_sets == 512) or safety.faults == 0"));
   const Outcome sim =
       run("sim config/scenarios/touched_feet.json --seed 71 --duration 10 --record states.mcap", project);
   REQUIRE_MESSAGE(sim.exit_code == 0, sim.out);

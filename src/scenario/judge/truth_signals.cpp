@@ -57,6 +57,7 @@ void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
   table.add({"plant.limits.speed_share", "", "Largest joint velocity as a share of its limit."}, &state_.speed_share);
   table.add({"plant.limits.overspeed_s", "s", "Time for which a joint has now been faster than its limit."},
             &state_.overspeed_s);
+  table.add({"plant.work_J", "J", "Mechanical work of all motors so far, braking counted as driving."}, &state_.work_J);
   table.add({"plant.solver.residual_m_s", "m/s",
              "Velocity by which the step's contacts and joints were not settled; beyond 0.01 its forces are not to be "
              "trusted."},
@@ -93,6 +94,7 @@ void TruthSignals::update_limits(double dt_s) noexcept {
       state_.motor_torque_share = std::max(state_.motor_torque_share, 1 - left_share);
       state_.torque_share = std::max(state_.torque_share, std::abs(truth.drive_torque_Nm[i]) / joint.effort_max_Nm);
     }
+    state_.work_J += dt_s * std::abs(truth.motor_torque_Nm[i] * truth.velocity_rad_s[i]);
     if (joint.velocity_max_rad_s > 0) {
       const double share = std::abs(truth.velocity_rad_s[i]) / joint.velocity_max_rad_s;
       overspeed_s_[i] = share > 1 ? overspeed_s_[i] + dt_s : 0;

@@ -11,6 +11,8 @@
 //   plant.limits.speed_share    the largest joint velocity, as a share of its limit. It is above 1 when something turns
 //                               the joint faster than its motor could; no motor accelerates it any more then
 //   plant.limits.overspeed_s    for how long a joint has now been above its limit without a break
+//   plant.work_J                mechanical work of all motors so far, |torque * joint velocity|, summed. One that
+//                               brakes counts as one that drives: nothing is won back
 //   reference.base.height_m     the height of the base if every joint were at its set-point
 //   reference.base.error_m      plant.base.height_m minus reference.base.height_m
 // It also declares the signals of WorldSignals, and those of GazeTruth for eyes that are watched.
@@ -112,7 +114,7 @@ class TruthSignals {
   struct State {
     double height_m = 0, x_m = 0, y_m = 0, tilt_rad = 0, yaw_rad = 0, speed_m_s = 0, jump_m = 0;
     double position_rad = 0, motor_torque_share = 0, torque_share = 0, speed_share = 0, overspeed_s = 0;
-    double residual_m_s = 0;
+    double residual_m_s = 0, work_J = 0;
     double reference_height_m = 0, reference_error_m = 0;
   };
   struct FootState {

@@ -7,6 +7,7 @@
 #include "control/drive/spring_torque.h"
 #include "control/joint/trajectory_list.h"
 #include "control/walk/dcm_walk.h"
+#include "control/walk/stance_leg.h"
 #include "kadans/control/plugin.h"
 
 #define PLUGGED(type) kadans::plugin_type<kadans::make_##type>("plugged_" #type)
@@ -14,5 +15,5 @@
 KADANS_PLUGIN(PLUGGED(joint_pid), PLUGGED(joint_cascade), PLUGGED(joint_impedance), PLUGGED(joint_integrator),
               PLUGGED(joint_velocity), PLUGGED(trajectory_list), PLUGGED(profile_position), PLUGGED(feedforward_player),
               PLUGGED(computed_torque), PLUGGED(dcm_balance), PLUGGED(dcm_step), PLUGGED(dcm_walk), PLUGGED(stance),
-              PLUGGED(gravity_compensation), PLUGGED(gaze), PLUGGED(spring_torque), PLUGGED(support_forces),
-              PLUGGED(task_impedance), PLUGGED(whole_body))
+              PLUGGED(stance_leg), PLUGGED(gravity_compensation), PLUGGED(gaze), PLUGGED(spring_torque),
+              PLUGGED(support_forces), PLUGGED(task_impedance), PLUGGED(whole_body))
