@@ -34,6 +34,9 @@ function legs.kick(m, s, pose, place, beyond_m)
   order(m, s, "foot.kick", { x_m = at.x_m, y_m = at.y_m, beyond_m = beyond_m })
 end
 
+-- The keeper throws itself to "left" or "right"; then it gets up.
+function legs.dive(m, s, side) order(m, s, "foot.dive", { left = side == "left" and 1 or 0 }) end
+
 function legs.turn(m, s, rad_s) order(m, s, "foot.turn", { rad_s = rad_s }) end
 function legs.stand(m, s) order(m, s, "foot.stand", {}) end
 

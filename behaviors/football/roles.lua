@@ -12,7 +12,8 @@ local walks_m_s, turns_rad_s = 0.3, 0.6
 -- Seconds to stand behind the ball, facing the others' goal.
 function roles.far(pose, ball)
   if not ball then return 60 end
-  local behind = { x_m = ball.x_m - 0.4, y_m = ball.y_m }
+  local rest = ball.rest or ball
+  local behind = { x_m = rest.x_m - 0.4, y_m = rest.y_m }
   local toward_rad = math.atan2(ball.y_m - pose.y_m, ball.x_m - pose.x_m)
   return field.distance(pose, behind) / walks_m_s + math.abs(field.angle(toward_rad - pose.heading_rad)) / turns_rad_s
 end

@@ -1,6 +1,6 @@
 -- Walks to places and kicks the ball as somebody decides from moment to moment: the decisions of a football team, over
 -- the events below. Places are as the robot sees them when the event comes, x ahead and y to the left. An order holds
--- until the next one; without one for a while the robot comes to stand. When it falls, it gets up.
+-- until the next one; without one for a while the robot comes to stand. When it falls, or threw itself to a side, it gets up.
 local k = require "kadans"
 local ball = require "ball"
 local floor = require "floor"
@@ -61,12 +61,24 @@ local function obey(m, s)
   elseif order.what == "foot.go" then
     if kicks then walk.keep(m) end
     go(m, order)
-  elseif b then
+  elseif b and order.what == "foot.kick" then
     ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s)
   end
 end
 
 local function lies(s) return floor.lies(s.base) end
+local function dives(side)
+  return function(_, m)
+    local order = m.vars.order
+    return order ~= nil and order.what == "foot.dive" and (order.data.left > 0.5) == (side == "left")
+  end
+end
+
+local function let_go(m)
+  walk.keep(m)
+  walk.stop(m)
+  m.vars.known, m.vars.order, m.vars.armed = {}, nil, false
+end
 
 return k.behavior "footwork" {
   controls = "walking",
@@ -83,13 +95,21 @@ return k.behavior "footwork" {
     endless = true,
     during = obey,
     { when = lies, to = "fallen", why = "lies" },
+    { when = dives "left", to = "dive_left" },
+    { when = dives "right", to = "dive_right" },
+  },
+  k.state "dive_left" {
+    enter = let_go,
+    k.call "dive" { left = 1 },
+    { on = { "done", "failed" }, to = "fallen" },
+  },
+  k.state "dive_right" {
+    enter = let_go,
+    k.call "dive" { left = 0 },
+    { on = { "done", "failed" }, to = "fallen" },
   },
   k.state "fallen" {
-    enter = function(m)
-      walk.keep(m)
-      walk.stop(m)
-      m.vars.known, m.vars.order, m.vars.armed = {}, nil, false
-    end,
+    enter = let_go,
     k.call "get_up",
     { on = "done", to = "set_out" },
     { on = "failed", to = "fallen", why = "tries again" },

@@ -1,0 +1,90 @@
+-- Which kick: at the goal, to a mate, or a short one ahead, to go on from there. All are judged alike (chance.lua), and the
+-- best one is kept until another one is clearly better.
+local chance = require "chance"
+local field = require "field"
+local game = require "game"
+
+local kicks = {}
+
+local again_s = 0.3                   -- how often it thinks again
+local better, better_near = 0.04, 0.15  -- by how much another kick must be better; with the ball at its feet
+local turns = 0.03                    -- what a radian costs of the way around the ball; more when somebody presses
+local presses_m, pressed = 1.5, 0.08
+local dribble_m, pass_ahead_m = 1.1, 0.4
+local behind_goal_m = 0.4             -- a shot is aimed there: a ball on the line goes in as well
+
+-- The robots that it sees, and mates that told where they are; itself among them.
+function kicks.robots(m, s, pose)
+  local all = field.robots(s, pose)
+  for _, mate in pairs(m.vars.mates) do
+    if s.time_s - mate.heard_s < 3 then all[#all + 1] = { x_m = mate.x_m, y_m = mate.y_m, mate = true } end
+  end
+  all[#all + 1] = { x_m = pose.x_m, y_m = pose.y_m, mate = true, kicks = true }
+  return all
+end
+
+local function at_the_goal(me, list)
+  local x_m = me.length_m / 2 + behind_goal_m
+  for _, share in ipairs { 0, -0.3, 0.3, -0.6, 0.6 } do
+    list[#list + 1] = { name = "shoot", x_m = x_m, y_m = share * me.goal_m / 2, beyond_m = 1.5 }
+  end
+end
+
+local function to_mates(m, s, list)
+  for number, mate in pairs(m.vars.mates) do
+    if number ~= s.seen.me.keeper and mate.plays and s.time_s - mate.heard_s < 3 then
+      list[#list + 1] = { name = "pass", to = number, x_m = mate.x_m + pass_ahead_m, y_m = mate.y_m, beyond_m = 0.2 }
+    end
+  end
+end
+
+local function ahead(ball, list)
+  for _, rad in ipairs { 0, -0.5, 0.5, -1, 1, -1.5, 1.5 } do
+    list[#list + 1] = {
+      name = "dribble", x_m = ball.x_m + dribble_m * math.cos(rad), y_m = ball.y_m + dribble_m * math.sin(rad), beyond_m = 0,
+    }
+  end
+end
+
+-- All that it may do with the ball, each with its worth.
+function kicks.all(m, s, pose, ball)
+  local me, can = s.seen.me, m.vars.can
+  local robots, list = kicks.robots(m, s, pose), {}
+  at_the_goal(me, list)
+  if can.dribble then ahead(ball, list) end
+  if can.pass then to_mates(m, s, list) end
+  local toward_rad = math.atan2(ball.y_m - pose.y_m, ball.x_m - pose.x_m)
+  local cost = turns
+  for _, robot in ipairs(robots) do
+    if not robot.mate and field.distance(robot, ball) < presses_m then cost = pressed end
+  end
+  for _, kick in ipairs(list) do
+    local rad = math.atan2(kick.y_m - ball.y_m, kick.x_m - ball.x_m)
+    kick.worth = chance.of_kick(me, robots, ball, kick, kick.beyond_m, game.indirect(s)) -
+      cost * math.abs(field.angle(rad - toward_rad))
+  end
+  return list
+end
+
+local function same(a, b)
+  return a.name == b.name and a.to == b.to and (a.x_m - b.x_m) ^ 2 + (a.y_m - b.y_m) ^ 2 < 0.3 ^ 2
+end
+
+-- The kick that it goes for.
+function kicks.choose(m, s, pose, ball)
+  local now = m.vars.kick
+  if now and s.time_s - now.chosen_s < again_s and s.time_s >= now.chosen_s then return now end
+  local list = kicks.all(m, s, pose, ball)
+  local best, kept
+  for _, kick in ipairs(list) do
+    if not best or kick.worth > best.worth then best = kick end
+    if now and same(kick, now) then kept = kick end
+  end
+  local margin = field.distance(pose, ball) < 0.6 and better_near or better
+  local chosen = kept and best.worth < kept.worth + margin and kept or best
+  chosen.chosen_s = s.time_s
+  m.vars.kick = chosen
+  return chosen
+end
+
+return kicks
