@@ -54,16 +54,12 @@ function game.goal(s) return { x_m = s.seen.me.length_m / 2, y_m = 0 } end
 function game.own_goal(s) return { x_m = -s.seen.me.length_m / 2, y_m = 0 } end
 
 -- Where the ball is by what the robot sees, or else by what its mates say: { x_m =, y_m =, own = }, or nil. What it
--- sees itself may roll, too: rolls = { x_m_s =, y_m_s = }, and rest: where it comes to rest.
+-- sees itself has rolls and rest, too (rolling.lua).
 function game.ball(m, s, pose)
-  local ball = s.seen.ball
-  local rolls = rolling.watch(m.vars.rolling, s, pose)
-  if ball.confidence > 0 and ball.age_s < 2 and ball.carried then
-    local at = field.from_robot(pose, ball.x_m, ball.y_m)
-    at.own = true
-    at.rolls = rolls
-    at.rest = rolls and rolling.rest(at, rolls) or at
-    return at
+  local ball = rolling.watch(m.vars.rolling, s, pose)
+  if ball then
+    ball.own = true
+    return ball
   end
   local best
   for _, mate in pairs(m.vars.mates) do

@@ -8,8 +8,9 @@ local kicks = {}
 
 local again_s = 0.3                   -- how often it thinks again
 local better, better_near = 0.04, 0.15  -- by how much another kick must be better; with the ball at its feet
-local turns = 0.03                    -- what a radian costs of the way around the ball; more when somebody presses
-local presses_m, pressed = 1.5, 0.08
+local turns = 0.06                    -- what a radian of the way around the ball costs; more when somebody presses,
+local presses_m, pressed = 1.5, 0.1
+local hurries_s, hurry = 3, 0.06      -- and by so much a second more when the ball rests long: 10 s is a stuck game
 local dribble_m, pass_ahead_m = 1.1, 0.4
 local behind_goal_m = 0.4             -- a shot is aimed there: a ball on the line goes in as well
 
@@ -23,10 +24,12 @@ function kicks.robots(m, s, pose)
   return all
 end
 
-local function at_the_goal(me, list)
-  local x_m = me.length_m / 2 + behind_goal_m
-  for _, share in ipairs { 0, -0.3, 0.3, -0.6, 0.6 } do
-    list[#list + 1] = { name = "shoot", x_m = x_m, y_m = share * me.goal_m / 2, beyond_m = 1.5 }
+local function at_the_goal(me, ball, list)
+  local x_m, post_m = me.length_m / 2 + behind_goal_m, me.goal_m / 2
+  for _, y_m in ipairs { 0, -0.3 * post_m, 0.3 * post_m, -0.6 * post_m, 0.6 * post_m, ball.y_m } do
+    if math.abs(y_m) < post_m - 0.15 then
+      list[#list + 1] = { name = "shoot", x_m = x_m, y_m = y_m, beyond_m = 1.5 }
+    end
   end
 end
 
@@ -38,26 +41,36 @@ local function to_mates(m, s, list)
   end
 end
 
-local function ahead(ball, list)
-  for _, rad in ipairs { 0, -0.5, 0.5, -1, 1, -1.5, 1.5 } do
+-- Ahead, and as it comes to the ball.
+local function ahead(ball, toward_rad, list)
+  for _, rad in ipairs { 0, -0.5, 0.5, -1, 1, -1.5, 1.5, toward_rad, toward_rad - 0.4, toward_rad + 0.4 } do
     list[#list + 1] = {
       name = "dribble", x_m = ball.x_m + dribble_m * math.cos(rad), y_m = ball.y_m + dribble_m * math.sin(rad), beyond_m = 0,
     }
   end
 end
 
+-- What a radian of the way around the ball costs.
+local function turns_cost(m, s, robots, ball)
+  local vars, cost = m.vars, turns
+  for _, robot in ipairs(robots) do
+    if not robot.mate and field.distance(robot, ball) < presses_m then cost = pressed end
+  end
+  if not vars.rests or field.distance(vars.rests, ball) > 0.3 then
+    vars.rests = { x_m = ball.x_m, y_m = ball.y_m, since_s = s.time_s }
+  end
+  return cost + hurry * math.max(0, s.time_s - vars.rests.since_s - hurries_s)
+end
+
 -- All that it may do with the ball, each with its worth.
 function kicks.all(m, s, pose, ball)
   local me, can = s.seen.me, m.vars.can
   local robots, list = kicks.robots(m, s, pose), {}
-  at_the_goal(me, list)
-  if can.dribble then ahead(ball, list) end
-  if can.pass then to_mates(m, s, list) end
   local toward_rad = math.atan2(ball.y_m - pose.y_m, ball.x_m - pose.x_m)
-  local cost = turns
-  for _, robot in ipairs(robots) do
-    if not robot.mate and field.distance(robot, ball) < presses_m then cost = pressed end
-  end
+  at_the_goal(me, ball, list)
+  if can.dribble then ahead(ball, toward_rad, list) end
+  if can.pass then to_mates(m, s, list) end
+  local cost = turns_cost(m, s, robots, ball)
   for _, kick in ipairs(list) do
     local rad = math.atan2(kick.y_m - ball.y_m, kick.x_m - ball.x_m)
     kick.worth = chance.of_kick(me, robots, ball, kick, kick.beyond_m, game.indirect(s)) -

@@ -1,24 +1,32 @@
--- How the ball rolls, by where it was seen in the last half second, and where that ends.
+-- Where the ball is by what the robot sees itself, how it rolls, and where that ends. A picture may show a ball where none
+-- is: one that does not fit to what was seen before counts when the next one says the same.
 local field = require "field"
 
 local rolling = {}
 
-local remembers_s, least = 0.5, 3  -- sightings; fewer than so many say nothing
-local fastest_m_s, beside_m = 3.5, 0.3  -- what is farther from the last sighting than a kick takes it, is no ball
+local remembers_s, least = 0.5, 3  -- sightings that say how it rolls; fewer than so many say nothing
+local knows_s = 2                  -- so long a ball is where it was seen last
+local fastest_m_s, beside_m = 3.5, 0.3  -- what is farther from the last sighting than a kick takes it, does not fit
 local rolls_m_s = 0.35             -- what is slower rests
 rolling.slows_m_s2 = 0.28
 
-local function note(known, picture_s, at)
-  local last = known.seen[#known.seen]
-  if last then
-    local far_m = beside_m + fastest_m_s * (picture_s - last.s)
-    local odd = field.distance(at, last) > far_m
-    if odd and not known.odd then known.odd = true return end
-    if odd then known.seen = {} end
+local function fits(at, before)
+  return before and field.distance(at, before) < beside_m + fastest_m_s * math.min(at.s - before.s, 0.3)
+end
+
+local function note(known, at)
+  local seen = known.seen
+  if fits(at, seen[#seen]) then
+    known.odd = nil
+  elseif fits(at, known.odd) then
+    seen = { known.odd }
+    known.seen, known.odd = seen, nil
+  else
+    known.odd = at
+    return
   end
-  known.odd = false
-  known.seen[#known.seen + 1] = { s = picture_s, x_m = at.x_m, y_m = at.y_m }
-  while picture_s - known.seen[1].s > remembers_s do table.remove(known.seen, 1) end
+  seen[#seen + 1] = at
+  while at.s - seen[1].s > remembers_s do table.remove(seen, 1) end
 end
 
 -- The line through the sightings, by least squares.
@@ -34,25 +42,43 @@ local function velocity(seen)
   return sx / ss, sy / ss
 end
 
--- To be called in each tick with the table that it keeps: { x_m_s =, y_m_s =, m_s = }, or nil for a ball that rests or
--- is not known well enough.
+local function how(seen)
+  if #seen < least then return nil end
+  local x_m_s, y_m_s = velocity(seen)
+  local m_s = math.sqrt(x_m_s ^ 2 + y_m_s ^ 2)
+  return m_s > rolls_m_s and { x_m_s = x_m_s, y_m_s = y_m_s, m_s = m_s } or nil
+end
+
+local function mean(seen)
+  local x_m, y_m = 0, 0
+  for _, one in ipairs(seen) do x_m, y_m = x_m + one.x_m, y_m + one.y_m end
+  return { x_m = x_m / #seen, y_m = y_m / #seen }
+end
+
+-- To be called in each tick with the table that it keeps: { x_m =, y_m =, rolls =, rest = }, on the field, or nil. rolls is
+-- { x_m_s =, y_m_s =, m_s = }, nil for a ball that rests or is not known well enough; rest is where it will lie.
 function rolling.watch(known, s, pose)
   local ball = s.seen.ball
   known.seen = known.seen or {}
-  if not (ball.confidence > 0) or not ball.carried or ball.age_s > remembers_s then
-    known.seen = {}
+  if not (ball.confidence > 0) or not ball.carried then
+    known.seen, known.odd = {}, nil
     return nil
   end
   local picture_s = s.time_s - ball.age_s
-  if not known.last_s or picture_s > known.last_s + 1e-3 then
-    known.last_s = picture_s
-    note(known, picture_s, field.from_robot(pose, ball.x_m, ball.y_m))
+  if not known.picture_s or picture_s > known.picture_s + 1e-3 then
+    known.picture_s = picture_s
+    local at = field.from_robot(pose, ball.x_m, ball.y_m)
+    at.s = picture_s
+    note(known, at)
   end
-  if #known.seen < least then return nil end
-  local x_m_s, y_m_s = velocity(known.seen)
-  local m_s = math.sqrt(x_m_s ^ 2 + y_m_s ^ 2)
-  if m_s < rolls_m_s then return nil end
-  return { x_m_s = x_m_s, y_m_s = y_m_s, m_s = m_s }
+  local seen = known.seen
+  local last = seen[#seen]
+  if not last or s.time_s - last.s > knows_s then return nil end
+  local rolls = how(seen)
+  local at = rolls and { x_m = last.x_m, y_m = last.y_m } or mean(seen)
+  at.rolls = rolls
+  at.rest = rolls and rolling.rest(at, rolls) or at
+  return at
 end
 
 -- Where a ball that is `at` and rolls so comes to rest.

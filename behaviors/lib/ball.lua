@@ -36,7 +36,7 @@ local around_m = 0.6  -- radius of the way around the ball
 -- Walks toward a place, facing it.
 local function toward(m, at, x_m, y_m, most_m_s)
   local turn_rad = walk.angle(math.atan2(y_m - at.y_m, x_m - at.x_m) - at.heading_rad)
-  walk.go(m, walk.slowed { forward_m_s = most_m_s * math.max(0, math.cos(turn_rad)) ^ 3, turn_rad_s = walk.within(1.5 * turn_rad, 0.6) })
+  walk.go(m, walk.slowed { forward_m_s = most_m_s * math.max(0, math.cos(turn_rad)) ^ 2, turn_rad_s = walk.within(1.5 * turn_rad, 0.75) })
 end
 
 -- In each tick: a step of the way around the ball b until it is between the robot and the target, and then the kick, so
@@ -53,11 +53,11 @@ function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s)
   local place = walk.to_kick(b, rad, m.vars.side, rad)
   local off_m = walk.distance(place, at)
   if behind > 0.15 and math.abs(left) < 0.15 + 0.7 * (behind - 0.15) then
-    if off_m > 0.5 then
+    if off_m > 0.4 then
       toward(m, at, place.x_m, place.y_m, most_m_s)
     else
       walk.beside(m, place)
-      if off_m < 0.2 and math.abs(walk.angle(rad - at.heading_rad)) < 0.3 then
+      if off_m < 0.25 and math.abs(walk.angle(rad - at.heading_rad)) < 0.3 then
         local far_m = walk.distance(target, b) + beyond_m
         walk.kick(m, b, rad, math.min(far_m, 4.5), roll_m_s2)
       end

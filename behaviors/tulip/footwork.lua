@@ -11,7 +11,7 @@ local P = k.params {
   settle_s   = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
   patience_s = { 1, min = 0.1, max = 60, unit = "s", doc = "without a word of who decides, after which it stands" },
   roll_m_s2  = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
-  most_m_s   = { 0.42, min = 0.05, max = 0.6, unit = "m/s", doc = "how fast it walks to the ball" },
+  most_m_s   = { 0.5, min = 0.05, max = 0.6, unit = "m/s", doc = "how fast it walks to the ball" },
   after_s    = { 0.6, min = 0, max = 10, unit = "s", doc = "time in place after a kick" },
 }
 

@@ -1,0 +1,73 @@
+-- kadans behavior test behaviors/football/kicks_test.lua
+local kicks = require "kicks"
+
+local unseen = { confidence = 0, age_s = 0 }
+local function situation(can)
+  local s = {
+    time_s = 10,
+    seen = {
+      robot_1 = unseen, robot_2 = unseen, robot_3 = unseen,
+      game = { ours = -1, set_play = 0 },
+      me = { number = 2, keeper = 1, players = 3, length_m = 9, width_m = 6, goal_m = 2.6, circle_m = 0.75, mark_m = 1.5 },
+    },
+  }
+  return { vars = { mates = {}, can = can or { pass = true, dribble = true } } }, s
+end
+local function sees(s, pose, x_m, y_m)  -- an opponent there; the robot faces the goal
+  s.seen.robot_1 = { confidence = 1, age_s = 0, x_m = x_m - pose.x_m, y_m = y_m - pose.y_m, mate = 0 }
+end
+local function facing(x_m, y_m) return { x_m = x_m, y_m = y_m, heading_rad = 0 } end
+
+describe("kicks", function()
+  it("shoots at the open goal", function()
+    local m, s = situation()
+    expect(kicks.choose(m, s, facing(2.6, 0), { x_m = 3, y_m = 0 }).name).to_equal "shoot"
+  end)
+
+  it("aims beside the keeper", function()
+    local m, s = situation()
+    local pose = facing(2.6, 0)
+    sees(s, pose, 4, -0.2)
+    local kick = kicks.choose(m, s, pose, { x_m = 3, y_m = 0 })
+    expect(kick.name).to_equal "shoot"
+    expect(kick.y_m).to_be_above(0.3)
+  end)
+
+  it("passes to a mate before the goal when an opponent stands in its own way, unless it may not", function()
+    local m, s = situation()
+    local pose = facing(1.1, -2)
+    sees(s, pose, 2.2, -1.7)
+    m.vars.mates[3] = { heard_s = 9.5, plays = true, x_m = 2.6, y_m = 0.2 }
+    local kick = kicks.choose(m, s, pose, { x_m = 1.5, y_m = -2 })
+    expect(kick.name).to_equal "pass"
+    expect(kick.to).to_equal(3)
+    m, s = situation { pass = false, dribble = true }
+    sees(s, pose, 2.2, -1.7)
+    expect(kicks.choose(m, s, pose, { x_m = 1.5, y_m = -2 }).name == "pass").to_be_false()
+  end)
+
+  it("keeps what it has chosen while nothing is clearly better", function()
+    local m, s = situation()
+    local first = kicks.choose(m, s, facing(1.5, 0), { x_m = 2, y_m = 0 })
+    s.time_s = 10.5
+    local second = kicks.choose(m, s, facing(1.55, 0.1), { x_m = 2.02, y_m = 0.03 })
+    expect(second.name).to_equal(first.name)
+    expect(second.y_m).to_be_near(first.y_m, 0.05)
+  end)
+
+  it("goes rather not around a ball that has rested for long", function()
+    local m, s = situation()
+    local pose, ball = { x_m = 2.4, y_m = 0, heading_rad = math.pi }, { x_m = 2, y_m = 0 }
+    local function around(kick) return math.abs(math.atan2(kick.y_m - ball.y_m, kick.x_m - ball.x_m)) end
+    expect(around(kicks.choose(m, s, pose, ball))).to_be_below(1.1)
+    s.time_s = 17
+    expect(around(kicks.choose(m, s, pose, ball))).to_be_above(1.4)
+  end)
+
+  it("kicks a ball that lies on the goal line over it", function()
+    local m, s = situation()
+    local kick = kicks.choose(m, s, facing(4.1, 0.9), { x_m = 4.52, y_m = 0.9 })
+    expect(kick.name).to_equal "shoot"
+    expect(kick.x_m).to_be_above(4.6)
+  end)
+end)
