@@ -15,6 +15,13 @@ describe("keeper", function()
     expect(keeper.passes(s, { x_m = -4.2, y_m = 0, heading_rad = math.pi }, ball(-3, 0, -1.4, 0.7))).to_equal "right"
   end)
 
+  it("believes a kick from near as soon as it shows", function()
+    local kicked = { x_m = -2.75, y_m = 0.11, kicked = { from = { x_m = -3, y_m = 0 }, x_m = -3.25, y_m = 0.11 } }
+    expect(keeper.passes(s, pose, kicked)).to_equal "left"
+    kicked.kicked.x_m = -2.75
+    expect(keeper.passes(s, pose, kicked)).to_be_nil()
+  end)
+
   it("stays up for one that comes to it, rests before, misses the goal or comes late", function()
     expect(keeper.passes(s, pose, ball(-3, 0, -1.4, 0.05))).to_be_nil()
     expect(keeper.passes(s, pose, ball(0, 0, -1, 0.2))).to_be_nil()

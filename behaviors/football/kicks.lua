@@ -7,16 +7,35 @@ local game = require "game"
 local kicks = {}
 
 local again_s = 0.3                   -- how often it thinks again
-local better, better_near = 0.04, 0.15  -- by how much another kick must be better; with the ball at its feet
+local better, better_near = 0.08, 0.2  -- by how much another kick must be better; with the ball before its feet
+local before_feet_m = 0.9
 local turns = 0.06                    -- what a radian of the way around the ball costs; more when somebody presses,
 local presses_m, pressed = 1.5, 0.1
 local hurries_s, hurry = 3, 0.06      -- and by so much a second more when the ball rests long: 10 s is a stuck game
 local dribble_m, pass_ahead_m = 1.1, 0.4
 local behind_goal_m = 0.4             -- a shot is aimed there: a ball on the line goes in as well
 
--- The robots that it sees, and mates that told where they are; itself among them.
+local forgets_s, same_m = 4, 0.6      -- a robot that was seen there, and is out of sight
+
+-- To be called in each tick: the others' robots as they were seen last. Looking away does not free the way.
+function kicks.look(m, s, pose)
+  local known = {}
+  for _, robot in ipairs(field.robots(s, pose)) do
+    if not robot.mate then known[#known + 1] = { x_m = robot.x_m, y_m = robot.y_m, mate = false, s = s.time_s } end
+  end
+  local seen = #known
+  for _, old in ipairs(m.vars.others) do
+    local again = s.time_s - old.s > forgets_s
+    for i = 1, seen do again = again or field.distance(known[i], old) < same_m end
+    if not again and #known < 6 then known[#known + 1] = old end
+  end
+  m.vars.others = known
+end
+
+-- The others, and mates that told where they are; itself among them.
 function kicks.robots(m, s, pose)
-  local all = field.robots(s, pose)
+  local all = {}
+  for i, robot in ipairs(m.vars.others) do all[i] = robot end
   for _, mate in pairs(m.vars.mates) do
     if s.time_s - mate.heard_s < 3 then all[#all + 1] = { x_m = mate.x_m, y_m = mate.y_m, mate = true } end
   end
@@ -93,7 +112,7 @@ function kicks.choose(m, s, pose, ball)
     if not best or kick.worth > best.worth then best = kick end
     if now and same(kick, now) then kept = kick end
   end
-  local margin = field.distance(pose, ball) < 0.6 and better_near or better
+  local margin = field.distance(pose, ball) < before_feet_m and better_near or better
   local chosen = kept and best.worth < kept.worth + margin and kept or best
   chosen.chosen_s = s.time_s
   m.vars.kick = chosen

@@ -11,10 +11,11 @@ local function situation(can)
       me = { number = 2, keeper = 1, players = 3, length_m = 9, width_m = 6, goal_m = 2.6, circle_m = 0.75, mark_m = 1.5 },
     },
   }
-  return { vars = { mates = {}, can = can or { pass = true, dribble = true } } }, s
+  return { vars = { mates = {}, others = {}, can = can or { pass = true, dribble = true } } }, s
 end
-local function sees(s, pose, x_m, y_m)  -- an opponent there; the robot faces the goal
+local function sees(m, s, pose, x_m, y_m)  -- an opponent there; the robot faces the goal
   s.seen.robot_1 = { confidence = 1, age_s = 0, x_m = x_m - pose.x_m, y_m = y_m - pose.y_m, mate = 0 }
+  kicks.look(m, s, pose)
 end
 local function facing(x_m, y_m) return { x_m = x_m, y_m = y_m, heading_rad = 0 } end
 
@@ -27,7 +28,7 @@ describe("kicks", function()
   it("aims beside the keeper", function()
     local m, s = situation()
     local pose = facing(2.6, 0)
-    sees(s, pose, 4, -0.2)
+    sees(m, s, pose, 4, -0.2)
     local kick = kicks.choose(m, s, pose, { x_m = 3, y_m = 0 })
     expect(kick.name).to_equal "shoot"
     expect(kick.y_m).to_be_above(0.3)
@@ -36,14 +37,26 @@ describe("kicks", function()
   it("passes to a mate before the goal when an opponent stands in its own way, unless it may not", function()
     local m, s = situation()
     local pose = facing(1.1, -2)
-    sees(s, pose, 2.2, -1.7)
+    sees(m, s, pose, 2.2, -1.7)
     m.vars.mates[3] = { heard_s = 9.5, plays = true, x_m = 2.6, y_m = 0.2 }
     local kick = kicks.choose(m, s, pose, { x_m = 1.5, y_m = -2 })
     expect(kick.name).to_equal "pass"
     expect(kick.to).to_equal(3)
     m, s = situation { pass = false, dribble = true }
-    sees(s, pose, 2.2, -1.7)
+    sees(m, s, pose, 2.2, -1.7)
     expect(kicks.choose(m, s, pose, { x_m = 1.5, y_m = -2 }).name == "pass").to_be_false()
+  end)
+
+  it("remembers an opponent that is out of sight for a while", function()
+    local m, s = situation()
+    local pose = facing(2.6, 0)
+    sees(m, s, pose, 4, 0)
+    s.seen.robot_1, s.time_s = unseen, 12
+    kicks.look(m, s, pose)
+    expect(#m.vars.others).to_equal(1)
+    s.time_s = 15
+    kicks.look(m, s, pose)
+    expect(#m.vars.others).to_equal(0)
   end)
 
   it("keeps what it has chosen while nothing is clearly better", function()

@@ -1,6 +1,7 @@
 -- Who does what, agreed without a master: each says how long it takes to the ball, and each sees by the same rule who is
 -- the striker. Who is silent or may not play is not there.
 local field = require "field"
+local game = require "game"
 local keeper = require "keeper"
 
 local roles = {}
@@ -18,12 +19,30 @@ function roles.far(pose, ball)
   return field.distance(pose, behind) / walks_m_s + math.abs(field.angle(toward_rad - pose.heading_rad)) / turns_rad_s
 end
 
+local function mates_that_play(m, s)
+  local count = 0
+  for _, mate in pairs(m.vars.mates) do
+    if s.time_s - mate.heard_s < silent_s and mate.plays then count = count + 1 end
+  end
+  return count
+end
+
+-- All its mates are off the field, or silent: nobody goes to the ball but the keeper, unless an opponent is there sooner.
+local function keeper_goes(m, s, pose, ball)
+  if s.seen.me.players < 2 or not ball or mates_that_play(m, s) > 0 or game.keeps_away(s) then return false end
+  local own_m = field.distance(pose, ball.rest or ball) - (m.vars.role == "striker" and 0.5 or 0)
+  for _, robot in ipairs(m.vars.others) do
+    if field.distance(robot, ball.rest or ball) < own_m + 1 then return false end
+  end
+  return true
+end
+
 function roles.pick(m, s, pose, ball)
   local me = s.seen.me
-  if me.number == me.keeper then return "keeper" end
+  if me.number == me.keeper then return keeper_goes(m, s, pose, ball) and "striker" or "keeper" end
   local own_s = roles.far(pose, ball) - (m.vars.role == "striker" and keeps_s or 0)
   for number, mate in pairs(m.vars.mates) do
-    if number ~= me.keeper and s.time_s - mate.heard_s < silent_s and mate.plays then
+    if (number ~= me.keeper or mate.role == "striker") and s.time_s - mate.heard_s < silent_s and mate.plays then
       local their_s = mate.far_s - (mate.role == "striker" and keeps_s or 0)
       if their_s < own_s or (their_s == own_s and number < me.number) then return "supporter" end
     end

@@ -10,6 +10,8 @@ local fastest_m_s, beside_m = 3.5, 0.3  -- what is farther from the last sightin
 local rolls_m_s = 0.35             -- what is slower rests
 rolling.slows_m_s2 = 0.28
 
+local kicked_m, short_s = 0.2, 0.8   -- a ball that lay, and is so far from there, was kicked; and how long that is news
+
 local function fits(at, before)
   return before and field.distance(at, before) < beside_m + fastest_m_s * math.min(at.s - before.s, 0.3)
 end
@@ -42,6 +44,24 @@ local function velocity(seen)
   return sx / ss, sy / ss
 end
 
+-- A kick shows in two pictures, long before its speed does: where the ball lay, and where it is now.
+local function note_kick(known, at)
+  local lay = known.lay
+  if not lay or at.s - lay.s > knows_s then
+    known.lay = { x_m = at.x_m, y_m = at.y_m, s = at.s }
+  elseif field.distance(at, lay) < kicked_m then
+    lay.x_m, lay.y_m, lay.s = lay.x_m + 0.15 * (at.x_m - lay.x_m), lay.y_m + 0.15 * (at.y_m - lay.y_m), at.s
+  elseif known.gone then
+    known.kick = { from = lay, s = at.s }
+    known.lay, known.gone = { x_m = at.x_m, y_m = at.y_m, s = at.s }, nil
+    return
+  else
+    known.gone = true
+    return
+  end
+  known.gone = nil
+end
+
 local function how(seen)
   if #seen < least then return nil end
   local x_m_s, y_m_s = velocity(seen)
@@ -56,7 +76,8 @@ local function mean(seen)
 end
 
 -- To be called in each tick with the table that it keeps: { x_m =, y_m =, rolls =, rest = }, on the field, or nil. rolls is
--- { x_m_s =, y_m_s =, m_s = }, nil for a ball that rests or is not known well enough; rest is where it will lie.
+-- { x_m_s =, y_m_s =, m_s = }, nil for a ball that rests or is not known well enough; rest is where it will lie. kicked says
+-- of a kick just now where it came from, and where the ball is.
 function rolling.watch(known, s, pose)
   local ball = s.seen.ball
   known.seen = known.seen or {}
@@ -70,6 +91,7 @@ function rolling.watch(known, s, pose)
     local at = field.from_robot(pose, ball.x_m, ball.y_m)
     at.s = picture_s
     note(known, at)
+    if known.seen[#known.seen] == at then note_kick(known, at) end
   end
   local seen = known.seen
   local last = seen[#seen]
@@ -78,7 +100,16 @@ function rolling.watch(known, s, pose)
   local at = rolls and { x_m = last.x_m, y_m = last.y_m } or mean(seen)
   at.rolls = rolls
   at.rest = rolls and rolling.rest(at, rolls) or at
+  local kick = known.kick
+  if kick and s.time_s - kick.s < short_s then at.kicked = { from = kick.from, x_m = last.x_m, y_m = last.y_m } end
   return at
+end
+
+-- Where a ball that was kicked just now will cross x_m, or nil when it does not go there.
+function rolling.heads_for(kicked, x_m)
+  local gone_m, ahead_m = kicked.x_m - kicked.from.x_m, x_m - kicked.from.x_m
+  if gone_m * ahead_m <= 0 or math.abs(gone_m) < 0.1 then return nil end
+  return kicked.from.y_m + ahead_m / gone_m * (kicked.y_m - kicked.from.y_m)
 end
 
 -- Where a ball that is `at` and rolls so comes to rest.

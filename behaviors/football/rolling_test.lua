@@ -32,6 +32,17 @@ describe("rolling", function()
     expect(ball.x_m).to_be_near(1, 1e-9)
   end)
 
+  it("tells of a kick by two pictures, and where it goes", function()
+    local known, ball = {}, nil
+    for i = 0, 8 do ball = watch(known, i / 15, 3 + 0.02 * (i % 2), 0) end
+    expect(ball.kicked).to_be_nil()
+    watch(known, 9 / 15, 2.75, 0.1)
+    ball = watch(known, 10 / 15, 2.6, 0.16)
+    expect(ball.kicked.from.x_m).to_be_near(3, 0.03)
+    expect(rolling.heads_for(ball.kicked, 0)).to_be_near(1.2, 0.1)
+    expect(rolling.heads_for(ball.kicked, 4)).to_be_nil()
+  end)
+
   it("says where it crosses a line, and when it does not come there", function()
     local rolls = { x_m_s = -1.4, y_m_s = 0.2, m_s = math.sqrt(1.4 ^ 2 + 0.2 ^ 2) }
     local in_s, y_m = rolling.crosses({ x_m = 1.5, y_m = 0 }, rolls, 0)

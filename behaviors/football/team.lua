@@ -5,6 +5,7 @@ local k = require "kadans"
 local field = require "field"
 local game = require "game"
 local keeper = require "keeper"
+local kicks = require "kicks"
 local legs = require "legs"
 local ready = require "ready"
 local roles = require "roles"
@@ -73,6 +74,7 @@ local function play(m, s)
   local ball = game.ball(m, s, pose)
   note_kick_off(m, s, ball)
   m.vars.can = { pass = P.passes > 0.5, dribble = P.dribbles > 0.5, support = P.supports > 0.5, dive = P.dives > 0.5 }
+  kicks.look(m, s, pose)
   m.vars.role = roles.pick(m, s, pose, ball)
   tell(m, s, pose, ball)
   plays[m.vars.role](m, s, pose, ball)
@@ -94,7 +96,10 @@ local function is(phase) return function(s, m) return game.phase(s, m) == phase 
 local function is_not(phase) return function(s, m) return game.phase(s, m) ~= phase end end
 
 return k.decisions "team" {
-  vars    = { mates = {}, role = "none", whistled = false, whistles = 0, told_s = -10, rolling = {}, can = {}, kick_off_ours = false, kick_off_theirs = false },
+  vars = {
+    mates = {}, others = {}, rolling = {}, can = {}, role = "none", told_s = -10,
+    whistled = false, whistles = 0, kick_off_ours = false, kick_off_theirs = false,
+  },
   initial = "wait",
   always  = { { on = "robot.tell", action = hear } },
 
