@@ -13,6 +13,7 @@ local least_m, most_m = 0.4, 0.9  -- how far before its goal it stands
 local clears_m = 1.6  -- a ball nearer to the goal's middle is its own
 local body_m = 0.18   -- what comes nearer than that to its middle it stops by standing there
 local dives_m, dives_s = 1.1, 1.2  -- how far it reaches, and how early it lets itself fall
+local calm_m = 3  -- from a ball that is farther it may look away
 local waits_s, looks_s = 6, 9
 local at_once_m = 2.3              -- a kick from nearer than that leaves no time to see how fast it rolls
 
@@ -71,6 +72,7 @@ function keeper.play(m, s, pose, ball)
   if looks(m, s, ball) then return search.play(m, s, nil) end
   local at, toward = place(s, ball), ball or { x_m = 0, y_m = 0 }
   if field.distance(pose, at) < 0.2 then at = { x_m = pose.x_m, y_m = pose.y_m } end
+  if field.distance(pose, toward) > calm_m then return legs.watch(m, s, pose, at, toward) end
   legs.go(m, s, pose, at, toward)
 end
 

@@ -12,6 +12,7 @@ local before_feet_m = 0.9
 local turns = 0.06                    -- what a radian of the way around the ball costs; more when somebody presses,
 local presses_m, pressed = 1.5, 0.1
 local hurries_s, hurry = 3, 0.06      -- and by so much a second more when the ball rests long: 10 s is a stuck game
+local stands_m, beside = 0.5, 0.4      -- it stands so far behind the ball; what a metre outside of the field costs there
 local dribble_m, pass_ahead_m = 1.1, 0.4
 local behind_goal_m = 0.4             -- a shot is aimed there: a ball on the line goes in as well
 
@@ -92,8 +93,11 @@ function kicks.all(m, s, pose, ball)
   local cost = turns_cost(m, s, robots, ball)
   for _, kick in ipairs(list) do
     local rad = math.atan2(kick.y_m - ball.y_m, kick.x_m - ball.x_m)
+    local out_m = math.max(
+      math.abs(ball.x_m - stands_m * math.cos(rad)) - me.length_m / 2,
+      math.abs(ball.y_m - stands_m * math.sin(rad)) - me.width_m / 2, 0)
     kick.worth = chance.of_kick(me, robots, ball, kick, kick.beyond_m, game.indirect(s)) -
-      cost * math.abs(field.angle(rad - toward_rad))
+      cost * math.abs(field.angle(rad - toward_rad)) - beside * out_m
   end
   return list
 end

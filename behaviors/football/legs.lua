@@ -3,6 +3,8 @@ local field = require "field"
 
 local legs = {}
 
+local glances_s, glance_rad = 7, 0.3
+
 local again_s = 0.2  -- the same order is sent again after that, with its place as it is seen by then
 
 -- footwork is played again when an error ended it.
@@ -26,6 +28,26 @@ function legs.go(m, s, pose, place, toward, most_m_s)
   local at = field.to_robot(pose, near)
   local heading_rad = math.atan2(toward.y_m - place.y_m, toward.x_m - place.x_m)
   order(m, s, "foot.go", { x_m = at.x_m, y_m = at.y_m, heading_rad = field.angle(heading_rad - pose.heading_rad), most_m_s = most_m_s })
+end
+
+-- The same for one that waits there: it looks to both sides of the ball in turn, for robots and lines.
+function legs.watch(m, s, pose, place, ball)
+  local x_m, y_m = ball.x_m - place.x_m, ball.y_m - place.y_m
+  local rad = math.floor(s.time_s / glances_s) % 2 == 0 and glance_rad or -glance_rad
+  local c, n = math.cos(rad), math.sin(rad)
+  legs.go(m, s, pose, place, { x_m = place.x_m + c * x_m - n * y_m, y_m = place.y_m + n * x_m + c * y_m })
+end
+
+-- Whether it lies, or gets up.
+function legs.lies(m)
+  local state = m:plays("footwork")
+  return state ~= nil and (state:find("fallen", 1, true) or state:find("dive", 1, true)) ~= nil
+end
+
+-- The same, no nearer to the ball than the rules want of a team that does not kick.
+function legs.keep_away(m, s, pose, place, ball)
+  local way = field.clear_of(pose, place, ball, s.seen.me.circle_m + 0.35)
+  legs.go(m, s, pose, way, ball)
 end
 
 -- The ball to a place of the field, so that it would roll beyond_m farther.

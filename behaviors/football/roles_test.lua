@@ -35,6 +35,19 @@ describe("roles", function()
     expect(roles.pick(m, s, near, ball)).to_equal "striker"
   end)
 
+  it("leaves a ball before the own goal to the keeper, but not to one that is off the field or lies", function()
+    local m, s = robot(2, 1)
+    local before_goal, here = { x_m = -3.5, y_m = 0 }, { x_m = -2, y_m = 0, heading_rad = 0 }
+    expect(roles.pick(m, s, here, before_goal)).to_equal "striker"
+    m.vars.mates[1] = { heard_s = 9, plays = true, far_s = 3, role = "keeper" }
+    expect(roles.pick(m, s, here, before_goal)).to_equal "supporter"
+    m.vars.mates[1] = { heard_s = 9, plays = false, far_s = 3, role = "keeper" }
+    expect(roles.pick(m, s, here, before_goal)).to_equal "striker"
+    local lies_s = roles.far({ x_m = -4, y_m = 1, heading_rad = 0 }, before_goal, true)
+    m.vars.mates[1] = { heard_s = 9, plays = true, far_s = lies_s + 5, role = "keeper" }
+    expect(roles.pick(m, s, here, before_goal)).to_equal "striker"
+  end)
+
   it("does not count a mate that is silent or may not play", function()
     local m, s = robot(2, 1)
     m.vars.mates[3] = { heard_s = 1, plays = true, far_s = 0, role = "striker" }

@@ -51,7 +51,7 @@ function striker.block(m, s, pose, ball)
   local share = keep_m / far_m
   local place = { x_m = ball.x_m + share * (own.x_m - ball.x_m), y_m = ball.y_m + share * (own.y_m - ball.y_m) }
   if game.their_goal_kick(s) then place.x_m = math.min(place.x_m, me.length_m / 2 - me.mark_m - 1.5) end
-  legs.go(m, s, pose, place, ball)
+  legs.keep_away(m, s, pose, place, ball)
 end
 
 return striker

@@ -37,8 +37,9 @@ function supporter.play(m, s, pose, ball)
   if game.penalty_kick(s) or not m.vars.can.support then return legs.stand(m, s) end
   if not ball then return search.play(m, s, pose) end
   local place = supporter.place(s, pose, ball)
+  if game.keeps_away(s) then return legs.keep_away(m, s, pose, place, ball) end
   if field.distance(pose, place) < near_m then place = { x_m = pose.x_m, y_m = pose.y_m } end
-  legs.go(m, s, pose, place, ball)
+  legs.watch(m, s, pose, place, ball)
 end
 
 return supporter

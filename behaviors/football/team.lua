@@ -54,7 +54,7 @@ local function tell(m, s, pose, ball)
   vars.told_s, vars.told_role, vars.told_pass = s.time_s, vars.role, pass_to
   local own = ball and ball.own
   m:send("robot.tell", {
-    number = s.seen.me.number, role = vars.role, plays = game.phase(s, m) == "play", far_s = roles.far(pose, ball),
+    number = s.seen.me.number, role = vars.role, plays = game.phase(s, m) == "play", far_s = roles.far(pose, ball, vars.lies),
     x_m = field.within(pose.x_m, -20, 20), y_m = field.within(pose.y_m, -20, 20), pass_to = pass_to,
     ball_x_m = own and field.within(ball.x_m, -20, 20) or nil, ball_y_m = own and field.within(ball.y_m, -20, 20) or nil,
   })
@@ -74,6 +74,7 @@ local function play(m, s)
   local ball = game.ball(m, s, pose)
   note_kick_off(m, s, ball)
   m.vars.can = { pass = P.passes > 0.5, dribble = P.dribbles > 0.5, support = P.supports > 0.5, dive = P.dives > 0.5 }
+  m.vars.lies = legs.lies(m)
   kicks.look(m, s, pose)
   m.vars.role = roles.pick(m, s, pose, ball)
   tell(m, s, pose, ball)

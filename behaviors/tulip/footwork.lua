@@ -43,7 +43,17 @@ local function go(m, order)
   if walk.to(m, order.place, { m = 0.1, rad = 0.15 }, order.data.most_m_s or P.most_m_s) then walk.stop(m) end
 end
 
+-- A joint that was knocked faster than its drive is damped from then on, until somebody clears the fault.
+local function clear(m, s)
+  local level = s.safety.level
+  if level == "normal" or level == "limited" then m.vars.sound_s = s.time_s end
+  if s.time_s - m.vars.sound_s < 0.5 then return end
+  m.vars.sound_s = s.time_s
+  m:clear_faults()
+end
+
 local function obey(m, s)
+  clear(m, s)
   local order = m.vars.order
   if order then take(m, order) end
   local b = ball.watch(m, s, m.vars.known)
@@ -82,7 +92,7 @@ end
 
 return k.behavior "footwork" {
   controls = "walking",
-  vars     = { known = {}, side = 1, armed = false, kicked_s = -10 },
+  vars     = { known = {}, side = 1, armed = false, kicked_s = -10, sound_s = 0 },
   initial  = "set_out",
   always   = { { on = "foot.*", action = hear } },
 
