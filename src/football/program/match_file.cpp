@@ -13,11 +13,12 @@ constexpr double beside_gap_m = 1.0;  // between robots that stand beside the fi
 constexpr std::string_view name_letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
 const std::array<std::string, 3> division_names{"small", "middle", "large"};
 const std::array<std::string, 2> start_names{"touchline", "field"};
-const std::array<std::string, 7> begin_names{"play", "free_kick", "indirect_free_kick", "penalty_kick",
-                                             "throw_in", "goal_kick", "corner"};
+const std::array<std::string, 7> begin_names{"play",      "free_kick", "indirect_free_kick", "penalty_kick", "throw_in",
+                                             "goal_kick", "corner"};
 constexpr std::array<Restart, 7> begin_restarts{
-    Restart::none,     Restart::direct_free_kick, Restart::indirect_free_kick, Restart::penalty_kick,
-    Restart::throw_in, Restart::goal_kick,        Restart::corner};
+    Restart::none,         Restart::direct_free_kick, Restart::indirect_free_kick,
+    Restart::penalty_kick, Restart::throw_in,         Restart::goal_kick,
+    Restart::corner};
 const std::array<std::string, 2> side_names{"home", "away"};
 
 void read_rules(InputObject& f, MatchRules& rules) {
@@ -159,13 +160,13 @@ std::string differing(double share) {
 std::string robot_fields(const MatchConfig& match, RobotId id, std::uint64_t seed) {
   const TeamSetup& team = match.team(id.side);
   const Pose2 at = world_pose(drill_place(match, id, seed), id.side == Side::home ? -1 : 1);
-  std::string text = "\"robot\": " + json_text(team.robot) +
-                     ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
-                     ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) +
-                     " }" + differing(match.robots_differ) + ",\n    \"supervisor\": { \"decisions\": " +
-                     json_text(team.folder + "/team.lua" +
-                               (team.parameters.empty() ? "" : "{" + team.parameters + "}")) +
-                     ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
+  std::string text =
+      "\"robot\": " + json_text(team.robot) +
+      ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
+      ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) + " }" +
+      differing(match.robots_differ) + ",\n    \"supervisor\": { \"decisions\": " +
+      json_text(team.folder + "/team.lua" + (team.parameters.empty() ? "" : "{" + team.parameters + "}")) +
+      ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
   std::string peers;
   for (unsigned number = 1; number <= team.players; ++number) {
     const RobotId mate{id.side, static_cast<std::uint8_t>(number)};

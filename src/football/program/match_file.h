@@ -23,8 +23,8 @@ inline constexpr std::size_t robots_told = 3;    // of those that a robot sees: 
 
 struct TeamSetup {
   std::string name, folder, robot = "config/tulip/robot.json";
-  std::string parameters;                                  // of its decisions: "passes=0, dives=0"
-  std::uint64_t players = 1, keeper = 0;                   // keeper 0: there is none
+  std::string parameters;                                     // of its decisions: "passes=0, dives=0"
+  std::uint64_t players = 1, keeper = 0;                      // keeper 0: there is none
   std::array<std::optional<Pose2>, team_players_max> places;  // of a drill, in the team's frame
 };
 
@@ -53,11 +53,11 @@ struct MatchConfig {
   MatchRules rules;
   std::array<TeamSetup, 2> teams;
   std::uint64_t seed = 1;
-  bool start_on_field = false;  // else at the touchline of their own half
+  bool start_on_field = false;       // else at the touchline of their own half
   std::optional<DrillStart> begins;  // else with the first half
-  double robots_differ = 0;  // share of the ranges that the sweeps of walking draw robots from
-  std::uint64_t goals = 0;      // it ends with so many; 0: the rules end it
-  double playing_s = 0;         // it ends after so long in playing; 0: the rules end it
+  double robots_differ = 0;          // share of the ranges that the sweeps of walking draw robots from
+  std::uint64_t goals = 0;           // it ends with so many; 0: the rules end it
+  double playing_s = 0;              // it ends after so long in playing; 0: the rules end it
   double rolling_friction_m = 0.004;
   double delay_s = 0.01, jitter_s = 0.01, lost = 0.05;  // of messages
   SensesConfig senses;
