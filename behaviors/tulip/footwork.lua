@@ -72,7 +72,7 @@ local function obey(m, s)
     if kicks then walk.keep(m) end
     go(m, order)
   elseif b and order.what == "foot.kick" then
-    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s)
+    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s, ball.quick)
   end
 end
 
