@@ -33,12 +33,17 @@ function kicks.look(m, s, pose)
   m.vars.others = known
 end
 
--- The others, and mates that told where they are; itself among them.
+-- The others, and mates that told where they are, or are seen when they are silent; itself among them.
 function kicks.robots(m, s, pose)
   local all = {}
   for i, robot in ipairs(m.vars.others) do all[i] = robot end
   for _, mate in pairs(m.vars.mates) do
     if s.time_s - mate.heard_s < 3 then all[#all + 1] = { x_m = mate.x_m, y_m = mate.y_m, mate = true } end
+  end
+  if next(m.vars.mates) == nil then
+    for _, robot in ipairs(field.robots(s, pose)) do
+      if robot.mate then all[#all + 1] = robot end
+    end
   end
   all[#all + 1] = { x_m = pose.x_m, y_m = pose.y_m, mate = true, kicks = true }
   return all

@@ -22,7 +22,7 @@ describe("roles", function()
     expect(roles.pick(m, s, near, ball)).to_equal "striker"
     m.vars.others = { { x_m = 1.5, y_m = 0, mate = false } }
     expect(roles.pick(m, s, near, ball)).to_equal "keeper"
-    m.vars.others, s.seen.me.players = {}, 1
+    m.vars.others, m.vars.mates = {}, {}
     expect(roles.pick(m, s, near, ball)).to_equal "keeper"
   end)
 

@@ -7,6 +7,8 @@ local search = require "search"
 
 local striker = {}
 
+local carpet_m = 0.7  -- so far beside the field it turns back; the carpet ends after 1 m
+
 -- No goal counts straight from a kick-off: the ball goes out of the circle first, aslant.
 local function kick_off_place(s)
   local far_m = s.seen.me.circle_m + 0.35
@@ -30,6 +32,14 @@ local function follows(m, s, pose, ball)
   return true
 end
 
+-- Beside the field it does not go on until it is off the carpet.
+local function comes_back(m, s, pose, ball)
+  local half_m, side_m = s.seen.me.length_m / 2, s.seen.me.width_m / 2
+  if math.max(math.abs(pose.x_m) - half_m, math.abs(pose.y_m) - side_m) < carpet_m then return false end
+  legs.go(m, s, pose, { x_m = field.within(pose.x_m, 0.5 - half_m, half_m - 0.5), y_m = field.within(pose.y_m, 0.5 - side_m, side_m - 0.5) }, ball)
+  return true
+end
+
 function striker.play(m, s, pose, ball)
   if game.penalty_kick(s) and s.seen.game.ours ~= 1 then return legs.stand(m, s) end
   if not ball then return search.play(m, s, pose) end
@@ -38,7 +48,7 @@ function striker.play(m, s, pose, ball)
   if m.vars.kick_off_ours and in_circle then return legs.kick(m, s, pose, kick_off_place(s), 0) end
   m.vars.kick_off_ours = m.vars.kick_off_ours and in_circle
   if game.keeps_away(s) or m.vars.kick_off_theirs then return striker.block(m, s, pose, ball) end
-  if follows(m, s, pose, ball) or goes_around(m, s, pose, ball) then return end
+  if comes_back(m, s, pose, ball) or follows(m, s, pose, ball) or goes_around(m, s, pose, ball) then return end
   local kick = kicks.choose(m, s, pose, ball)
   legs.kick(m, s, pose, kick, kick.beyond_m)
 end
