@@ -40,7 +40,7 @@ function kicks.robots(m, s, pose)
   for _, mate in pairs(m.vars.mates) do
     if s.time_s - mate.heard_s < 3 then all[#all + 1] = { x_m = mate.x_m, y_m = mate.y_m, mate = true } end
   end
-  if next(m.vars.mates) == nil then
+  if not m.vars.heard then
     for _, robot in ipairs(field.robots(s, pose)) do
       if robot.mate then all[#all + 1] = robot end
     end

@@ -18,11 +18,11 @@ describe("roles", function()
 
   it("sends the keeper to the ball when no mate plays, and no opponent is there sooner", function()
     local m, s = robot(1, 1)
-    m.vars.mates[2] = { heard_s = 9, plays = false, far_s = 5, role = "striker" }
+    m.vars.mates[2], m.vars.heard = { heard_s = 9, plays = false, far_s = 5, role = "striker" }, true
     expect(roles.pick(m, s, near, ball)).to_equal "striker"
     m.vars.others = { { x_m = 1.5, y_m = 0, mate = false } }
     expect(roles.pick(m, s, near, ball)).to_equal "keeper"
-    m.vars.others, m.vars.mates = {}, {}
+    m.vars.others, m.vars.mates, m.vars.heard = {}, {}, false  -- silent
     expect(roles.pick(m, s, near, ball)).to_equal "keeper"
   end)
 

@@ -38,6 +38,7 @@ local plays = { striker = striker.play, supporter = supporter.play, keeper = kee
 
 local function hear(m, s)
   local said = s.event.data
+  m.vars.heard = true
   m.vars.mates[said.number] = {
     heard_s = s.time_s, role = said.role, plays = said.plays, far_s = said.far_s,
     x_m = said.x_m, y_m = said.y_m, ball_x_m = said.ball_x_m, ball_y_m = said.ball_y_m, pass_to = said.pass_to,
@@ -98,7 +99,7 @@ local function is_not(phase) return function(s, m) return game.phase(s, m) ~= ph
 
 return k.decisions "team" {
   vars = {
-    mates = {}, others = {}, rolling = {}, can = {}, role = "none", told_s = -10,
+    mates = {}, others = {}, rolling = {}, can = {}, heard = false, role = "none", told_s = -10,
     whistled = false, whistles = 0, kick_off_ours = false, kick_off_theirs = false,
   },
   initial = "wait",
