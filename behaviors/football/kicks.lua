@@ -7,13 +7,15 @@ local game = require "game"
 local kicks = {}
 
 local again_s = 0.3                   -- how often it thinks again
+local stale_s, moved_m = 1.5, 0.4     -- what it chose before that, or for a ball that lay elsewhere, is past
 local better, better_near = 0.08, 0.2  -- by how much another kick must be better; with the ball before its feet
 local before_feet_m = 0.9
 local turns = 0.06                    -- what a radian of the way around the ball costs; more when somebody presses,
 local presses_m, pressed = 1.5, 0.1
-local hurries_s, hurry = 3, 0.06      -- and by so much a second more when the ball rests long: 10 s is a stuck game
+local hurries_s, hurry = 5, 0.05      -- and by so much a second more when the ball rests long: 10 s is a stuck game
 local stands_m, beside = 0.5, 0.4      -- it stands so far behind the ball; what a metre outside of the field costs there
 local dribble_m, pass_ahead_m = 1.1, 0.4
+local back_rad = 1.75
 local behind_goal_m = 0.4             -- a shot is aimed there: a ball on the line goes in as well
 
 local forgets_s, same_m = 4, 0.6      -- a robot that was seen there, and is out of sight
@@ -66,12 +68,14 @@ local function to_mates(m, s, list)
   end
 end
 
--- Ahead, and as it comes to the ball.
+-- Ahead, and as it comes to the ball, but not back.
 local function ahead(ball, toward_rad, list)
   for _, rad in ipairs { 0, -0.5, 0.5, -1, 1, -1.5, 1.5, toward_rad, toward_rad - 0.4, toward_rad + 0.4 } do
-    list[#list + 1] = {
-      name = "dribble", x_m = ball.x_m + dribble_m * math.cos(rad), y_m = ball.y_m + dribble_m * math.sin(rad), beyond_m = 0,
-    }
+    if math.abs(field.angle(rad)) < back_rad then
+      list[#list + 1] = {
+        name = "dribble", x_m = ball.x_m + dribble_m * math.cos(rad), y_m = ball.y_m + dribble_m * math.sin(rad), beyond_m = 0,
+      }
+    end
   end
 end
 
@@ -87,14 +91,15 @@ local function turns_cost(m, s, robots, ball)
   return cost + hurry * math.max(0, s.time_s - vars.rests.since_s - hurries_s)
 end
 
--- All that it may do with the ball, each with its worth.
-function kicks.all(m, s, pose, ball)
+-- All that it may do with the ball, and what it is about to do, each with its worth.
+function kicks.all(m, s, pose, ball, now)
   local me, can = s.seen.me, m.vars.can
   local robots, list = kicks.robots(m, s, pose), {}
   local toward_rad = math.atan2(ball.y_m - pose.y_m, ball.x_m - pose.x_m)
   at_the_goal(me, ball, list)
   if can.dribble then ahead(ball, toward_rad, list) end
   if can.pass then to_mates(m, s, list) end
+  if now then list[#list + 1] = now end
   local cost = turns_cost(m, s, robots, ball)
   for _, kick in ipairs(list) do
     local rad = math.atan2(kick.y_m - ball.y_m, kick.x_m - ball.x_m)
@@ -107,23 +112,20 @@ function kicks.all(m, s, pose, ball)
   return list
 end
 
-local function same(a, b)
-  return a.name == b.name and a.to == b.to and (a.x_m - b.x_m) ^ 2 + (a.y_m - b.y_m) ^ 2 < 0.3 ^ 2
-end
-
 -- The kick that it goes for.
 function kicks.choose(m, s, pose, ball)
   local now = m.vars.kick
   if now and s.time_s - now.chosen_s < again_s and s.time_s >= now.chosen_s then return now end
-  local list = kicks.all(m, s, pose, ball)
-  local best, kept
+  if now and (s.time_s - now.chosen_s > stale_s or field.distance(now.ball, ball) > moved_m) then now = nil end
+  local list = kicks.all(m, s, pose, ball, now)
+  local best = list[1]
   for _, kick in ipairs(list) do
-    if not best or kick.worth > best.worth then best = kick end
-    if now and same(kick, now) then kept = kick end
+    if kick.worth > best.worth then best = kick end
   end
   local margin = field.distance(pose, ball) < before_feet_m and better_near or better
-  local chosen = kept and best.worth < kept.worth + margin and kept or best
+  local chosen = now and best.worth < now.worth + margin and now or best
   chosen.chosen_s = s.time_s
+  chosen.ball = chosen.ball or { x_m = ball.x_m, y_m = ball.y_m }
   m.vars.kick = chosen
   return chosen
 end

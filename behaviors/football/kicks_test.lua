@@ -68,13 +68,25 @@ describe("kicks", function()
     expect(second.y_m).to_be_near(first.y_m, 0.05)
   end)
 
-  it("goes rather not around a ball that has rested for long", function()
+  it("does not dribble back", function()
     local m, s = situation()
-    local pose, ball = { x_m = 2.4, y_m = 0, heading_rad = math.pi }, { x_m = 2, y_m = 0 }
-    local function around(kick) return math.abs(math.atan2(kick.y_m - ball.y_m, kick.x_m - ball.x_m)) end
-    expect(around(kicks.choose(m, s, pose, ball))).to_be_below(1.1)
-    s.time_s = 17
-    expect(around(kicks.choose(m, s, pose, ball))).to_be_above(1.4)
+    local pose, ball = { x_m = 0.6, y_m = 0.3, heading_rad = -2.5 }, { x_m = 0, y_m = 0 }
+    s.seen.robot_1 = { confidence = 1, age_s = 0, x_m = 1, y_m = -0.5, mate = 0 }
+    kicks.look(m, s, pose)
+    local kick = kicks.choose(m, s, pose, ball)
+    expect(kick.x_m - ball.x_m).to_be_above(-0.25)
+  end)
+
+  it("does not go around a ball that has rested for long, but kicks it as it comes", function()
+    local m, s = situation()
+    local pose, ball = { x_m = 0, y_m = -0.4, heading_rad = math.pi / 2 }, { x_m = 0, y_m = 0 }
+    local function aside(kick) return math.atan2(kick.y_m - ball.y_m, kick.x_m - ball.x_m) end
+    expect(aside(kicks.choose(m, s, pose, ball))).to_be_below(0.7)
+    for time_s = 11, 19 do
+      s.time_s = time_s
+      kicks.choose(m, s, pose, ball)
+    end
+    expect(aside(kicks.choose(m, s, pose, ball))).to_be_above(0.9)
   end)
 
   it("kicks a ball that lies on the goal line over it", function()

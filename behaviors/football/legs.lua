@@ -3,6 +3,7 @@ local field = require "field"
 
 local legs = {}
 
+local far_m, behind_rad, turns_rad_s = 0.5, 1.1, 0.7
 local glances_s, glance_rad = 7, 0.3
 
 local again_s = 0.2  -- the same order is sent again after that, with its place as it is seen by then
@@ -22,12 +23,15 @@ local function order(m, s, name, data)
   m:emit(name, data, { to = "footwork" })
 end
 
--- To a place of the field, to face `toward` there; other robots are walked around.
+-- To a place of the field, to face `toward` there; other robots are walked around. What is behind it, it turns to first,
+-- on the spot, which is quicker than while it walks.
 function legs.go(m, s, pose, place, toward, most_m_s)
   local near = field.around(pose, place, field.robots(s, pose))
   local at = field.to_robot(pose, near)
-  local heading_rad = math.atan2(toward.y_m - place.y_m, toward.x_m - place.x_m)
-  order(m, s, "foot.go", { x_m = at.x_m, y_m = at.y_m, heading_rad = field.angle(heading_rad - pose.heading_rad), most_m_s = most_m_s })
+  local heading_rad = field.angle(math.atan2(toward.y_m - place.y_m, toward.x_m - place.x_m) - pose.heading_rad)
+  local turn_rad = field.distance(pose, near) > far_m and math.atan2(at.y_m, at.x_m) or heading_rad
+  if math.abs(turn_rad) > behind_rad then return legs.turn(m, s, turn_rad > 0 and turns_rad_s or -turns_rad_s) end
+  order(m, s, "foot.go", { x_m = at.x_m, y_m = at.y_m, heading_rad = heading_rad, most_m_s = most_m_s })
 end
 
 -- The same for one that waits there: it looks to both sides of the ball in turn, for robots and lines.

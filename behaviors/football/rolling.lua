@@ -5,7 +5,7 @@ local field = require "field"
 local rolling = {}
 
 local remembers_s, least = 0.5, 3  -- sightings that say how it rolls; fewer than so many say nothing
-local knows_s = 2                  -- so long a ball is where it was seen last
+local knows_s, rolling_s = 5, 2     -- so long a ball is where it was seen last; one that rolled
 local fastest_m_s, beside_m = 3.5, 0.3  -- what is farther from the last sighting than a kick takes it, does not fit
 local rolls_m_s = 0.35             -- what is slower rests
 rolling.slows_m_s2 = 0.28
@@ -95,8 +95,9 @@ function rolling.watch(known, s, pose)
   end
   local seen = known.seen
   local last = seen[#seen]
-  if not last or s.time_s - last.s > knows_s then return nil end
+  if not last then return nil end
   local rolls = how(seen)
+  if s.time_s - last.s > (rolls and rolling_s or knows_s) then return nil end
   local at = rolls and { x_m = last.x_m, y_m = last.y_m } or mean(seen)
   at.rolls = rolls
   at.rest = rolls and rolling.rest(at, rolls) or at

@@ -43,7 +43,7 @@ end
 function striker.play(m, s, pose, ball)
   if game.penalty_kick(s) and s.seen.game.ours ~= 1 then return legs.stand(m, s) end
   if not ball then return search.play(m, s, pose) end
-  if not ball.own then return legs.go(m, s, pose, ball, ball) end
+  if not ball.own then return legs.go(m, s, pose, ball, game.goal(s)) end
   local in_circle = field.distance(ball, { x_m = 0, y_m = 0 }) < s.seen.me.circle_m + 0.1
   if m.vars.kick_off_ours and in_circle then return legs.kick(m, s, pose, kick_off_place(s), 0) end
   m.vars.kick_off_ours = m.vars.kick_off_ours and in_circle

@@ -33,12 +33,21 @@ function supporter.place(s, pose, ball)
   return place
 end
 
+-- A mate is about to pass to it.
+local function is_passed_to(m, s)
+  for _, mate in pairs(m.vars.mates) do
+    if mate.pass_to == s.seen.me.number and s.time_s - mate.heard_s < 2 then return true end
+  end
+  return false
+end
+
 function supporter.play(m, s, pose, ball)
   if game.penalty_kick(s) or not m.vars.can.support then return legs.stand(m, s) end
   if not ball then return search.play(m, s, pose) end
   local place = supporter.place(s, pose, ball)
   if game.keeps_away(s) then return legs.keep_away(m, s, pose, place, ball) end
-  if field.distance(pose, place) < near_m then place = { x_m = pose.x_m, y_m = pose.y_m } end
+  if field.distance(pose, place) < near_m or is_passed_to(m, s) then place = { x_m = pose.x_m, y_m = pose.y_m } end
+  if is_passed_to(m, s) then return legs.go(m, s, pose, place, ball) end
   legs.watch(m, s, pose, place, ball)
 end
 
