@@ -49,14 +49,14 @@ end
 local function tell(m, s, pose, ball)
   if s.seen.me.players < 2 then return end
   local vars = m.vars
-  local pass_to = vars.role == "striker" and vars.kick and s.time_s - vars.kick.chosen_s < 1 and vars.kick.to or nil
+  local pass_to = vars.role == "striker" and vars.kick and s.time_s - vars.kick.chosen_s < 1 and vars.kick.to or false
   local news = vars.role ~= vars.told_role or pass_to ~= vars.told_pass
   if s.time_s - vars.told_s < (news and soonest_s or P.tell_s) then return end
   vars.told_s, vars.told_role, vars.told_pass = s.time_s, vars.role, pass_to
   local own = ball and ball.own
   m:send("robot.tell", {
     number = s.seen.me.number, role = vars.role, plays = game.phase(s, m) == "play", far_s = roles.far(pose, ball, vars.lies),
-    x_m = field.within(pose.x_m, -20, 20), y_m = field.within(pose.y_m, -20, 20), pass_to = pass_to,
+    x_m = field.within(pose.x_m, -20, 20), y_m = field.within(pose.y_m, -20, 20), pass_to = pass_to or nil,
     ball_x_m = own and field.within(ball.x_m, -20, 20) or nil, ball_y_m = own and field.within(ball.y_m, -20, 20) or nil,
   })
 end
@@ -99,7 +99,8 @@ local function is_not(phase) return function(s, m) return game.phase(s, m) ~= ph
 
 return k.decisions "team" {
   vars = {
-    mates = {}, others = {}, rolling = {}, can = {}, heard = false, role = "none", told_s = -10,
+    mates = {}, others = {}, rolling = {}, can = {}, heard = false, lies = false, role = "none", kick = false,
+    told_s = -10, told_role = "none", told_pass = false,
     whistled = false, whistles = 0, kick_off_ours = false, kick_off_theirs = false,
   },
   initial = "wait",
