@@ -15,6 +15,7 @@ local presses_m, pressed = 1.5, 0.1
 local hurries_s, hurry = 5, 0.05      -- and by so much a second more when the ball rests long: 10 s is a stuck game
 local stands_m, beside = 0.5, 0.4      -- it stands so far behind the ball; what a metre outside of the field costs there
 local dribble_m, pass_ahead_m = 1.1, 0.4
+local passed = 0.65                   -- the share of a ball's worth that is left when a mate has got to it
 local back_rad = 1.75
 local behind_goal_m = 0.4             -- a shot is aimed there: a ball on the line goes in as well
 
@@ -106,7 +107,8 @@ function kicks.all(m, s, pose, ball, now)
     local out_m = math.max(
       math.abs(ball.x_m - stands_m * math.cos(rad)) - me.length_m / 2,
       math.abs(ball.y_m - stands_m * math.sin(rad)) - me.width_m / 2, 0)
-    kick.worth = chance.of_kick(me, robots, ball, kick, kick.beyond_m, game.indirect(s)) -
+    local share = kick.name == "pass" and passed or 1
+    kick.worth = share * chance.of_kick(me, robots, ball, kick, kick.beyond_m, game.indirect(s)) -
       cost * math.abs(field.angle(rad - toward_rad)) - beside * out_m
   end
   return list
