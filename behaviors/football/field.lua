@@ -60,4 +60,20 @@ function field.around(pose, goal, robots)
   return goal
 end
 
+-- A place on the way to `goal` that comes no nearer than keep_m to `centre`: away from it first, then around it.
+function field.clear_of(pose, goal, centre, keep_m)
+  local x_m, y_m = pose.x_m - centre.x_m, pose.y_m - centre.y_m
+  local far_m = math.max(math.sqrt(x_m ^ 2 + y_m ^ 2), 0.01)
+  local function at(rad, m) return { x_m = centre.x_m + m * math.cos(rad), y_m = centre.y_m + m * math.sin(rad) } end
+  local from_rad = math.atan2(y_m, x_m)
+  if far_m < keep_m then return at(from_rad, keep_m + 0.3) end
+  local gx_m, gy_m = goal.x_m - pose.x_m, goal.y_m - pose.y_m
+  local way_m = math.max(math.sqrt(gx_m ^ 2 + gy_m ^ 2), 0.01)
+  local ahead_m = -(x_m * gx_m + y_m * gy_m) / way_m  -- to where the straight way is nearest to the centre
+  local beside_m = math.abs(gx_m * y_m - gy_m * x_m) / way_m
+  if ahead_m <= 0 or ahead_m > way_m or beside_m >= keep_m then return goal end
+  local turn_rad = field.angle(math.atan2(goal.y_m - centre.y_m, goal.x_m - centre.x_m) - from_rad)
+  return at(from_rad + field.within(turn_rad, -0.8, 0.8), keep_m + 0.3)
+end
+
 return field

@@ -1,5 +1,6 @@
 -- What the referee's words mean for a robot: what it may do now.
 local field = require "field"
+local rolling = require "rolling"
 
 local game = {}
 
@@ -40,16 +41,25 @@ end
 -- A penalty kick that is not taken yet: only the kicker moves.
 function game.penalty_kick(s) return s.seen.game.set_play == 3 end
 
+-- A goal kick of the others, for which all leave their penalty area.
+function game.their_goal_kick(s) return game.keeps_away(s) and s.seen.game.set_play == 5 end
+
+-- An indirect free kick or a throw-in of its own: no goal counts straight from it.
+function game.indirect(s)
+  local told = s.seen.game
+  return told.ours == 1 and (told.set_play == 2 or told.set_play == 4)
+end
+
 function game.goal(s) return { x_m = s.seen.me.length_m / 2, y_m = 0 } end
 function game.own_goal(s) return { x_m = -s.seen.me.length_m / 2, y_m = 0 } end
 
--- Where the ball is by what the robot sees, or else by what its mates say: { x_m =, y_m =, own = }, or nil.
+-- Where the ball is by what the robot sees, or else by what its mates say: { x_m =, y_m =, own = }, or nil. What it
+-- sees itself has rolls and rest, too (rolling.lua).
 function game.ball(m, s, pose)
-  local ball = s.seen.ball
-  if ball.confidence > 0 and ball.age_s < 2 and ball.carried then
-    local at = field.from_robot(pose, ball.x_m, ball.y_m)
-    at.own = true
-    return at
+  local ball = rolling.watch(m.vars.rolling, s, pose)
+  if ball then
+    ball.own = true
+    return ball
   end
   local best
   for _, mate in pairs(m.vars.mates) do

@@ -5,6 +5,7 @@ local k = require "kadans"
 local field = require "field"
 local game = require "game"
 local keeper = require "keeper"
+local kicks = require "kicks"
 local legs = require "legs"
 local ready = require "ready"
 local roles = require "roles"
@@ -13,6 +14,10 @@ local supporter = require "supporter"
 
 local P = k.params {
   tell_s = { 1, min = 0.1, max = 60, unit = "s", doc = "how often it tells its mates while it plays" },
+  passes = { 1, min = 0, max = 1, doc = "0: it never passes to a mate" },
+  dribbles = { 1, min = 0, max = 1, doc = "0: it does without short kicks ahead" },
+  supports = { 1, min = 0, max = 1, doc = "0: a supporter stands where it is" },
+  dives  = { 1, min = 0, max = 1, doc = "0: the keeper stays on its feet" },
 }
 
 local events = {
@@ -21,28 +26,37 @@ local events = {
     number = { "", min = 1, max = 20 }, role = k.text, plays = k.flag, far_s = { "s", min = -10, max = 1000 },
     x_m = { "m", min = -20, max = 20 }, y_m = { "m", min = -20, max = 20 },
     ball_x_m = { "m", min = -20, max = 20, optional = true }, ball_y_m = { "m", min = -20, max = 20, optional = true },
+    pass_to = { "", min = 1, max = 20, optional = true, doc = "the mate that it is about to pass to" },
   },
 }
 for name, order in pairs(require "foot_orders") do events[name] = order end
 k.events(events)
 
+local soonest_s = 0.3  -- between two messages
+
 local plays = { striker = striker.play, supporter = supporter.play, keeper = keeper.play }
 
 local function hear(m, s)
   local said = s.event.data
+  m.vars.heard = true
   m.vars.mates[said.number] = {
     heard_s = s.time_s, role = said.role, plays = said.plays, far_s = said.far_s,
-    x_m = said.x_m, y_m = said.y_m, ball_x_m = said.ball_x_m, ball_y_m = said.ball_y_m,
+    x_m = said.x_m, y_m = said.y_m, ball_x_m = said.ball_x_m, ball_y_m = said.ball_y_m, pass_to = said.pass_to,
   }
 end
 
+-- Once a second, and at once when its role or its pass is another one.
 local function tell(m, s, pose, ball)
-  if s.seen.me.players < 2 or s.time_s - m.vars.told_s < P.tell_s then return end
-  m.vars.told_s = s.time_s
+  if s.seen.me.players < 2 then return end
+  local vars = m.vars
+  local pass_to = vars.role == "striker" and vars.kick and s.time_s - vars.kick.chosen_s < 1 and vars.kick.to or false
+  local news = vars.role ~= vars.told_role or pass_to ~= vars.told_pass
+  if s.time_s - vars.told_s < (news and soonest_s or P.tell_s) then return end
+  vars.told_s, vars.told_role, vars.told_pass = s.time_s, vars.role, pass_to
   local own = ball and ball.own
   m:send("robot.tell", {
-    number = s.seen.me.number, role = m.vars.role, plays = game.phase(s, m) == "play", far_s = roles.far(pose, ball),
-    x_m = field.within(pose.x_m, -20, 20), y_m = field.within(pose.y_m, -20, 20),
+    number = s.seen.me.number, role = vars.role, plays = game.phase(s, m) == "play", far_s = roles.far(pose, ball, vars.lies),
+    x_m = field.within(pose.x_m, -20, 20), y_m = field.within(pose.y_m, -20, 20), pass_to = pass_to or nil,
     ball_x_m = own and field.within(ball.x_m, -20, 20) or nil, ball_y_m = own and field.within(ball.y_m, -20, 20) or nil,
   })
 end
@@ -60,6 +74,9 @@ local function play(m, s)
   if not pose then return legs.stand(m, s) end
   local ball = game.ball(m, s, pose)
   note_kick_off(m, s, ball)
+  m.vars.can = { pass = P.passes > 0.5, dribble = P.dribbles > 0.5, support = P.supports > 0.5, dive = P.dives > 0.5 }
+  m.vars.lies = legs.lies(m)
+  kicks.look(m, s, pose)
   m.vars.role = roles.pick(m, s, pose, ball)
   tell(m, s, pose, ball)
   plays[m.vars.role](m, s, pose, ball)
@@ -81,7 +98,11 @@ local function is(phase) return function(s, m) return game.phase(s, m) == phase 
 local function is_not(phase) return function(s, m) return game.phase(s, m) ~= phase end end
 
 return k.decisions "team" {
-  vars    = { mates = {}, role = "none", whistled = false, whistles = 0, told_s = -10, kick_off_ours = false, kick_off_theirs = false },
+  vars = {
+    mates = {}, others = {}, rolling = {}, can = {}, heard = false, lies = false, role = "none", kick = false,
+    told_s = -10, told_role = "none", told_pass = false,
+    whistled = false, whistles = 0, kick_off_ours = false, kick_off_theirs = false,
+  },
   initial = "wait",
   always  = { { on = "robot.tell", action = hear } },
 

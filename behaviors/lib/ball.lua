@@ -33,17 +33,25 @@ end
 
 local around_m = 0.6  -- radius of the way around the ball
 
+-- How it goes to the ball: how fast it turns, by which power of the cosine it slows meanwhile, from where on it goes
+-- without turning away, and how near to its place it may ask for the kick.
+local usual = { turn_rad_s = 0.6, slows = 3, beside_m = 0.5, kicks_m = 0.2 }
+ball.quick = { turn_rad_s = 0.75, slows = 2, beside_m = 0.4, kicks_m = 0.25 }
+
 -- Walks toward a place, facing it.
-local function toward(m, at, x_m, y_m, most_m_s)
+local function toward(m, at, x_m, y_m, most_m_s, way)
   local turn_rad = walk.angle(math.atan2(y_m - at.y_m, x_m - at.x_m) - at.heading_rad)
-  walk.go(m, walk.slowed { forward_m_s = most_m_s * math.max(0, math.cos(turn_rad)) ^ 3, turn_rad_s = walk.within(1.5 * turn_rad, 0.6) })
+  walk.go(m, walk.slowed {
+    forward_m_s = most_m_s * math.max(0, math.cos(turn_rad)) ^ way.slows,
+    turn_rad_s = walk.within(1.5 * turn_rad, way.turn_rad_s),
+  })
 end
 
 -- In each tick: a step of the way around the ball b until it is between the robot and the target, and then the kick, so
 -- that the ball rolls beyond_m farther than the target on a ground that slows it by roll_m_s2. All in the frame of
--- walk.at, at most_m_s (0.35). m.vars.side is the foot: 1 the left one.
-function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s)
-  most_m_s = most_m_s or 0.35
+-- walk.at, at most_m_s (0.35), in the usual way or as quick. m.vars.side is the foot: 1 the left one.
+function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s, way)
+  most_m_s, way = most_m_s or 0.35, way or usual
   local at = walk.at(m)
   local rad = math.atan2(target.y_m - b.y_m, target.x_m - b.x_m)
   local ux, uy = math.cos(rad), math.sin(rad)
@@ -53,11 +61,11 @@ function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s)
   local place = walk.to_kick(b, rad, m.vars.side, rad)
   local off_m = walk.distance(place, at)
   if behind > 0.15 and math.abs(left) < 0.15 + 0.7 * (behind - 0.15) then
-    if off_m > 0.5 then
-      toward(m, at, place.x_m, place.y_m, most_m_s)
+    if off_m > way.beside_m then
+      toward(m, at, place.x_m, place.y_m, most_m_s, way)
     else
       walk.beside(m, place)
-      if off_m < 0.2 and math.abs(walk.angle(rad - at.heading_rad)) < 0.3 then
+      if off_m < way.kicks_m and math.abs(walk.angle(rad - at.heading_rad)) < 0.3 then
         local far_m = walk.distance(target, b) + beyond_m
         walk.kick(m, b, rad, math.min(far_m, 4.5), roll_m_s2)
       end
@@ -68,7 +76,7 @@ function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s)
   local from_rad = math.atan2(left, behind)  -- about the ball, 0 behind it
   local to_rad = from_rad - walk.within(from_rad, 0.8)
   local c, n = math.cos(to_rad), math.sin(to_rad)
-  toward(m, at, b.x_m - around_m * (c * ux + n * uy), b.y_m - around_m * (c * uy - n * ux), most_m_s)
+  toward(m, at, b.x_m - around_m * (c * ux + n * uy), b.y_m - around_m * (c * uy - n * ux), most_m_s, way)
 end
 
 return ball

@@ -14,5 +14,6 @@ return {
     beyond_m = { "m", min = 0, max = 4, optional = true, doc = "how far beyond the place it would roll" },
   },
   ["foot.turn"] = { "turn on the spot", rad_s = { "rad/s", min = -0.8, max = 0.8 } },
+  ["foot.dive"] = { "throw itself to a side before the ball, and get up", left = { "", min = 0, max = 1, doc = "1: left, 0: right" } },
   ["foot.stand"] = { "stand where it is" },
 }

@@ -1,6 +1,6 @@
 -- Walks to places and kicks the ball as somebody decides from moment to moment: the decisions of a football team, over
 -- the events below. Places are as the robot sees them when the event comes, x ahead and y to the left. An order holds
--- until the next one; without one for a while the robot comes to stand. When it falls, it gets up.
+-- until the next one; without one for a while the robot comes to stand. When it falls, or threw itself to a side, it gets up.
 local k = require "kadans"
 local ball = require "ball"
 local floor = require "floor"
@@ -11,7 +11,7 @@ local P = k.params {
   settle_s   = { 0.8, min = 0.1, max = 10, unit = "s", doc = "time to take the pose" },
   patience_s = { 1, min = 0.1, max = 60, unit = "s", doc = "without a word of who decides, after which it stands" },
   roll_m_s2  = { 0.28, min = 0.01, max = 5, unit = "m/s2", doc = "how the ground slows a ball" },
-  most_m_s   = { 0.42, min = 0.05, max = 0.6, unit = "m/s", doc = "how fast it walks to the ball" },
+  most_m_s   = { 0.5, min = 0.05, max = 0.6, unit = "m/s", doc = "how fast it walks to the ball" },
   after_s    = { 0.6, min = 0, max = 10, unit = "s", doc = "time in place after a kick" },
 }
 
@@ -43,7 +43,17 @@ local function go(m, order)
   if walk.to(m, order.place, { m = 0.1, rad = 0.15 }, order.data.most_m_s or P.most_m_s) then walk.stop(m) end
 end
 
+-- A joint that was knocked faster than its drive is damped from then on, until somebody clears the fault.
+local function clear(m, s)
+  local level = s.safety.level
+  if level == "normal" or level == "limited" then m.vars.sound_s = s.time_s end
+  if s.time_s - m.vars.sound_s < 0.5 then return end
+  m.vars.sound_s = s.time_s
+  m:clear_faults()
+end
+
 local function obey(m, s)
+  clear(m, s)
   local order = m.vars.order
   if order then take(m, order) end
   local b = ball.watch(m, s, m.vars.known)
@@ -61,16 +71,28 @@ local function obey(m, s)
   elseif order.what == "foot.go" then
     if kicks then walk.keep(m) end
     go(m, order)
-  elseif b then
-    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s)
+  elseif b and order.what == "foot.kick" then
+    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s, ball.quick)
   end
 end
 
 local function lies(s) return floor.lies(s.base) end
+local function dives(side)
+  return function(_, m)
+    local order = m.vars.order
+    return order ~= nil and order.what == "foot.dive" and (order.data.left > 0.5) == (side == "left")
+  end
+end
+
+local function let_go(m)
+  walk.keep(m)
+  walk.stop(m)
+  m.vars.known, m.vars.order, m.vars.armed = {}, nil, false
+end
 
 return k.behavior "footwork" {
   controls = "walking",
-  vars     = { known = {}, side = 1, armed = false, kicked_s = -10 },
+  vars     = { known = {}, side = 1, armed = false, kicked_s = -10, sound_s = 0 },
   initial  = "set_out",
   always   = { { on = "foot.*", action = hear } },
 
@@ -83,13 +105,21 @@ return k.behavior "footwork" {
     endless = true,
     during = obey,
     { when = lies, to = "fallen", why = "lies" },
+    { when = dives "left", to = "dive_left" },
+    { when = dives "right", to = "dive_right" },
+  },
+  k.state "dive_left" {
+    enter = let_go,
+    k.call "dive" { left = 1 },
+    { on = { "done", "failed" }, to = "fallen" },
+  },
+  k.state "dive_right" {
+    enter = let_go,
+    k.call "dive" { left = 0 },
+    { on = { "done", "failed" }, to = "fallen" },
   },
   k.state "fallen" {
-    enter = function(m)
-      walk.keep(m)
-      walk.stop(m)
-      m.vars.known, m.vars.order, m.vars.armed = {}, nil, false
-    end,
+    enter = let_go,
     k.call "get_up",
     { on = "done", to = "set_out" },
     { on = "failed", to = "fallen", why = "tries again" },

@@ -23,6 +23,15 @@ describe("footwork", function()
     expect(function() run:emit("foot.turn", {}) end).to_raise "rad_s"
   end)
 
+  it("throws itself to the side that it is told, and gets up", function()
+    run:emit("foot.dive", { left = 0 })
+    run:advance(0.1)
+    expect(run.state:sub(1, 10)).to_equal "dive_right"
+    run:advance(2)
+    expect(run.state:sub(1, 6)).to_equal "fallen"
+    expect(run.error).to_equal ""
+  end)
+
   it("gets up when it lies, and hears meanwhile", function()
     run:set_sensor("base.pitch_rad", 1.5)
     run:set_sensor("base.tilt_rad", 1.5)

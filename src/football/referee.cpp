@@ -120,6 +120,19 @@ void Referee::begin_free_kick(Restart restart, Side side, const Point& ball) {
   watch_motion_from(settle_s);
 }
 
+Point Referee::begin_with(Restart restart, Side side, const Point& ball) {
+  if (restart == Restart::penalty_kick) {
+    begin_ready(restart, side);
+    return ball_placement(match_, restart, side, ball, setup_.field);
+  }
+  match_.begin_ready(Restart::dropped_ball, std::nullopt);
+  match_.enter_set();
+  match_.play();
+  if (restart == Restart::none) return ball;
+  begin_free_kick(restart, side, ball);
+  return report_.ball.value_or(ball);
+}
+
 void Referee::penalise(RobotId id, Penalty penalty, const WorldTruth& world, std::string_view rule,
                        const std::string& why) {
   if (!match_.plays(id)) return;

@@ -52,6 +52,9 @@ class Referee {
 
   explicit Referee(const Setup& setup);
 
+  // A drill begins in the middle of a match, before the first step: in play (Restart::none), or with a free kick or
+  // penalty kick of `side`. Returns where the ball is to be placed.
+  Point begin_with(Restart restart, Side side, const Point& ball);
   // Valid until the next step.
   const RefereeReport& step(std::int64_t step_ns, const WorldTruth& world);
   const Match& match() const noexcept { return match_; }

@@ -50,7 +50,7 @@ TEST_CASE("A match file with nothing but a team has the rules of 2026 and an emp
   CHECK(match.rules.removal_s == 45);
   CHECK(match.robots().size() == 1);
   CHECK(match.field().length_m == 9);
-  CHECK(has(scenario_of(match), "\"left_post_1\""));
+  CHECK(has(scenario_of(match, 1), "\"left_post_1\""));
 }
 
 TEST_CASE("What is wrong in a match file is told with its place, what is wrong and what was meant") {
@@ -87,6 +87,13 @@ TEST_CASE("What is wrong in a match file is told with its place, what is wrong a
   CHECK(has(refusal(one_team + ",\n\"away\": {}"), "3:9: key 'team' is missing in away"));
   CHECK(
       has(refusal(one_team + ",\n\"division\": \"small\", \"field\": \"large\""), "the small division does not play"));
+  CHECK(has(refusal(one_team + ",\n\"begins\": { \"with\": \"corners\" }"), "did you mean 'corner'?"));
+  CHECK(has(refusal(one_team + ",\n\"begins\": { \"ball_x\": 1 }"), "did you mean 'ball_x_m'?"));
+  CHECK(has(refusal(one_team + ",\n\"robots_differ\": 2"), "robots_differ is 2"));
+  CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "parameters": "passes=0}" })"),
+            "parameters are NAME=NUMBER"));
+  CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "places": { "1": { "x_m": 2 } } })"),
+            "'y_m' is missing in home.places.1"));
   CHECK_THROWS_AS(read_match(matches / "nothing.json"), InputError);
 }
 
@@ -116,6 +123,29 @@ TEST_CASE("A striker alone scores within 90 s from the kick-off, and the goal co
   CHECK(result.robots.at(0).errors == 0);
   for (const Decision& decision : result.decisions) CHECK_FALSE(decision.rule.empty());
   CHECK(result.decisions.back().text == "goal for home: home 1, away 0");
+}
+
+TEST_CASE("A drill begins in the middle of a match, and its seed scatters ball and robots") {
+  const MatchConfig match = read_match(matches / "drill_localisation.json");
+  PlayedMatch one(match, 1), other(match, 2);
+  CHECK(drill_ball(match, 1).x_m != drill_ball(match, 2).x_m);
+  CHECK(drill_ball(match, 1).x_m < -0.1);  // in front of home, which plays toward -x in the world
+  CHECK(scenario_of(match, 1) != scenario_of(match, 2));
+  for (int i = 0; i < 5; ++i) one.step(), other.step();
+  CHECK(one.result().playing_s > 0.05);
+  CHECK(one.result().robots.at(0).errors == 0);
+  CHECK(one.result().state_hash != other.result().state_hash);
+}
+
+TEST_CASE("Robots that differ are drawn by the seed, and without that they are as configured") {
+  MatchConfig match = read_match(matches / "striker_drill.json");
+  CHECK_FALSE(has(scenario_of(match, 1), "randomise"));
+  match.robots_differ = 1;
+  CHECK(has(scenario_of(match, 1), "\"link.*.mass_scale\": { \"uniform\": [0.85, 1.15] }"));
+  match.teams[0].parameters = "passes=0";
+  CHECK(has(scenario_of(match, 1), "behaviors/football/team.lua{passes=0}"));
+  PlayedMatch played(match, 3);
+  CHECK(played.step());
 }
 
 TEST_CASE("The same seed plays the same match, bit for bit, and another one another match") {

@@ -87,3 +87,29 @@ TEST_CASE("the teams change sides once, at half of the break") {
     drawn.step();
   }
 }
+
+TEST_CASE("a drill begins in play, with a corner, or with a penalty kick") {
+  DrawnMatch play;
+  CHECK(play.referee.begin_with(Restart::none, home, {1, 2}).x_m == 1);
+  play.world.ball = {1, 2};
+  play.run(0.1);
+  CHECK(play.referee.match().state() == GameState::playing);
+  CHECK(play.referee.match().restart() == Restart::none);
+  CHECK_FALSE(play.referee.match().stopped());
+
+  DrawnMatch corner;
+  const Point at = corner.referee.begin_with(Restart::corner, home, {-3, 1});
+  CHECK(at.x_m == doctest::Approx(-corner.field.goal_line_x_m()));
+  CHECK(at.y_m == doctest::Approx(corner.field.touchline_y_m()));
+  corner.world.ball = at;
+  corner.run(0.1);
+  CHECK(corner.referee.match().restart() == Restart::corner);
+  CHECK(corner.referee.match().stopped());
+
+  DrawnMatch penalty;
+  penalty.world.ball = penalty.referee.begin_with(Restart::penalty_kick, home, {});
+  CHECK(penalty.world.ball.x_m == doctest::Approx(-penalty.field.penalty_mark_x_m()));
+  penalty.run(0.1);
+  CHECK(penalty.referee.match().state() == GameState::ready);
+  CHECK(penalty.referee.match().restart() == Restart::penalty_kick);
+}

@@ -1,8 +1,10 @@
 #include "match_file.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "kadans/config/input_object.h"
+#include "kadans/signal/random.h"
 
 namespace kadans::football {
 namespace {
@@ -11,6 +13,13 @@ constexpr double beside_gap_m = 1.0;  // between robots that stand beside the fi
 constexpr std::string_view name_letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
 const std::array<std::string, 3> division_names{"small", "middle", "large"};
 const std::array<std::string, 2> start_names{"touchline", "field"};
+const std::array<std::string, 7> begin_names{"play",      "free_kick", "indirect_free_kick", "penalty_kick", "throw_in",
+                                             "goal_kick", "corner"};
+constexpr std::array<Restart, 7> begin_restarts{
+    Restart::none,         Restart::direct_free_kick, Restart::indirect_free_kick,
+    Restart::penalty_kick, Restart::throw_in,         Restart::goal_kick,
+    Restart::corner};
+const std::array<std::string, 2> side_names{"home", "away"};
 
 void read_rules(InputObject& f, MatchRules& rules) {
   f.number("half_s", rules.half_s, {5, 3600, "s"}, "length of a half");
@@ -39,6 +48,29 @@ void read_senses(InputObject& f, SensesConfig& senses) {
   f.number("bearing_noise_rad", senses.bearing_noise_rad, {0, 0.5, "rad"}, "standard deviation of a direction");
   f.number("missed", senses.missed, {0, 1}, "share of the pictures that miss a thing");
   f.number("imagined", senses.imagined, {0, 1}, "share of the pictures that show it where it is not");
+  std::uint64_t seen = 1;
+  f.whole("field_seen", seen, 0, 1, "0: no line, crossing or post of the field is seen");
+  senses.field_seen = seen == 1;
+}
+
+void read_place(InputObject& f, Pose2& place) {
+  f.number("x_m", place.x_m, {-15, 15, "m"}, "toward the goal that the team attacks", true);
+  f.number("y_m", place.y_m, {-10, 10, "m"}, "to the left", true);
+  f.number("rad", place.theta_rad, {-3.2, 3.2, "rad"}, "where it faces, 0: the goal that the team attacks");
+}
+
+void read_begin(InputObject& f, DrillStart& begin) {
+  std::size_t with = 0, side = 0;
+  f.choice("with", with, begin_names, "what it begins with: in play, or a free kick of some kind");
+  f.choice("for", side, side_names, "who kicks");
+  begin.restart = begin_restarts.at(with);
+  begin.side = both_sides.at(side);
+  f.number("ball_x_m", begin.ball.x_m, {-15, 15, "m"}, "where the ball lies, in the frame of the team that kicks");
+  f.number("ball_y_m", begin.ball.y_m, {-10, 10, "m"}, "to its left");
+  f.number("ball_scatter_m", begin.ball_scatter_m, {0, 10, "m"}, "standard deviation of that");
+  f.number("robots_scatter_m", begin.robots_scatter_m, {0, 5, "m"},
+           "standard deviation of where robots stand from where they think they do");
+  f.number("robots_scatter_rad", begin.robots_scatter_rad, {0, 3, "rad"}, "the same of where they face");
 }
 
 void read_team(InputObject& f, TeamSetup& team) {
@@ -49,6 +81,17 @@ void read_team(InputObject& f, TeamSetup& team) {
   f.path("robot", team.robot, "the configuration of its robots");
   f.whole("players", team.players, 1, team_players_max, "robots of the team", true);
   f.whole("keeper", team.keeper, 0, team_players_max, "number of the keeper, 0: none");
+  f.text("parameters", team.parameters, "parameters of its decisions: \"passes=0, dives=0\"");
+  if (team.parameters.find_first_of("{}\"") != std::string::npos)
+    f.refuse("parameters", "parameters are NAME=NUMBER, with commas between them");
+  f.object("places", "where robots stand when a drill begins", [&](InputObject& e) {
+    for (std::size_t i = 0; i < team_players_max; ++i) {
+      Pose2 place;
+      if (e.object(std::to_string(i + 1), "of the robot with this number",
+                   [&](InputObject& one) { read_place(one, place); }))
+        team.places.at(i) = place;
+    }
+  });
   if (team.keeper > team.players)
     f.refuse("keeper", "keeper is number " + std::to_string(team.keeper) + ", but the team has " +
                            std::to_string(team.players) + " players");
@@ -58,6 +101,17 @@ std::string number(double value) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.12g", value);
   return text.data();
+}
+
+// Where a robot stands, which thinks that it stands in place_before.
+Pose2 drill_place(const MatchConfig& match, RobotId id, std::uint64_t seed) {
+  Pose2 place = place_before(match, id);
+  if (!match.begins) return place;
+  RandomStream random(seed, "football.place of " + robot_name(id));
+  place.x_m += match.begins->robots_scatter_m * random.normal();
+  place.y_m += match.begins->robots_scatter_m * random.normal();
+  place.theta_rad = wrapped(place.theta_rad + match.begins->robots_scatter_rad * random.normal());
+  return place;
 }
 
 std::string world_model() {
@@ -89,14 +143,30 @@ std::string world_model() {
   return text + " }";
 }
 
-std::string robot_fields(const MatchConfig& match, RobotId id) {
+// Robots that differ, each for all its joints and links alike, as in config/sweeps/walk_long.json.
+std::string differing(double share) {
+  if (!(share > 0)) return "";
+  const auto range = [&](const char* what, double middle, double down, double up) {
+    return "\"" + std::string(what) + "\": { \"uniform\": [" + number(middle - share * down) + ", " +
+           number(middle + share * up) + "] }";
+  };
+  return ",\n    \"randomise\": { " + range("link.*_ankle_roll_link.friction", 0.8, 0.4, 0.4) + ", " +
+         range("control.*.kp_Nm_per_rad_scale", 1, 0.15, 0.15) + ", " +
+         range("control.*.kd_Nms_per_rad_scale", 1, 0.15, 0.15) + ", " + range("joint.*.torque_scale", 1, 0.15, 0) +
+         ", " + range("joint.*.coulomb_Nm", 0, 0, 1.5) + ", " + range("link.*.mass_scale", 1, 0.15, 0.15) + ", " +
+         range("imu.gyro_noise_rad_s", 0.005, 0.005, 0.015) + " }";
+}
+
+std::string robot_fields(const MatchConfig& match, RobotId id, std::uint64_t seed) {
   const TeamSetup& team = match.team(id.side);
-  const Pose2 at = world_pose(place_before(match, id), id.side == Side::home ? -1 : 1);
-  std::string text = "\"robot\": " + json_text(team.robot) +
-                     ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
-                     ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) +
-                     " },\n    \"supervisor\": { \"decisions\": " + json_text(team.folder + "/team.lua") +
-                     ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
+  const Pose2 at = world_pose(drill_place(match, id, seed), id.side == Side::home ? -1 : 1);
+  std::string text =
+      "\"robot\": " + json_text(team.robot) +
+      ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
+      ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) + " }" +
+      differing(match.robots_differ) + ",\n    \"supervisor\": { \"decisions\": " +
+      json_text(team.folder + "/team.lua" + (team.parameters.empty() ? "" : "{" + team.parameters + "}")) +
+      ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
   std::string peers;
   for (unsigned number = 1; number <= team.players; ++number) {
     const RobotId mate{id.side, static_cast<std::uint8_t>(number)};
@@ -160,6 +230,7 @@ std::vector<RobotId> MatchConfig::robots() const {
 
 Pose2 place_before(const MatchConfig& match, RobotId id) {
   const Field field = match.field();
+  if (const auto& place = match.team(id.side).places.at(id.index())) return *place;
   if (match.start_on_field && match.team(id.side).keeper == id.number) return {0.5 - field.length_m / 2, 0, 0};
   if (match.start_on_field) return {-1.2 - 0.9 * (id.number - 1), id.number % 2 == 0 ? 0.8 : 0, 0};
   const double y_m = field.width_m / 2 + 0.3, x_m = -field.length_m / 2 + 1.2 + beside_gap_m * (id.number - 1);
@@ -201,6 +272,12 @@ MatchConfig read_match(const std::filesystem::path& file) {
       e.whole("goals", match.goals, 1, 1000, "with so many goals");
       e.number("playing_s", match.playing_s, {1, 1e5, "s"}, "after so long in playing");
     });
+    DrillStart begin;
+    if (f.object("begins", "a drill: it begins in the middle of a match",
+                 [&](InputObject& e) { read_begin(e, begin); }))
+      match.begins = begin;
+    f.number("robots_differ", match.robots_differ, {0, 1},
+             "0: all robots are as configured; 1: friction, masses, torque, gains and noise differ as in the sweeps");
     f.number("rolling_friction_m", match.rolling_friction_m, {1e-4, 0.1, "m"}, "how the grass slows the ball");
     f.object("network", "the network of each team", [&](InputObject& e) {
       e.number("delay_s", match.delay_s, {0, 10, "s"}, "the least time that a message takes");
@@ -218,15 +295,25 @@ MatchConfig read_match(const std::filesystem::path& file) {
   return match;
 }
 
-std::string scenario_of(const MatchConfig& match) {
+Point drill_ball(const MatchConfig& match, std::uint64_t seed) {
+  const DrillStart& begin = match.begins.value();
+  RandomStream random(seed, "football.ball");
+  const double half_m = match.field().length_m / 2 - 0.1, side_m = match.field().width_m / 2 - 0.1;
+  const double x_m = std::clamp(begin.ball.x_m + begin.ball_scatter_m * random.normal(), -half_m, half_m);
+  const double y_m = std::clamp(begin.ball.y_m + begin.ball_scatter_m * random.normal(), -side_m, side_m);
+  const double sign = begin.side == Side::home ? -1 : 1;
+  return {sign * x_m, sign * y_m};
+}
+
+std::string scenario_of(const MatchConfig& match, std::uint64_t seed) {
   const Field field = match.field();
   const Ball ball = league_ball(match.division);
   const std::vector<RobotId> robots = match.robots();
   std::string text = "{ \"name\": " + json_text(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
-                     robot_fields(match, robots.front()) + ",\n  \"robots\": [";
+                     robot_fields(match, robots.front(), seed) + ",\n  \"robots\": [";
   for (std::size_t i = 1; i < robots.size(); ++i) {
     text += std::string(i == 1 ? "" : ",") + "\n    { \"name\": " + json_text(robot_name(robots[i])) + ", " +
-            robot_fields(match, robots[i]) + " }";
+            robot_fields(match, robots[i], seed) + " }";
   }
   text += "],\n  \"network\": { \"delay_s\": " + number(match.delay_s) + ", \"jitter_s\": " + number(match.jitter_s) +
           ", \"lost\": " + number(match.lost) +

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,7 +23,18 @@ inline constexpr std::size_t robots_told = 3;    // of those that a robot sees: 
 
 struct TeamSetup {
   std::string name, folder, robot = "config/tulip/robot.json";
-  std::uint64_t players = 1, keeper = 0;  // keeper 0: there is none
+  std::string parameters;                                     // of its decisions: "passes=0, dives=0"
+  std::uint64_t players = 1, keeper = 0;                      // keeper 0: there is none
+  std::array<std::optional<Pose2>, team_players_max> places;  // of a drill, in the team's frame
+};
+
+// What a drill begins with: in play, or with a free kick or penalty kick. All is scattered by the seed.
+struct DrillStart {
+  Restart restart = Restart::none;  // none: in play
+  Side side = Side::home;           // who kicks
+  Point ball;                       // in the frame of that team
+  double ball_scatter_m = 0;
+  double robots_scatter_m = 0, robots_scatter_rad = 0;  // of what the robots know of their places, standard deviations
 };
 
 // What a robot's camera says of the ball, of other robots and of the field.
@@ -31,6 +43,7 @@ struct SensesConfig {
   double view_rad = 2, far_m = 6;  // about straight ahead
   double distance_noise = 0.04, bearing_noise_rad = 0.02;
   double missed = 0.2, imagined = 0.02;  // shares of the pictures
+  bool field_seen = true;                // lines, crossings, posts: without, a robot counts its way alone
 };
 
 struct MatchConfig {
@@ -40,9 +53,11 @@ struct MatchConfig {
   MatchRules rules;
   std::array<TeamSetup, 2> teams;
   std::uint64_t seed = 1;
-  bool start_on_field = false;  // else at the touchline of their own half
-  std::uint64_t goals = 0;      // it ends with so many; 0: the rules end it
-  double playing_s = 0;         // it ends after so long in playing; 0: the rules end it
+  bool start_on_field = false;       // else at the touchline of their own half
+  std::optional<DrillStart> begins;  // else with the first half
+  double robots_differ = 0;          // share of the ranges that the sweeps of walking draw robots from
+  std::uint64_t goals = 0;           // it ends with so many; 0: the rules end it
+  double playing_s = 0;              // it ends after so long in playing; 0: the rules end it
   double rolling_friction_m = 0.004;
   double delay_s = 0.01, jitter_s = 0.01, lost = 0.05;  // of messages
   SensesConfig senses;
@@ -62,7 +77,9 @@ Pose2 world_pose(const Pose2& of_team, double sign) noexcept;  // Match::sign of
 
 std::string robot_name(RobotId id);            // "home_1"
 std::string json_text(std::string_view text);  // in JSON's quotes
-// The text of the scenario, for kadans::Simulation.
-std::string scenario_of(const MatchConfig& match);
+// The text of the scenario, for kadans::Simulation. The seed scatters what a drill begins with.
+std::string scenario_of(const MatchConfig& match, std::uint64_t seed);
+// Where the ball lies when the drill of `match.begins` begins, in the world's frame.
+Point drill_ball(const MatchConfig& match, std::uint64_t seed);
 
 }  // namespace kadans::football

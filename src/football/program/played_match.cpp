@@ -57,7 +57,7 @@ std::string text_of(const SaidLine& line) {
 
 PlayedMatch::PlayedMatch(const MatchConfig& match, std::uint64_t seed)
     : match_(match),
-      simulation_(scenario_of(match), match.file, seed),
+      simulation_(scenario_of(match, seed), match.file, seed),
       referee_({.match = {.rules = match.rules,
                           .teams = {MatchTeam{.number = 1, .keeper = static_cast<std::uint8_t>(match.teams[0].keeper)},
                                     MatchTeam{.number = 2,
@@ -78,6 +78,11 @@ PlayedMatch::PlayedMatch(const MatchConfig& match, std::uint64_t seed)
     player.arms = arms_of(*catalog.model);
     player.sent = catalog.signals.find("supervisor.sent");
     players_.push_back(std::move(player));
+  }
+  if (match.begins) {
+    const DrillStart& begin = *match.begins;
+    const Point ball = referee_.begin_with(begin.restart, begin.side, drill_ball(match, seed));
+    simulation_.world().put(ball_, {ball.x_m, ball.y_m, ball_radius_m_});
   }
   result_.match = match.name;
   result_.seed = seed;

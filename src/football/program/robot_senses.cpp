@@ -37,7 +37,9 @@ RobotSenses::RobotSenses(const MatchConfig& match, Simulation& simulation, std::
 }
 
 void RobotSenses::placed(const Pose2& place) {
-  localisation_.place(std::span(&place, 1), placed_sd_m, placed_sd_rad);
+  const double sd_m = match_.begins ? match_.begins->robots_scatter_m : 0;
+  const double sd_rad = match_.begins ? match_.begins->robots_scatter_rad : 0;
+  localisation_.place(std::span(&place, 1), std::max(placed_sd_m, sd_m), std::max(placed_sd_rad, sd_rad));
   late_views_.clear();
 }
 
@@ -155,6 +157,8 @@ void RobotSenses::take_picture(const WorldTruth& world, double sign) {
   const RobotTruth& self = world.robot(id_);
   if (!self.upright) return;
   const Pose2 camera = world_pose(self.pose, sign);  // in the team's frame: a half turn is its own inverse
+  see_robots(world);
+  if (!match_.senses.field_seen) return;
   FieldView view{1e-9 * static_cast<double>(now_ns()), {}, {}};
   for (const Crossing& crossing : markings_.crossings)
     see_landmark(view, camera, static_cast<LandmarkKind>(crossing.kind), crossing.at);
@@ -164,7 +168,6 @@ void RobotSenses::take_picture(const WorldTruth& world, double sign) {
   for (const Segment& line : markings_.lines) see_line(view, camera, line);
   const std::int64_t due_ns = now_ns() + std::llround(1e9 * match_.senses.latency_s);
   late_views_.push_back({due_ns, std::move(view)});
-  see_robots(world);
 }
 
 void RobotSenses::see_robots(const WorldTruth& world) {
