@@ -59,6 +59,28 @@ TEST_CASE("What is observed reaches the world model of a robot with a supervisor
   CHECK(simulation.take_lines().empty());
 }
 
+TEST_CASE("A record of a program that steps a scenario changes no bit of it, and only that program repeats it") {
+  const std::filesystem::path folder = fresh_folder("simulation_record");
+  const std::string record = (folder / "stepped.mcap").string();
+  std::uint64_t hashes[2]{};
+  for (const bool recorded : {false, true}) {
+    Simulation simulation(read(scenario_file), scenario_file, 7);
+    if (recorded) simulation.record({.file = record, .signals = "*plant.base.*@50", .repeat = "my-program --seed 7"});
+    while (simulation.time_ns() < 300'000'000) simulation.step();
+    if (recorded) simulation.end_record({{"ended", "well"}});
+    hashes[recorded ? 1 : 0] = simulation.state_hash();
+  }
+  CHECK(hashes[0] == hashes[1]);
+  const Outcome info = run("log info " + record, folder), again = run("replay " + record, folder);
+  CHECK_MESSAGE(has(info.out, "my-program --seed 7"), info.out);
+  CHECK(again.exit_code == 2);
+  CHECK_MESSAGE(has(again.err, "stepped by another program, which alone repeats it: my-program --seed 7"), again.err);
+  const Outcome place = run("log csv " + record + " left.plant.base.height_m", folder);
+  CHECK_MESSAGE(place.exit_code == 0, place.err);
+  Simulation nowhere(read(scenario_file), scenario_file, 7);
+  CHECK_THROWS_AS(nowhere.record({.file = "/dev/null/record.mcap"}), InputError);
+}
+
 TEST_CASE("A scenario with a mistake is refused as kadans sim refuses it, with its place") {
   CHECK_THROWS_WITH_AS(Simulation("{ \"name\": \"x\",\n \"robots\": 3 }", scenario_file, 1),
                        doctest::Contains("side_by_side.json:"), InputError);

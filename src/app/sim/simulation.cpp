@@ -5,7 +5,13 @@
 #include <utility>
 
 #include "app/assembly.h"
+#include "app/ctl/sim_remote.h"
+#include "app/record_options.h"
+#include "app/run/observers.h"
+#include "app/services.h"
+#include "input_files.h"
 #include "played_behaviors.h"
+#include "telemetry/record/recorder.h"
 
 namespace kadans {
 namespace {
@@ -44,7 +50,8 @@ class Simulation::Stepped {
 
   Stepped(const std::string& text, const std::filesystem::path& file, std::uint64_t seed)
       : scenario(simulated_scenario(text, file)),
-        log({&lines}, simulation_lines_kept),
+        run_seed(seed),
+        log({&lines, &echo}, simulation_lines_kept),
         assembly(scenario, seed, log),
         all(assembly.parts()),
         steps(all) {
@@ -54,12 +61,64 @@ class Simulation::Stepped {
   const Assembly& of(std::size_t number) const { return number == 0 ? assembly : *assembly.others().at(number - 1); }
   const RunParts& parts(std::size_t number) const { return number == 0 ? all : all.others.at(number - 1); }
 
+  void step() {
+    steps.step();
+    if (recorder == nullptr && remote == nullptr) return;
+    const double time_s = 1e-9 * static_cast<double>(all.control.state().time_ns);
+    if (recorder) (void)recorder->drain();  // a failing disk is told at the end
+    if (pacer) pacer->tick(time_s, all.control.row());
+    if (remote) remote->between_ticks(steps.mark());
+    for (std::size_t i = 0; i <= all.others.size(); ++i) tell_faults(i);
+  }
+
+  void tell_faults(std::size_t number) {
+    for (Fault fault; parts(number).control.safety().log().try_pop(fault);) {
+      fault.robot = static_cast<std::uint16_t>(number);
+      if (recorder) recorder->fault(fault);
+      if (remote) remote->fault(fault);
+    }
+  }
+
+  void record(const SimulationRecord& asked) {
+    RecordPlan plan = record_plan(assembly, {.signals = asked.signals, .flight_s = {}, .folder_MB = {}}, false);
+    recorder = std::make_unique<Recorder>(assembly.catalog().signals, plan.settings, FlightSettings{},
+                                          Recorder::Wait::in_place);
+    if (!recorder->open(asked.file.string())) throw InputError({.message = recorder->error()});
+    RunChoices choices;
+    choices.scenario = scenario.file;
+    choices.seed = run_seed;
+    RunInputs inputs = inputs_of(choices, scenario, assembly);
+    inputs.run["clock"] = clock_of_programs;
+    inputs.run["repeat"] = asked.repeat;
+    (void)recorder->file().describe_run(inputs);
+    describe_robots(recorder->file(), robot_texts(assembly), 0);
+    log.add(recorder->events());
+    record_file = asked.file.string();
+    assembly.record_to(recorder.get());
+  }
+
+  void show(const SimulationPage& page) {
+    SimRemote::Places places;
+    places.live.port = std::to_string(page.port);
+    places.live.address = page.address;
+    places.ctl.wanted = false;
+    remote = std::make_unique<SimRemote>(places, scenario, assembly, record_plan(assembly, {}, false), log, echo);
+    remote->begin(recorder.get(), record_file);
+    pacer.emplace(remote->pace());
+  }
+
   ScenarioConfig scenario;
+  std::uint64_t run_seed;
   Lines lines;
+  LineEcho echo;
   RunLog log;
   Assembly assembly;
   RunParts all;
   RunSteps steps;
+  std::unique_ptr<Recorder> recorder;
+  std::string record_file;
+  std::unique_ptr<SimRemote> remote;
+  std::optional<ViewerPacer> pacer;
 };
 
 Simulation::Simulation(const std::string& scenario, const std::filesystem::path& file, std::uint64_t seed)
@@ -67,7 +126,24 @@ Simulation::Simulation(const std::string& scenario, const std::filesystem::path&
 
 Simulation::~Simulation() = default;
 
-void Simulation::step() { stepped_->steps.step(); }
+void Simulation::step() { stepped_->step(); }
+
+void Simulation::record(const SimulationRecord& record) { stepped_->record(record); }
+
+void Simulation::show(const SimulationPage& page) { stepped_->show(page); }
+
+void Simulation::end_record(const std::map<std::string, std::string>& result) {
+  Recorder* recorder = stepped_->recorder.get();
+  if (recorder == nullptr || !recorder->is_open()) return;
+  TextMap facts(result.begin(), result.end());
+  facts["state_hash"] = hash_text(state_hash());
+  facts["control_ticks"] = std::to_string(stepped_->steps.mark().ticks);
+  (void)recorder->drain();
+  (void)recorder->file().describe("result", facts);
+  if (!recorder->close()) throw std::runtime_error("the record is not complete: " + recorder->error());
+  if (recorder->dropped() > 0)
+    throw std::runtime_error(std::to_string(recorder->dropped()) + " rows are missing in the record");
+}
 
 std::int64_t Simulation::time_ns() const noexcept { return stepped_->steps.mark().time_ns; }
 
