@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "campaign/sweep/sweep_case.h"
+#include "kadans/campaign/shard.h"
 #include "kadans/signal/input_error.h"
 
 using namespace kadans;

@@ -11,7 +11,7 @@
 
 #include "app/sweep/sweep_run.h"
 #include "app/terminal.h"
-#include "campaign/work/job_pool.h"
+#include "kadans/campaign/job_pool.h"
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
 #include "config/robot/project_root.h"

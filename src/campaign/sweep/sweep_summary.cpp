@@ -12,7 +12,7 @@
 #include "config/json/foreign_json.h"
 #include "config/json/problems.h"
 #include "signal/number_text.h"
-#include "statistics.h"
+#include "kadans/campaign/statistics.h"
 #include "telemetry/plot.h"
 
 namespace kadans {
