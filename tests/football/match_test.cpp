@@ -5,14 +5,12 @@
 
 #include <doctest/doctest.h>
 
-#include "config/broken.h"
 #include "football/program/match_report.h"
 
 namespace match_test {
 
 namespace fs = std::filesystem;
 using namespace kadans::football;
-using kadans::InputError;
 
 namespace {
 
@@ -24,12 +22,6 @@ fs::path match_of(const std::string& text) {
   const fs::path file = folder / "match.json";
   std::ofstream(file) << text;
   return file;
-}
-
-// What is said about a file with these lines after its name.
-std::string refusal(const std::string& rest, const std::string& name = "drawn") {
-  const fs::path file = match_of("{ \"name\": \"" + name + "\",\n" + rest + "\n}\n");
-  return kadans::refusal(file.string(), KADANS_SOURCE_DIR, [&] { (void)read_match(file); });
 }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -51,43 +43,6 @@ TEST_CASE("A match file with nothing but a team has the rules of 2026 and an emp
   CHECK(match.robots().size() == 1);
   CHECK(match.field().length_m == 9);
   CHECK(has(scenario_of(match), "\"left_post_1\""));
-}
-
-TEST_CASE("What is wrong in a match file is told with its place, what is wrong and what was meant") {
-  CHECK(refusal(one_team).empty());
-  CHECK(has(refusal("\"field\": \"small\""), "1:1: key 'home' is missing"));
-  CHECK(has(refusal(one_team + ",\n\"halfs\": 3"), "3:1: unknown key 'halfs' (known: name, "));
-  CHECK(has(refusal(one_team + ",\n\"field\": \"smal\""), "3:10: "));
-  CHECK(has(refusal(one_team + ",\n\"field\": \"smal\""), "did you mean 'small'?"));
-  CHECK(has(refusal(one_team + ",\n\"field\": \"large\""), "3:10: "));
-  CHECK(has(refusal(one_team + ",\n\"rules\": { \"half_s\": -3 }"), "rules.half_s is -3"));
-  CHECK(has(refusal(one_team + ",\n\"rules\": { \"half_s\": \"long\" }"), "3:22: rules.half_s must be a number in s"));
-  CHECK(has(refusal(one_team + ",\n\"rules\": { \"hal_s\": 3 }"), "did you mean 'half_s'"));
-  CHECK(has(refusal(one_team + ",\n\"seed\": 1.5"), "3:9: seed"));
-  CHECK(has(refusal(one_team + ",\n\"ends\": { \"goals\": 0 }"), "ends.goals"));
-  CHECK(has(refusal(one_team + ",\n\"network\": { \"lost\": 2 }"), "network.lost is 2"));
-  CHECK(has(refusal(one_team + ",\n\"senses\": { \"rate_Hz\": 0 }"), "senses.rate_Hz"));
-  CHECK(has(refusal(one_team + ",\n\"start\": \"bench\""), "touchline, field"));
-  CHECK(has(refusal(one_team + ",\n\"away\": { \"players\": 9, \"team\": \"behaviors/football\" }"),
-            "away.players is 9"));
-  CHECK(has(refusal(one_team, "Two teams"), "1:11: name must be small letters"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/footbal", "players": 1 })"), "2:19: home.team: there is no "));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/footbal", "players": 1 })"), "did you mean 'football'?"));
-  CHECK(
-      has(refusal("\"home\": { \"team\": \"" + std::string(5000, 'a') + "\", \"players\": 1 }"), "2:19: home.team: "));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football\u0000x", "players": 1 })"), "is no path"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/tulip", "players": 1 })"), "has no team.lua, a k.decisions"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football" })"), "2:9: key 'players' is missing in home"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "keeper": 2 })"),
-            "keeper is number 2, but the team has 1 players"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "robot": "config/tulp/robot.json" })"),
-            "home.robot: there is no "));
-  CHECK(has(refusal("\"home\": 3"), "home must be an object"));
-  CHECK(has(refusal(one_team + " \"away\": {}"), "2:56: a comma or } is needed here"));
-  CHECK(has(refusal(one_team + ",\n\"away\": {}"), "3:9: key 'team' is missing in away"));
-  CHECK(
-      has(refusal(one_team + ",\n\"division\": \"small\", \"field\": \"large\""), "the small division does not play"));
-  CHECK_THROWS_AS(read_match(matches / "nothing.json"), InputError);
 }
 
 TEST_CASE("Robots stand before a half in their own half, beside the field or on it, and none in another's place") {

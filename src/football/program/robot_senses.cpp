@@ -12,12 +12,16 @@ constexpr double penalised_edge_m = 0.2;  // from the carpet's edge
 constexpr double near_m = 0.3;            // what lies nearer is below the camera
 constexpr std::int64_t self_every_ns = 1'000'000'000;
 
+std::uint32_t entry_of(const Catalog& catalog, const std::string& name) {
+  return static_cast<std::uint32_t>(std::ranges::find(catalog.seen, name, &SeenInfo::name) - catalog.seen.begin());
+}
+
 }  // namespace
 
-RobotSenses::RobotSenses(const MatchConfig& match, Simulation& simulation, std::size_t number, RobotId id,
+RobotSenses::RobotSenses(const MatchConfig& match, MatchWorld& played_in, std::size_t number, RobotId id,
                          std::uint64_t seed)
     : match_(match),
-      simulation_(simulation),
+      played_in_(played_in),
       number_(number),
       id_(id),
       team_number_(static_cast<std::uint8_t>(1 + index_of(id.side))),
@@ -27,12 +31,12 @@ RobotSenses::RobotSenses(const MatchConfig& match, Simulation& simulation, std::
       camera_scale_(random_.uniform(0.95, 1.05)),
       camera_rad_(random_.uniform(-0.03, 0.03)),
       localisation_({.field = field_, .seed = seed + number}),
-      field_entry_(simulation.entry(number, "field")),
-      game_entry_(simulation.entry(number, "game")),
-      whistle_entry_(simulation.entry(number, "whistle")),
-      me_entry_(simulation.entry(number, "me")) {
+      field_entry_(entry_of(played_in.catalog(number), "field")),
+      game_entry_(entry_of(played_in.catalog(number), "game")),
+      whistle_entry_(entry_of(played_in.catalog(number), "whistle")),
+      me_entry_(entry_of(played_in.catalog(number), "me")) {
   for (std::size_t i = 1; i <= robots_told; ++i)
-    robot_entries_.push_back(simulation.entry(number, "robot_" + std::to_string(i)));
+    robot_entries_.push_back(entry_of(played_in.catalog(number), "robot_" + std::to_string(i)));
   placed(place_before(match, id));
 }
 
@@ -44,14 +48,12 @@ void RobotSenses::placed(const Pose2& place) {
 void RobotSenses::tell(std::uint32_t entry, std::initializer_list<double> fields) {
   Observation observation{.entry = entry, .time_ns = now_ns(), .source = SeenSource::scenario};
   std::ranges::copy(fields, observation.fields.begin());
-  simulation_.observe(number_, observation);
+  played_in_.observe(number_, observation);
 }
 
 void RobotSenses::step(const WorldTruth& world, double sign) {
   const std::int64_t at_ns = now_ns();
-  const OdometryStatus& odometry = simulation_.status(number_).odometry;
-  localisation_.odometry(1e-9 * static_cast<double>(at_ns),
-                         {odometry.path_x_m, odometry.path_y_m, odometry.path_heading_rad});
+  localisation_.odometry(1e-9 * static_cast<double>(at_ns), played_in_.odometry(number_));
   if (at_ns >= picture_due_ns_) {
     picture_due_ns_ = at_ns + std::llround(1e9 / match_.senses.rate_Hz);
     take_picture(world, sign);
@@ -59,7 +61,7 @@ void RobotSenses::step(const WorldTruth& world, double sign) {
   for (; !late_views_.empty() && late_views_.front().due_ns <= at_ns; late_views_.pop_front())
     (void)localisation_.view(late_views_.front().view);
   for (; !late_.empty() && late_.front().due_ns <= at_ns; late_.pop_front())
-    simulation_.observe(number_, late_.front().observation);
+    played_in_.observe(number_, late_.front().observation);
   tell_place();
   tell_self();
 }

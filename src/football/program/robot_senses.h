@@ -16,15 +16,14 @@
 
 #include "football/localisation.h"
 #include "football/positions.h"
-#include "kadans/app/simulation.h"
-#include "match_file.h"
+#include "match_world.h"
 
 namespace kadans::football {
 
 class RobotSenses {
  public:
   // The robot with this number of the simulation. Keeps references.
-  RobotSenses(const MatchConfig& match, Simulation& simulation, std::size_t number, RobotId id, std::uint64_t seed);
+  RobotSenses(const MatchConfig& match, MatchWorld& played_in, std::size_t number, RobotId id, std::uint64_t seed);
 
   // To be called at 50 Hz. `sign`: of the team (Match::sign).
   void step(const WorldTruth& world, double sign);
@@ -52,14 +51,14 @@ class RobotSenses {
   void see_robots(const WorldTruth& world);
   void tell_place();
   void tell_self();
-  std::int64_t now_ns() const noexcept { return simulation_.time_ns() - simulation_.period_ns(); }  // of the last tick
+  std::int64_t now_ns() const noexcept { return played_in_.time_ns() - played_in_.period_ns(); }  // of the last tick
   void tell(std::uint32_t entry, std::initializer_list<double> fields);
   bool sees(const Point& at) const noexcept;
   Point noisy(const Point& at);
   Point nothing();
 
   const MatchConfig& match_;
-  Simulation& simulation_;
+  MatchWorld& played_in_;
   std::size_t number_;
   RobotId id_;
   std::uint8_t team_number_;
