@@ -76,6 +76,9 @@ class Simulation {
   const RobotStatus& status(std::size_t number) const;   // what it knows of itself; the same
   // To its world model, in the next tick of its supervisor. Throws std::invalid_argument where it has none.
   void observe(std::size_t number, const Observation& observation);
+  // What the scenario's perception of this robot said since the last call: its world model hears it, too. Call it in
+  // each step, or never.
+  std::vector<Observation> take_observed(std::size_t number);
   // The entry of its world model with this name. Throws std::invalid_argument.
   std::uint32_t entry(std::size_t number, std::string_view name) const;
 

@@ -56,10 +56,32 @@ class Simulation::Stepped {
         all(assembly.parts()),
         steps(all) {
     refuse_faulty_behaviors(assembly);
+    hear_perception();
   }
 
   const Assembly& of(std::size_t number) const { return number == 0 ? assembly : *assembly.others().at(number - 1); }
   const RunParts& parts(std::size_t number) const { return number == 0 ? all : all.others.at(number - 1); }
+
+  // What a robot's perception says goes on to its supervisor, and waits here for who asks.
+  struct Heard final : ObservationSink {
+    void observe(const Observation& observation) noexcept override {
+      if (kept.size() == kept_max) kept.clear();
+      kept.push_back(observation);
+      to->observe(observation);
+    }
+    static constexpr std::size_t kept_max = 1000;
+    ObservationSink* to = nullptr;
+    std::vector<Observation> kept;
+  };
+
+  void hear_perception() {
+    heard.resize(1 + all.others.size());
+    for (std::size_t i = 0; i < heard.size(); ++i) {
+      RunParts& one = i == 0 ? all : all.others[i - 1];
+      heard[i].to = one.observed;
+      if (one.observed != nullptr) one.observed = &heard[i];
+    }
+  }
 
   void step() {
     steps.step();
@@ -115,6 +137,7 @@ class Simulation::Stepped {
   Assembly assembly;
   RunParts all;
   RunSteps steps;
+  std::vector<Heard> heard;  // a robot each
   std::unique_ptr<Recorder> recorder;
   std::string record_file;
   std::unique_ptr<SimRemote> remote;
@@ -179,9 +202,14 @@ const RobotStatus& Simulation::status(std::size_t number) const {
 }
 
 void Simulation::observe(std::size_t number, const Observation& observation) {
-  ObservationSink* sink = stepped_->parts(number).observed;
+  if (number >= stepped_->heard.size()) throw std::out_of_range("there is no robot of this number");
+  ObservationSink* sink = stepped_->heard[number].to;
   if (sink == nullptr) throw std::invalid_argument("this robot has no supervisor, so it knows nothing of the world");
   sink->observe(observation);
+}
+
+std::vector<Observation> Simulation::take_observed(std::size_t number) {
+  return std::exchange(stepped_->heard.at(number).kept, {});
 }
 
 std::uint32_t Simulation::entry(std::size_t number, std::string_view name) const {
