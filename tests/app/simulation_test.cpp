@@ -63,7 +63,8 @@ TEST_CASE("What is observed reaches the world model of a robot with a supervisor
   CHECK(simulation.take_lines().empty());
 }
 
-TEST_CASE("A record or a page of a program that steps a scenario changes no bit of it, and only that program repeats it") {
+TEST_CASE(
+    "A record or a page of a program that steps a scenario changes no bit of it, and only that program repeats it") {
   const std::filesystem::path folder = fresh_folder("simulation_record");
   const std::string record = (folder / "stepped.mcap").string();
   std::vector<std::uint64_t> hashes;

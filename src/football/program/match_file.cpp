@@ -92,7 +92,10 @@ std::string number(double value) {
 
 std::string world_model() {
   std::string text = R"({
-      "ball": { "what": "the ball", "place": "point", "within_m": 20, "forget_s": 6 },
+      "ball": { "what": "the ball, by its filter", "place": "point", "within_m": 20, "forget_s": 6, "fields": {
+          "x_m_s": { "unit": "m/s", "what": "its velocity, ahead", "min": -20, "max": 20 },
+          "y_m_s": { "unit": "m/s", "what": "its velocity, to the left", "min": -20, "max": 20 } } },
+      "ball_seen": { "what": "the ball as single pictures show it", "place": "point", "within_m": 20, "forget_s": 6 },
       "field": { "what": "the field's centre; ahead of it the goal that the team attacks", "place": "pose", "within_m": 30,
                  "forget_s": 3, "fields": { "known": { "what": "1 when the robot knows where it is", "min": 0, "max": 1 } } },
       "game": { "what": "the game controller's words", "fields": {
@@ -126,7 +129,7 @@ std::string robot_fields(const MatchConfig& match, RobotId id) {
          ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
          ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) +
          " },\n    \"supervisor\": " + supervisor_of(match, id) +
-         ",\n    \"perception\": [{ \"entry\": \"ball\", \"object\": \"ball\", \"rate_Hz\": " + number(senses.rate_Hz) +
+         ",\n    \"perception\": [{ \"entry\": \"ball_seen\", \"object\": \"ball\", \"rate_Hz\": " + number(senses.rate_Hz) +
          ", \"latency_s\": " + number(senses.latency_s) + ", \"distance_noise\": " + number(senses.distance_noise) +
          ", \"bearing_noise_rad\": " + number(senses.bearing_noise_rad) + ", \"missed\": " + number(senses.missed) +
          ", \"view_rad\": " + number(senses.view_rad) + ", \"far_m\": " + number(senses.far_m) +

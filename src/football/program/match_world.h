@@ -38,6 +38,8 @@ class MatchWorld {
   virtual bool active(std::size_t number) const = 0;     // its drives hold it, as far as can be known from outside
   virtual Pose2 odometry(std::size_t number) const = 0;  // along its path
   virtual void observe(std::size_t number, const Observation& observation) = 0;
+  // What the simulated perception of a robot said since the last call, with the time of the picture.
+  virtual std::vector<Observation> take_observed(std::size_t number) = 0;
   virtual std::uint64_t messages(std::size_t number) = 0;  // to its mates, so far
 
   // The referee's packet goes out to all robots; it comes back by packets().
@@ -73,6 +75,7 @@ class SimulatedMatch final : public MatchWorld {
   void observe(std::size_t number, const Observation& observation) override {
     simulation_.observe(number, observation);
   }
+  std::vector<Observation> take_observed(std::size_t number) override { return simulation_.take_observed(number); }
   std::uint64_t messages(std::size_t number) override;
   void send(Bytes packet) override { packets_.emplace_back(packet.begin(), packet.end()); }
   std::vector<std::vector<std::byte>> packets() override { return std::exchange(packets_, {}); }

@@ -10,6 +10,8 @@ constexpr double false_share = 0.05, landmark_missed = 0.4, line_missed = 0.3, l
 constexpr double placed_sd_m = 0.1, placed_sd_rad = 0.1, penalised_sd_m = 0.5, penalised_sd_rad = 0.25;
 constexpr double penalised_edge_m = 0.2;  // from the carpet's edge
 constexpr double near_m = 0.3;            // what lies nearer is below the camera
+constexpr double ball_sd_m = 0.03;
+constexpr std::size_t ways_kept = 40;  // 0.8 s
 constexpr std::int64_t self_every_ns = 1'000'000'000;
 
 std::uint32_t entry_of(const Catalog& catalog, const std::string& name) {
@@ -31,6 +33,8 @@ RobotSenses::RobotSenses(const MatchConfig& match, MatchWorld& played_in, std::s
       camera_scale_(random_.uniform(0.95, 1.05)),
       camera_rad_(random_.uniform(-0.03, 0.03)),
       localisation_({.field = field_, .seed = seed + number}),
+      ball_entry_(entry_of(played_in.catalog(number), "ball")),
+      ball_seen_entry_(entry_of(played_in.catalog(number), "ball_seen")),
       field_entry_(entry_of(played_in.catalog(number), "field")),
       game_entry_(entry_of(played_in.catalog(number), "game")),
       whistle_entry_(entry_of(played_in.catalog(number), "whistle")),
@@ -43,6 +47,26 @@ RobotSenses::RobotSenses(const MatchConfig& match, MatchWorld& played_in, std::s
 void RobotSenses::placed(const Pose2& place) {
   localisation_.place(std::span(&place, 1), placed_sd_m, placed_sd_rad);
   late_views_.clear();
+  ball_.forget();
+}
+
+// Along the odometry's path, which does not jump as localisation may. Told is what this picture shows; of one that does
+// not fit nothing is.
+void RobotSenses::note_ball(const Observation& seen) {
+  const auto then = std::ranges::find_if(ways_, [&](const auto& one) { return one.first >= seen.time_ns; });
+  if (then == ways_.end()) return;
+  const Pose2& pose = then->second;
+  const Point at{seen.fields[0], seen.fields[1]};
+  const double time_s = 1e-9 * static_cast<double>(seen.time_ns);
+  const double sd_m = ball_sd_m + std::hypot(match_.senses.distance_noise, match_.senses.bearing_noise_rad) * norm(at);
+  if (!ball_.saw({time_s, from_frame(pose, at), sd_m})) return;
+  const BallFilter::Estimate ball = ball_.estimate(time_s);
+  if (!ball.known || ball.age_s > 0) return;
+  const Point place = in_frame(pose, ball.at), velocity_m_s = turned(ball.velocity_m_s, -pose.theta_rad);
+  Observation told{
+      .entry = ball_entry_, .time_ns = seen.time_ns, .confidence = seen.confidence, .source = SeenSource::scenario};
+  told.fields = {place.x_m, place.y_m, velocity_m_s.x_m, velocity_m_s.y_m};
+  played_in_.observe(number_, told);
 }
 
 void RobotSenses::tell(std::uint32_t entry, std::initializer_list<double> fields) {
@@ -63,6 +87,11 @@ void RobotSenses::step(const WorldTruth& world, double sign) {
   for (; !late_.empty() && late_.front().due_ns <= at_ns; late_.pop_front())
     played_in_.observe(number_, late_.front().observation);
   tell_place();
+  ways_.emplace_back(at_ns, played_in_.odometry(number_));
+  while (ways_.size() > ways_kept) ways_.pop_front();
+  for (const Observation& seen : played_in_.take_observed(number_)) {
+    if (seen.entry == ball_seen_entry_) note_ball(seen);
+  }
   tell_self();
 }
 
@@ -96,6 +125,7 @@ void RobotSenses::hear(Bytes packet) {
                                       Pose2{-field_.penalty_mark_x_m(), -y_m, std::numbers::pi / 2}};
     localisation_.place(places, penalised_sd_m, penalised_sd_rad);
     late_views_.clear();
+    ball_.forget();
   }
   penalty_ = penalty;
   const double ours = control.kicking_team == no_team ? -1 : control.kicking_team == team_number_ ? 1 : 0;

@@ -72,6 +72,7 @@ ServedMatch::ServedMatch(const MatchConfig& match, std::uint64_t seed, const Ser
       control_(places.referee.empty() ? places.host : "0.0.0.0",
                places.referee.empty() ? port_of(places, control_at, 0) : control_port),
       messages_(robots_.size()),
+      observed_(robots_.size()),
       odometry_(robots_.size()),
       hosts_(robots_.size()) {
   for (std::size_t side = 0; side < heard_.size(); ++side)
@@ -103,9 +104,16 @@ bool ServedMatch::step() {
   if (!scenario_.step()) return false;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     take_way(i);
-    for (const Observation& seen : scenario_.take_observed(i)) observe(i, seen);
+    for (const Observation& seen : scenario_.take_observed(i)) {
+      observe(i, seen);
+      observed_[i].push_back(seen);
+    }
   }
   return true;
+}
+
+std::vector<Observation> ServedMatch::take_observed(std::size_t number) {
+  return std::exchange(observed_.at(number), {});
 }
 
 void ServedMatch::observe(std::size_t number, const Observation& observation) {
@@ -167,9 +175,8 @@ std::string write_robots(const MatchConfig& match, const ServedPlaces& places, c
     const std::string file =
         (std::filesystem::path(folder) / robot.parent_path().filename() / (robot_name(robots[i]) + ".json"))
             .generic_string();
-    write_output_file(file, "{\n  \"based_on\": " + json_text(robot.generic_string()) +
-                                patience + ",\n  \"supervisor\": " +
-                                supervisor_of(match, robots[i], own) + "\n}\n");
+    write_output_file(file, "{\n  \"based_on\": " + json_text(robot.generic_string()) + patience +
+                                ",\n  \"supervisor\": " + supervisor_of(match, robots[i], own) + "\n}\n");
     commands += "kadans run " + file + " --plant udp --peer " + place(port_of(places, 0, i)) + "\n";
   }
   return commands;

@@ -55,6 +55,7 @@ class ServedMatch final : public MatchWorld {
   bool active(std::size_t) const override { return true; }
   Pose2 odometry(std::size_t number) const override { return odometry_.at(number).path; }
   void observe(std::size_t number, const Observation& observation) override;
+  std::vector<Observation> take_observed(std::size_t number) override;
   std::uint64_t messages(std::size_t number) override;
   void send(Bytes packet) override;
   std::vector<std::vector<std::byte>> packets() override;
@@ -77,6 +78,7 @@ class ServedMatch final : public MatchWorld {
   DatagramPort out_, control_;
   std::array<std::unique_ptr<DatagramPort>, 2> heard_;  // messages of each team
   std::vector<std::uint64_t> messages_;
+  std::vector<std::vector<Observation>> observed_;  // which nobody has taken yet
   std::vector<Odometry> odometry_;
   std::vector<std::string> hosts_;  // of the robots
 };
