@@ -8,7 +8,9 @@
 namespace kadans::schema_test {
 namespace {
 
-using namespace schema_checks;
+namespace fs = std::filesystem;
+using Json = schema_checks::Json;
+using schema_checks::check_file, schema_checks::check_shipped, schema_checks::check_value, schema_checks::source;
 
 }  // namespace
 

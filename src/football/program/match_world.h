@@ -53,7 +53,7 @@ class MatchWorld {
 Pose2 ground_pose(const Pose& base) noexcept;  // of what stands on the ground
 
 // On virtual time, bit for bit by its seed.
-class SimulatedMatch final : public MatchWorld {
+class SimulatedMatch : public MatchWorld {
  public:
   // Throws InputError: a team's files, a robot's.
   SimulatedMatch(const MatchConfig& match, std::uint64_t seed);

@@ -243,13 +243,13 @@ void PlayedMatch::follow(const GameControl& packet) {
 void PlayedMatch::answer_referee() {
   for (const Player& player : players_) {
     const RobotId id = player.told.id;
-    const Point ball = in_frame(world_.robot(id).pose, world_.ball);
-    played_in_->answer_referee({.player = id.number,
-                                .team = static_cast<std::uint8_t>(1 + index_of(id.side)),
-                                .fallen = !world_.robot(id).upright,
-                                .pose = player.senses->belief().pose,
-                                .ball_age_s = 0,
-                                .ball = ball});
+    const std::optional<RobotSenses::BallNow> ball = player.senses->ball();
+    RobotReturn told{.player = id.number,
+                     .team = static_cast<std::uint8_t>(1 + index_of(id.side)),
+                     .fallen = !world_.robot(id).upright,
+                     .pose = player.senses->belief().pose};
+    if (ball) told.ball_age_s = ball->age_s, told.ball = ball->at;
+    played_in_->answer_referee(told);
   }
 }
 

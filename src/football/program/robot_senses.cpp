@@ -69,6 +69,12 @@ void RobotSenses::note_ball(const Observation& seen) {
   played_in_.observe(number_, told);
 }
 
+std::optional<RobotSenses::BallNow> RobotSenses::ball() const noexcept {
+  const BallFilter::Estimate ball = ball_.estimate(1e-9 * static_cast<double>(now_ns()));
+  if (!ball.known || ways_.empty()) return std::nullopt;
+  return BallNow{in_frame(ways_.back().second, ball.at), ball.age_s};
+}
+
 void RobotSenses::tell(std::uint32_t entry, std::initializer_list<double> fields) {
   Observation observation{.entry = entry, .time_ns = now_ns(), .source = SeenSource::scenario};
   std::ranges::copy(fields, observation.fields.begin());

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,12 @@ class RobotSenses {
   void placed(const Pose2& place);
 
   const Localisation::Estimate& belief() const noexcept { return belief_; }  // in its team's frame
+  // Where its ball is, from where it stands, and how old that is; nothing while it knows of none.
+  struct BallNow {
+    Point at;
+    double age_s = 0;
+  };
+  std::optional<BallNow> ball() const noexcept;
 
  private:
   struct Late {
