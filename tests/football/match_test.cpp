@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "football/program/match_report.h"
+#include "kadans/signal/input_error.h"
 
 namespace match_test {
 
@@ -79,6 +80,48 @@ TEST_CASE("The same seed plays the same match, bit for bit, and another one anot
   CHECK(json_of(first, match) == json_of(again, match));
   CHECK(first.state_hash == again.state_hash);
   CHECK(played("striker_drill.json", 5, 18).state_hash != first.state_hash);
+}
+
+TEST_CASE(
+    "A match with its record is the match without it, and the record holds the robots, the ball and what is believed") {
+  const MatchConfig match = read_match(matches / "striker_drill.json");
+  const fs::path record = KADANS_BINARY_DIR "/football_match/match.mcap";
+  fs::create_directories(record.parent_path());
+  PlayedMatch recorded(match, 4);
+  recorded.record(record.string(), "", "kadans-football match");
+  while (recorded.step() && recorded.result().simulated_s < 6) (void)recorded.take_lines();
+  recorded.end_record();
+  CHECK(json_of(recorded.result(), match) == json_of(played("striker_drill.json", 4, 6), match));
+  std::ifstream stream(record, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  for (const char* held : {"/seen", "/world", "/joint_states", "home_goals", "kadans-football match"})
+    CHECK_MESSAGE(has(bytes, held), std::string(held));
+  PlayedMatch nowhere(match, 4);
+  CHECK_THROWS_AS(nowhere.record("/dev/null/match.mcap", "", ""), kadans::InputError);
+  CHECK_THROWS_AS(nowhere.record(record.string(), "no.such.signal", ""), kadans::InputError);
+}
+
+TEST_CASE("A robot's ball is what its pictures agree on: those that show it where it is not do not move it") {
+  const MatchConfig match = read_match(matches / "striker_drill.json", {"senses.imagined=0.25", "senses.missed=0"});
+  auto world = std::make_unique<SimulatedMatch>(match, 2);
+  SimulatedMatch& stage = *world;
+  const auto& signals = stage.catalog(0).signals;
+  const auto off_m = [&](const char* x, const char* y) {
+    const Point at{stage.simulation().signal(0, *signals.find(x)), stage.simulation().signal(0, *signals.find(y))};
+    const kadans::PlantTruth& truth = stage.robot(0).truth();
+    const kadans::Vec3& ball = truth.objects.at(stage.object("ball")).pose.position_m;
+    return distance(at, in_frame(ground_pose(truth.base), Point{ball[0], ball[1]}));
+  };
+  PlayedMatch played(match, 2, std::move(world), false);
+  double seen_m = 0, filtered_m = 0;
+  while (played.step() && stage.time_ns() < 9'000'000'000) {
+    (void)played.take_lines();
+    if (stage.time_ns() < 1'000'000'000) continue;
+    seen_m = std::max(seen_m, off_m("seen.ball_seen.x_m", "seen.ball_seen.y_m"));
+    filtered_m = std::max(filtered_m, off_m("seen.ball.x_m", "seen.ball.y_m"));
+  }
+  CHECK(seen_m > 1);
+  CHECK(filtered_m < 0.5);
 }
 
 TEST_CASE("Two teams of two walk to their places before the kick-off, the same way by the same seed") {

@@ -70,7 +70,9 @@ TEST_CASE(
   stage.elsewhere->coming.push_back({std::byte{1}, std::byte{2}});  // no packet of a game controller
   stage.go(1);
   CHECK(std::abs(stage.robot(1)[1] - began[1]) < 0.1);
-  stage.elsewhere->say(control_of(GameState::ready));
+  GameControl ready = control_of(GameState::ready);
+  ready.secondary_s = 45;
+  stage.elsewhere->say(ready);
   stage.go(5);
   CHECK(std::abs(stage.robot(1)[1] - began[1]) > 0.3);  // it walks to its place
 
