@@ -129,8 +129,9 @@ std::string robot_fields(const MatchConfig& match, RobotId id) {
          ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
          ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) +
          " },\n    \"supervisor\": " + supervisor_of(match, id) +
-         ",\n    \"perception\": [{ \"entry\": \"ball_seen\", \"object\": \"ball\", \"rate_Hz\": " + number(senses.rate_Hz) +
-         ", \"latency_s\": " + number(senses.latency_s) + ", \"distance_noise\": " + number(senses.distance_noise) +
+         ",\n    \"perception\": [{ \"entry\": \"ball_seen\", \"object\": \"ball\", \"rate_Hz\": " +
+         number(senses.rate_Hz) + ", \"latency_s\": " + number(senses.latency_s) +
+         ", \"distance_noise\": " + number(senses.distance_noise) +
          ", \"bearing_noise_rad\": " + number(senses.bearing_noise_rad) + ", \"missed\": " + number(senses.missed) +
          ", \"view_rad\": " + number(senses.view_rad) + ", \"far_m\": " + number(senses.far_m) +
          ", \"imagined\": " + number(senses.imagined) + ", \"hidden\": true }]";

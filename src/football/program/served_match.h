@@ -83,8 +83,8 @@ class ServedMatch final : public MatchWorld {
   std::vector<std::string> hosts_;  // of the robots
 };
 
-// Writes tulip/home_1.json ... into a folder of the project: each robot's configuration with its supervisor. Returns the
-// commands that run the robots, a line each. Throws InputError.
+// Writes tulip/home_1.json ... into a folder of the project: each robot's configuration with its supervisor. Returns
+// the commands that run the robots, a line each. Throws InputError.
 std::string write_robots(const MatchConfig& match, const ServedPlaces& places, const std::string& folder);
 
 }  // namespace kadans::football
