@@ -102,6 +102,7 @@ int serve(const Options& options) {
   while (!stopped() && !served.await(50)) {
   }
   if (stopped()) return exit_interrupted;
+  std::fprintf(stderr, "all robots are driven\n");
   PlayedMatch played(match, seed, std::move(world), !options.referee.empty());
   take_priority();
   (void)play_out(played, options);
