@@ -168,7 +168,7 @@ std::string read_options(int argc, char** argv, Options& options) {
       options.files.push_back(word);
       continue;
     }
-    const std::string wrong = take_option(word, options.command, argc, argv, i, options);
+    std::string wrong = take_option(word, options.command, argc, argv, i, options);
     if (!wrong.empty()) return wrong;
   }
   return wrong_files(options);

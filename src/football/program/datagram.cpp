@@ -48,13 +48,13 @@ DatagramPort::DatagramPort(const std::string& host, std::uint16_t port) {
 
 DatagramPort::~DatagramPort() { close(socket_); }
 
-bool DatagramPort::send(const std::string& host, std::uint16_t port, Bytes bytes) noexcept {
+bool DatagramPort::send(const std::string& host, std::uint16_t port, Bytes bytes) const noexcept {
   const std::optional<sockaddr_in> to = address_of(host, port);
   return to && sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&*to),
                       sizeof *to) == static_cast<ssize_t>(bytes.size());
 }
 
-std::optional<Received> DatagramPort::receive() {
+std::optional<Received> DatagramPort::receive() const {
   std::array<std::byte, 2048> bytes{};
   sockaddr_in from{};
   socklen_t size = sizeof from;

@@ -25,8 +25,8 @@ class DatagramPort {
 
   std::uint16_t port() const noexcept { return port_; }
   // False: it did not go out, as any datagram may not come in.
-  bool send(const std::string& host, std::uint16_t port, Bytes bytes) noexcept;
-  std::optional<Received> receive();  // the oldest that waits, its first 2048 bytes
+  bool send(const std::string& host, std::uint16_t port, Bytes bytes) const noexcept;
+  std::optional<Received> receive() const;  // the oldest that waits, its first 2048 bytes
 
  private:
   int socket_ = -1;

@@ -185,6 +185,7 @@ fs::path new_folder() {
 
 std::vector<VariantResults> begun(const std::vector<MatchVariant>& variants) {
   std::vector<VariantResults> results;
+  results.reserve(variants.size());
   for (const MatchVariant& variant : variants) results.push_back({variant, {}, {}});
   return results;
 }
@@ -247,6 +248,7 @@ std::vector<VariantResults> play_many(const ManyMatches& plan, const ManyChoices
   });
   const std::string program = choices.program.empty() ? fs::read_symlink("/proc/self/exe").string() : choices.program;
   std::vector<Job> jobs;
+  jobs.reserve(cases.size());
   for (const Case& one : cases) jobs.push_back(job_of(program, variants[one.variant], one.seed));
   Played played(variants, cases, folder, choices.told, stop, results);
   run_jobs(jobs, choices.jobs, played);
