@@ -53,10 +53,40 @@ TEST_CASE("What is observed reaches the world model of a robot with a supervisor
   simulation.observe(0, observation);
   for (int i = 0; i < 60; ++i) simulation.step();
   CHECK(simulation.signal(0, *seen) == doctest::Approx(1.25).epsilon(0.01));
+  std::size_t heard = 0;
+  for (const Observation& one : simulation.take_observed(0)) heard += one.entry == ball ? 1 : 0;
+  CHECK(heard > 0);  // of the simulated perception
+  CHECK(simulation.take_observed(0).empty());
   bool said = false;
   for (const SaidLine& line : simulation.take_lines()) said = said || has(line.text, "replace stand");
   CHECK(said);
   CHECK(simulation.take_lines().empty());
+}
+
+TEST_CASE(
+    "A record or a page of a program that steps a scenario changes no bit of it, and only that program repeats it") {
+  const std::filesystem::path folder = fresh_folder("simulation_record");
+  const std::string record = (folder / "stepped.mcap").string();
+  std::vector<std::uint64_t> hashes;
+  for (const char* what : {"neither", "record", "both"}) {
+    const bool recorded = std::string(what) != "neither";
+    Simulation simulation(read(scenario_file), scenario_file, 7);
+    if (recorded) simulation.record({.file = record, .signals = "*plant.base.*@50", .repeat = "my-program --seed 7"});
+    if (std::string(what) == "both") simulation.show({.port = 0});
+    while (simulation.time_ns() < 300'000'000) simulation.step();
+    if (recorded) simulation.end_record({{"ended", "well"}});
+    hashes.push_back(simulation.state_hash());
+  }
+  CHECK(hashes[0] == hashes[1]);
+  CHECK(hashes[0] == hashes[2]);
+  const Outcome info = run("log info " + record, folder), again = run("replay " + record, folder);
+  CHECK_MESSAGE(has(info.out, "my-program --seed 7"), info.out);
+  CHECK(again.exit_code == 2);
+  CHECK_MESSAGE(has(again.err, "stepped by another program, which alone repeats it: my-program --seed 7"), again.err);
+  const Outcome place = run("log csv " + record + " left.plant.base.height_m", folder);
+  CHECK_MESSAGE(place.exit_code == 0, place.err);
+  Simulation nowhere(read(scenario_file), scenario_file, 7);
+  CHECK_THROWS_AS(nowhere.record({.file = "/dev/null/record.mcap"}), InputError);
 }
 
 TEST_CASE("A scenario with a mistake is refused as kadans sim refuses it, with its place") {

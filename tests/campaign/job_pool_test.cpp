@@ -1,5 +1,5 @@
 // Programs side by side: what they leave, how they end, and that one that breaks down takes nothing with it.
-#include "campaign/work/job_pool.h"
+#include "kadans/campaign/job_pool.h"
 
 #include <csignal>
 

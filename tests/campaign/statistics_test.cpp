@@ -1,5 +1,5 @@
 // Intervals against published and exact values.
-#include "campaign/sweep/statistics.h"
+#include "kadans/campaign/statistics.h"
 
 #include <cmath>
 #include <limits>

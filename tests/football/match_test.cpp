@@ -5,14 +5,13 @@
 
 #include <doctest/doctest.h>
 
-#include "config/broken.h"
 #include "football/program/match_report.h"
+#include "kadans/signal/input_error.h"
 
 namespace match_test {
 
 namespace fs = std::filesystem;
 using namespace kadans::football;
-using kadans::InputError;
 
 namespace {
 
@@ -24,12 +23,6 @@ fs::path match_of(const std::string& text) {
   const fs::path file = folder / "match.json";
   std::ofstream(file) << text;
   return file;
-}
-
-// What is said about a file with these lines after its name.
-std::string refusal(const std::string& rest, const std::string& name = "drawn") {
-  const fs::path file = match_of("{ \"name\": \"" + name + "\",\n" + rest + "\n}\n");
-  return kadans::refusal(file.string(), KADANS_SOURCE_DIR, [&] { (void)read_match(file); });
 }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
@@ -51,50 +44,6 @@ TEST_CASE("A match file with nothing but a team has the rules of 2026 and an emp
   CHECK(match.robots().size() == 1);
   CHECK(match.field().length_m == 9);
   CHECK(has(scenario_of(match, 1), "\"left_post_1\""));
-}
-
-TEST_CASE("What is wrong in a match file is told with its place, what is wrong and what was meant") {
-  CHECK(refusal(one_team).empty());
-  CHECK(has(refusal("\"field\": \"small\""), "1:1: key 'home' is missing"));
-  CHECK(has(refusal(one_team + ",\n\"halfs\": 3"), "3:1: unknown key 'halfs' (known: name, "));
-  CHECK(has(refusal(one_team + ",\n\"field\": \"smal\""), "3:10: "));
-  CHECK(has(refusal(one_team + ",\n\"field\": \"smal\""), "did you mean 'small'?"));
-  CHECK(has(refusal(one_team + ",\n\"field\": \"large\""), "3:10: "));
-  CHECK(has(refusal(one_team + ",\n\"rules\": { \"half_s\": -3 }"), "rules.half_s is -3"));
-  CHECK(has(refusal(one_team + ",\n\"rules\": { \"half_s\": \"long\" }"), "3:22: rules.half_s must be a number in s"));
-  CHECK(has(refusal(one_team + ",\n\"rules\": { \"hal_s\": 3 }"), "did you mean 'half_s'"));
-  CHECK(has(refusal(one_team + ",\n\"seed\": 1.5"), "3:9: seed"));
-  CHECK(has(refusal(one_team + ",\n\"ends\": { \"goals\": 0 }"), "ends.goals"));
-  CHECK(has(refusal(one_team + ",\n\"network\": { \"lost\": 2 }"), "network.lost is 2"));
-  CHECK(has(refusal(one_team + ",\n\"senses\": { \"rate_Hz\": 0 }"), "senses.rate_Hz"));
-  CHECK(has(refusal(one_team + ",\n\"start\": \"bench\""), "touchline, field"));
-  CHECK(has(refusal(one_team + ",\n\"away\": { \"players\": 9, \"team\": \"behaviors/football\" }"),
-            "away.players is 9"));
-  CHECK(has(refusal(one_team, "Two teams"), "1:11: name must be small letters"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/footbal", "players": 1 })"), "2:19: home.team: there is no "));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/footbal", "players": 1 })"), "did you mean 'football'?"));
-  CHECK(
-      has(refusal("\"home\": { \"team\": \"" + std::string(5000, 'a') + "\", \"players\": 1 }"), "2:19: home.team: "));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football\u0000x", "players": 1 })"), "is no path"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/tulip", "players": 1 })"), "has no team.lua, a k.decisions"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football" })"), "2:9: key 'players' is missing in home"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "keeper": 2 })"),
-            "keeper is number 2, but the team has 1 players"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "robot": "config/tulp/robot.json" })"),
-            "home.robot: there is no "));
-  CHECK(has(refusal("\"home\": 3"), "home must be an object"));
-  CHECK(has(refusal(one_team + " \"away\": {}"), "2:56: a comma or } is needed here"));
-  CHECK(has(refusal(one_team + ",\n\"away\": {}"), "3:9: key 'team' is missing in away"));
-  CHECK(
-      has(refusal(one_team + ",\n\"division\": \"small\", \"field\": \"large\""), "the small division does not play"));
-  CHECK(has(refusal(one_team + ",\n\"begins\": { \"with\": \"corners\" }"), "did you mean 'corner'?"));
-  CHECK(has(refusal(one_team + ",\n\"begins\": { \"ball_x\": 1 }"), "did you mean 'ball_x_m'?"));
-  CHECK(has(refusal(one_team + ",\n\"robots_differ\": 2"), "robots_differ is 2"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "parameters": "passes=0}" })"),
-            "parameters are NAME=NUMBER"));
-  CHECK(has(refusal(R"("home": { "team": "behaviors/football", "players": 1, "places": { "1": { "x_m": 2 } } })"),
-            "'y_m' is missing in home.places.1"));
-  CHECK_THROWS_AS(read_match(matches / "nothing.json"), InputError);
 }
 
 TEST_CASE("Robots stand before a half in their own half, beside the field or on it, and none in another's place") {
@@ -154,6 +103,48 @@ TEST_CASE("The same seed plays the same match, bit for bit, and another one anot
   CHECK(json_of(first, match) == json_of(again, match));
   CHECK(first.state_hash == again.state_hash);
   CHECK(played("striker_drill.json", 5, 18).state_hash != first.state_hash);
+}
+
+TEST_CASE(
+    "A match with its record is the match without it, and the record holds the robots, the ball and what is believed") {
+  const MatchConfig match = read_match(matches / "striker_drill.json");
+  const fs::path record = KADANS_BINARY_DIR "/football_match/match.mcap";
+  fs::create_directories(record.parent_path());
+  PlayedMatch recorded(match, 4);
+  recorded.record(record.string(), "", "kadans-football match");
+  while (recorded.step() && recorded.result().simulated_s < 6) (void)recorded.take_lines();
+  recorded.end_record();
+  CHECK(json_of(recorded.result(), match) == json_of(played("striker_drill.json", 4, 6), match));
+  std::ifstream stream(record, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  for (const char* held : {"/seen", "/world", "/joint_states", "home_goals", "kadans-football match"})
+    CHECK_MESSAGE(has(bytes, held), std::string(held));
+  PlayedMatch nowhere(match, 4);
+  CHECK_THROWS_AS(nowhere.record("/dev/null/match.mcap", "", ""), kadans::InputError);
+  CHECK_THROWS_AS(nowhere.record(record.string(), "no.such.signal", ""), kadans::InputError);
+}
+
+TEST_CASE("A robot's ball is what its pictures agree on: those that show it where it is not do not move it") {
+  const MatchConfig match = read_match(matches / "striker_drill.json", {"senses.imagined=0.25", "senses.missed=0"});
+  auto world = std::make_unique<SimulatedMatch>(match, 2);
+  SimulatedMatch& stage = *world;
+  const auto& signals = stage.catalog(0).signals;
+  const auto off_m = [&](const char* x, const char* y) {
+    const Point at{stage.simulation().signal(0, *signals.find(x)), stage.simulation().signal(0, *signals.find(y))};
+    const kadans::PlantTruth& truth = stage.robot(0).truth();
+    const kadans::Vec3& ball = truth.objects.at(stage.object("ball")).pose.position_m;
+    return distance(at, in_frame(ground_pose(truth.base), Point{ball[0], ball[1]}));
+  };
+  PlayedMatch played(match, 2, std::move(world), false);
+  double seen_m = 0, filtered_m = 0;
+  while (played.step() && stage.time_ns() < 9'000'000'000) {
+    (void)played.take_lines();
+    if (stage.time_ns() < 1'000'000'000) continue;
+    seen_m = std::max(seen_m, off_m("seen.ball_seen.x_m", "seen.ball_seen.y_m"));
+    filtered_m = std::max(filtered_m, off_m("seen.ball.x_m", "seen.ball.y_m"));
+  }
+  CHECK(seen_m > 1);
+  CHECK(filtered_m < 0.5);
 }
 
 TEST_CASE("Two teams of two walk to their places before the kick-off, the same way by the same seed") {

@@ -10,6 +10,7 @@ for program in slurmctld slurmd munged mungekey sbatch squeue scontrol; do
 done
 PATH=$PATH:/usr/sbin
 kadans=$(realpath "$KADANS_BINARY_DIR")/kadans
+football=$kadans-football
 source=$(realpath "$KADANS_SOURCE_DIR")
 work=$(mktemp -d /tmp/kadans-slurm.XXXXXX)  # short: sockets have short names
 chmod 755 "$work"
@@ -81,3 +82,13 @@ grep -h "this is part" "$work"/task-?.log | sort
 for part in array alone; do "$kadans" merge "$work/$part" --csv "$work/$part.csv" --sqlite "$work/$part.db" >"$work/$part.txt" || [ $? -eq 1 ]; done
 for kind in csv db txt; do cmp "$work/array.$kind" "$work/alone.$kind"; done
 echo "12 cases in four tasks of a Slurm array: the same tables as without Slurm"
+
+matches=(config/matches/striker_drill.json --cases 4 --seed 3 --set ends.playing_s=1 --set rules.ready_s=5)
+KADANS_FOOTBALL=$football sbatch --array=0-1 --output="$work/match-%a.log" config/matches/slurm.sbatch "${matches[@]}" --out "$work/matches"
+wait_for "end of the matches" "[ -z \"\$(squeue -h)\" ] && [ \$(ls '$work'/matches/0-*.json | wc -l) -eq 4 ]"
+grep -h "matches$" "$work"/match-?.log
+[ "$(cat "$work"/match-?.log | grep -c ": 2 matches")" -eq 2 ]
+"$football" merge "$work/matches" --json >"$work/matches.json"
+"$football" matches "${matches[@]}" --json >"$work/matches_alone.json"
+cmp "$work/matches.json" "$work/matches_alone.json"
+echo "4 matches in two tasks of a Slurm array: the same summary as without Slurm"

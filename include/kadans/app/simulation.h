@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -27,6 +28,19 @@ struct SaidLine {
   std::string who, text;  // of a further robot: "NAME.greet_ball"
 };
 
+// The record of a simulation, and what it holds.
+struct SimulationRecord {
+  std::filesystem::path file;
+  std::string signals{};  // "base.*, seen.*@10": those alone (docs/viewing.md); "": the choice of the robot's file
+  std::string repeat{};   // the command that makes the same run again, for people
+};
+
+// Where browsers and viewers reach a simulation (docs/viewing.md).
+struct SimulationPage {
+  std::uint16_t port = 8765;  // 0: any free one
+  std::string address = "127.0.0.1";
+};
+
 class Simulation {
  public:
   // `scenario` is the text of a scenario; `file` stands in messages, and its project is where paths begin. Its checks
@@ -43,6 +57,14 @@ class Simulation {
   std::uint64_t state_hash() const noexcept;  // over all steps
   std::vector<SaidLine> take_lines();         // since the last call; call it in each step
 
+  // Before the first step, each at most once, the record first; neither changes a bit of the run. The record is that of
+  // `kadans sim`, but only this program can repeat it. With the page the run keeps to the clock, or to the speed that
+  // whoever looks at it asks for. Throw InputError.
+  void record(const SimulationRecord& record);
+  void show(const SimulationPage& page);
+  // After the last step. Throws std::runtime_error when the record is not complete.
+  void end_record(const std::map<std::string, std::string>& result);
+
   World& world() noexcept;
   std::size_t object(std::string_view name) const;  // throws std::invalid_argument where there is none
 
@@ -54,6 +76,9 @@ class Simulation {
   const RobotStatus& status(std::size_t number) const;   // what it knows of itself; the same
   // To its world model, in the next tick of its supervisor. Throws std::invalid_argument where it has none.
   void observe(std::size_t number, const Observation& observation);
+  // What the scenario's perception of this robot said since the last call: its world model hears it, too. Call it in
+  // each step, or never.
+  std::vector<Observation> take_observed(std::size_t number);
   // The entry of its world model with this name. Throws std::invalid_argument.
   std::uint32_t entry(std::size_t number, std::string_view name) const;
 

@@ -5,6 +5,9 @@
 //   read_input_object("config/matches/drill.json", [&](InputObject& f) {
 //     f.number("half_s", rules.half_s, {1, 3600, "s"}, "length of a half");
 //   });
+//
+// A reader that asks for the text `based_on` lets a file say only what is different from another one, which it names
+// from the project root, as in Kadans' own files.
 #pragma once
 
 #include <filesystem>
@@ -37,10 +40,14 @@ class InputObject {
   bool choice(std::string_view name, std::size_t& value, std::span<const std::string> names, std::string_view doc,
               bool required = false);
   bool object(std::string_view name, std::string_view doc, const Read& read, bool required = false);
+  // Each object in the array.
+  bool list(std::string_view name, std::string_view doc, const Read& read, bool required = false);
   // The path of a file or folder of the project, as it is written. There being none is a mistake.
   bool path(std::string_view name, std::string& value, std::string_view doc, bool required = false);
 
   bool is_file(const std::string& path) const;  // of the project
+
+  bool reading() const noexcept;  // false: the fields are described, for a schema; there is no file
 
   // A mistake at the value of this field.
   void refuse(std::string_view name, const std::string& message);
@@ -50,7 +57,10 @@ class InputObject {
   Problems* problems_;
 };
 
-// Throws InputError.
+// Throws InputError. Where a file is based on another one, that one is read first, so that its mistakes have their own
+// places.
 void read_input_object(const std::filesystem::path& file, const InputObject::Read& read);
+// The same of a text; `file` stands in messages, and its project is where paths begin.
+void read_input_text(std::string_view text, const std::filesystem::path& file, const InputObject::Read& read);
 
 }  // namespace kadans

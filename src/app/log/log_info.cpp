@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/run/run_choices.h"
+#include "app/sim/input_files.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
 #include "log_verbs.h"
@@ -16,6 +17,7 @@ using Json = nlohmann::ordered_json;
 
 // The command that repeats the run; "" when there is none: a run on the wall clock, or a record of another program.
 std::string again(const RecordOutline& record) {
+  if (record.fact("run", "clock") == clock_of_programs) return record.fact("run", "repeat");
   if (record.fact("run", "clock") != "virtual") return "";
   if (!record.fact("run", "branch_tick").empty()) return "kadans replay " + shell_word(record.file);
   RunChoices choices = choices_of(record.metadata.at("run"), record.file);
@@ -92,7 +94,9 @@ std::string program_text(const RecordOutline& record) {
   if (version.empty()) return "";
   const std::string machine = record.fact("program", "machine"), clock = record.fact("run", "clock");
   return "kadans " + version + (machine.empty() ? "" : ", " + machine) +
-         (clock.empty() ? "" : ", on the " + clock + " clock");
+         (clock.empty()                ? ""
+          : clock == clock_of_programs ? ", stepped by another program"
+                                       : ", on the " + clock + " clock");
 }
 
 std::string verdict_text(const RecordOutline& record) {

@@ -1,5 +1,6 @@
 #include "served_world.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "kadans/plant/plant_type.h"
@@ -21,15 +22,23 @@ ServedWorld::ServedWorld(const Robot& robot, const std::string& type, std::uint6
 ServedWorld::ServedWorld(const ScenarioConfig& scenario, std::uint64_t seed)
     : assembly_(std::make_unique<Assembly>(scenario, seed, log_)), world_(assembly_->world()) {
   const RunParts parts = assembly_->parts();
-  const auto add = [&](const RunParts& robot, const RobotConfig& config, const ScenarioConfig& settings) {
+  const auto add = [&](const RunParts& robot, const Assembly& assembled, const ScenarioConfig& settings) {
     robots_.push_back(&robot.robot);
-    sites_.push_back({robot.name, config});
+    perception_.push_back(robot.perception);
+    sites_.push_back({robot.name, assembled.robot(), &assembled.catalog()});
     pushes_.emplace_back(settings.pushes, robot.model, scenario.file);
     hands_.emplace_back(settings);
   };
-  add(parts, assembly_->robot(), scenario);
+  add(parts, *assembly_, scenario);
   for (std::size_t i = 0; i < parts.others.size(); ++i)
-    add(parts.others[i], assembly_->others()[i]->robot(), scenario.robots[i]);
+    add(parts.others[i], *assembly_->others()[i], scenario.robots[i]);
+}
+
+std::size_t ServedWorld::object(std::string_view name) const {
+  const auto& objects = assembly_->world_settings().objects;
+  const auto found = std::ranges::find(objects, name, &WorldObject::name);
+  if (found == objects.end()) throw std::invalid_argument("the world has no object '" + std::string(name) + "'");
+  return static_cast<std::size_t>(found - objects.begin());
 }
 
 void ServedWorld::step(std::int64_t dt_ns) {

@@ -19,6 +19,7 @@ class ServedWorld final : public World {
   struct Site {
     std::string name;  // "": the only one
     const RobotConfig& robot;
+    const Catalog* catalog = nullptr;  // of a scenario's
   };
 
   // Throws InputError.
@@ -27,7 +28,12 @@ class ServedWorld final : public World {
 
   const std::vector<Site>& sites() const noexcept { return sites_; }
   std::size_t robot_count() const noexcept override { return robots_.size(); }
+  // The simulated perception of a scenario's robot, which who serves the world lets look.
+  const std::vector<SimulatedPerception*>& perception(std::size_t number) const { return perception_.at(number); }
   WorldRobot& robot(std::size_t number) noexcept override { return *robots_[number]; }
+  // The world's object with this name. Throws std::invalid_argument.
+  std::size_t object(std::string_view name) const;
+  void put(std::size_t object, const Vec3& position_m) override { world_->put(object, position_m); }
   void step(std::int64_t dt_ns) override;
   void hash(StateHash& hash) const noexcept override { world_->hash(hash); }
 
@@ -38,6 +44,7 @@ class ServedWorld final : public World {
   World* world_ = nullptr;
   std::vector<WorldRobot*> robots_;
   std::vector<Site> sites_;
+  std::vector<std::vector<SimulatedPerception*>> perception_;
   std::vector<Pushes> pushes_;  // a robot each; none of a robot alone
   std::vector<Hands> hands_;
   std::int64_t time_ns_ = 0;

@@ -390,6 +390,9 @@ RunInputs read_front(const std::string& record) {
                                                : "ends before it begins: " + reader.problem());
   }
   const std::string clock = inputs.fact("clock");
+  if (clock == clock_of_programs)
+    refuse("was stepped by another program, which alone repeats it" +
+           (inputs.fact("repeat").empty() ? "" : ": " + inputs.fact("repeat")));
   if (!clock.empty() && clock != "virtual" && clock != clock_of_threads)
     refuse("was made by another version of kadans: it says that its clock is " + in_quotes(clock));
   const bool of_robot = clock == clock_of_threads || (clock.empty() && inputs.run.contains("robot"));

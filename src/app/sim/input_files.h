@@ -26,6 +26,8 @@ RunInputs inputs_of(const RunOptions& options, const ScenarioConfig& scenario, c
 RunOptions options_of(const RunInputs& inputs, const std::string& record);
 InputLayout layout_of(const Assembly& assembly);            // of the inputs of its ticks
 inline constexpr const char* clock_of_threads = "threads";  // as the fact "clock" of such a run
+// The same of a scenario that another program stepped (kadans/app/simulation.h).
+inline constexpr const char* clock_of_programs = "program";
 
 // An input that is no longer the same.
 struct InputChange {

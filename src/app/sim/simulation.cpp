@@ -5,7 +5,13 @@
 #include <utility>
 
 #include "app/assembly.h"
+#include "app/ctl/sim_remote.h"
+#include "app/record_options.h"
+#include "app/run/observers.h"
+#include "app/services.h"
+#include "input_files.h"
 #include "played_behaviors.h"
+#include "telemetry/record/recorder.h"
 
 namespace kadans {
 namespace {
@@ -44,22 +50,98 @@ class Simulation::Stepped {
 
   Stepped(const std::string& text, const std::filesystem::path& file, std::uint64_t seed)
       : scenario(simulated_scenario(text, file)),
-        log({&lines}, simulation_lines_kept),
+        run_seed(seed),
+        log({&lines, &echo}, simulation_lines_kept),
         assembly(scenario, seed, log),
         all(assembly.parts()),
         steps(all) {
     refuse_faulty_behaviors(assembly);
+    hear_perception();
   }
 
   const Assembly& of(std::size_t number) const { return number == 0 ? assembly : *assembly.others().at(number - 1); }
   const RunParts& parts(std::size_t number) const { return number == 0 ? all : all.others.at(number - 1); }
 
+  // What a robot's perception says goes on to its supervisor, and waits here for who asks.
+  struct Heard final : ObservationSink {
+    void observe(const Observation& observation) noexcept override {
+      if (kept.size() == kept_max) kept.clear();
+      kept.push_back(observation);
+      to->observe(observation);
+    }
+    static constexpr std::size_t kept_max = 1000;
+    ObservationSink* to = nullptr;
+    std::vector<Observation> kept;
+  };
+
+  void hear_perception() {
+    heard.resize(1 + all.others.size());
+    for (std::size_t i = 0; i < heard.size(); ++i) {
+      RunParts& one = i == 0 ? all : all.others[i - 1];
+      heard[i].to = one.observed;
+      if (one.observed != nullptr) one.observed = &heard[i];
+    }
+  }
+
+  void step() {
+    steps.step();
+    if (recorder == nullptr && remote == nullptr) return;
+    const double time_s = 1e-9 * static_cast<double>(all.control.state().time_ns);
+    if (recorder) (void)recorder->drain();  // a failing disk is told at the end
+    if (pacer) pacer->tick(time_s, all.control.row());
+    if (remote) remote->between_ticks(steps.mark());
+    for (std::size_t i = 0; i <= all.others.size(); ++i) tell_faults(i);
+  }
+
+  void tell_faults(std::size_t number) {
+    for (Fault fault; parts(number).control.safety().log().try_pop(fault);) {
+      fault.robot = static_cast<std::uint16_t>(number);
+      if (recorder) recorder->fault(fault);
+      if (remote) remote->fault(fault);
+    }
+  }
+
+  void record(const SimulationRecord& asked) {
+    RecordPlan plan = record_plan(assembly, {.signals = asked.signals, .flight_s = {}, .folder_MB = {}}, false);
+    recorder = std::make_unique<Recorder>(assembly.catalog().signals, plan.settings, FlightSettings{},
+                                          Recorder::Wait::in_place);
+    if (!recorder->open(asked.file.string())) throw InputError({.message = recorder->error()});
+    RunChoices choices;
+    choices.scenario = scenario.file;
+    choices.seed = run_seed;
+    RunInputs inputs = inputs_of(choices, scenario, assembly);
+    inputs.run["clock"] = clock_of_programs;
+    inputs.run["repeat"] = asked.repeat;
+    (void)recorder->file().describe_run(inputs);
+    describe_robots(recorder->file(), robot_texts(assembly), 0);
+    log.add(recorder->events());
+    record_file = asked.file.string();
+    assembly.record_to(recorder.get());
+  }
+
+  void show(const SimulationPage& page) {
+    SimRemote::Places places;
+    places.live.port = std::to_string(page.port);
+    places.live.address = page.address;
+    places.ctl.wanted = false;
+    remote = std::make_unique<SimRemote>(places, scenario, assembly, record_plan(assembly, {}, false), log, echo);
+    remote->begin(recorder.get(), record_file);
+    pacer.emplace(remote->pace());
+  }
+
   ScenarioConfig scenario;
+  std::uint64_t run_seed;
   Lines lines;
+  LineEcho echo;
   RunLog log;
   Assembly assembly;
   RunParts all;
   RunSteps steps;
+  std::vector<Heard> heard;  // a robot each
+  std::unique_ptr<Recorder> recorder;
+  std::string record_file;
+  std::unique_ptr<SimRemote> remote;
+  std::optional<ViewerPacer> pacer;
 };
 
 Simulation::Simulation(const std::string& scenario, const std::filesystem::path& file, std::uint64_t seed)
@@ -67,7 +149,24 @@ Simulation::Simulation(const std::string& scenario, const std::filesystem::path&
 
 Simulation::~Simulation() = default;
 
-void Simulation::step() { stepped_->steps.step(); }
+void Simulation::step() { stepped_->step(); }
+
+void Simulation::record(const SimulationRecord& record) { stepped_->record(record); }
+
+void Simulation::show(const SimulationPage& page) { stepped_->show(page); }
+
+void Simulation::end_record(const std::map<std::string, std::string>& result) {
+  Recorder* recorder = stepped_->recorder.get();
+  if (recorder == nullptr || !recorder->is_open()) return;
+  TextMap facts(result.begin(), result.end());
+  facts["state_hash"] = hash_text(state_hash());
+  facts["control_ticks"] = std::to_string(stepped_->steps.mark().ticks);
+  (void)recorder->drain();
+  (void)recorder->file().describe("result", facts);
+  if (!recorder->close()) throw std::runtime_error("the record is not complete: " + recorder->error());
+  if (recorder->dropped() > 0)
+    throw std::runtime_error(std::to_string(recorder->dropped()) + " rows are missing in the record");
+}
 
 std::int64_t Simulation::time_ns() const noexcept { return stepped_->steps.mark().time_ns; }
 
@@ -103,9 +202,14 @@ const RobotStatus& Simulation::status(std::size_t number) const {
 }
 
 void Simulation::observe(std::size_t number, const Observation& observation) {
-  ObservationSink* sink = stepped_->parts(number).observed;
+  if (number >= stepped_->heard.size()) throw std::out_of_range("there is no robot of this number");
+  ObservationSink* sink = stepped_->heard[number].to;
   if (sink == nullptr) throw std::invalid_argument("this robot has no supervisor, so it knows nothing of the world");
   sink->observe(observation);
+}
+
+std::vector<Observation> Simulation::take_observed(std::size_t number) {
+  return std::exchange(stepped_->heard.at(number).kept, {});
 }
 
 std::uint32_t Simulation::entry(std::size_t number, std::string_view name) const {

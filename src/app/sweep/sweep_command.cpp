@@ -12,6 +12,7 @@
 #include "campaign/sweep/sweep_results.h"
 #include "campaign/sweep/sweep_summary.h"
 #include "config/json/problems.h"
+#include "kadans/campaign/shard.h"
 #include "signal/durable_file.h"
 #include "signal/shell_word.h"
 #include "sweep_run.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "campaign/sweep/sweep_results.h"
-#include "campaign/work/job_pool.h"
+#include "kadans/campaign/job_pool.h"
 
 namespace kadans {
 

@@ -22,6 +22,7 @@
 #include "campaign/tuning/cma_es.h"
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
+#include "kadans/campaign/shard.h"
 #include "kadans/signal/random.h"
 #include "program_tuning.h"
 #include "signal/content_hash.h"

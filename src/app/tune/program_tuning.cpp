@@ -11,10 +11,10 @@
 
 #include "app/sweep/sweep_run.h"
 #include "app/terminal.h"
-#include "campaign/work/job_pool.h"
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
 #include "config/robot/project_root.h"
+#include "kadans/campaign/job_pool.h"
 #include "signal/durable_file.h"
 
 namespace kadans {

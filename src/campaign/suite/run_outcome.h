@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "campaign/work/job_pool.h"
+#include "kadans/campaign/job_pool.h"
 #include "scenario/disturb/quantities.h"
 #include "scenario/judge/metrics.h"
 

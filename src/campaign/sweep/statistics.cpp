@@ -1,4 +1,4 @@
-#include "statistics.h"
+#include "kadans/campaign/statistics.h"
 
 #include <algorithm>
 #include <cmath>

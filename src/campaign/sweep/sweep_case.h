@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,21 +72,5 @@ std::vector<SweepCase> sweep_cases(const SweepPlan& plan, const std::vector<Swee
 // The arguments of `kadans` that make this run: "sim FILE --seed N --set NAME=VALUE ...", where FILE is `file`.
 std::vector<std::string> run_arguments(const SweepCase& one, const std::string& file);
 std::string repeat_command(const SweepCase& one, const SweepSubject& subject);
-
-// One part of a sweep, for one of several processes or machines that share the work.
-
-// Holds every `count`-th case, beginning with case `index`.
-struct Shard {
-  std::size_t index = 0, count = 1;
-  bool holds(std::size_t number) const noexcept { return number % count == index; }
-  bool whole() const noexcept { return count == 1; }
-};
-
-// Reads "0/4" .. "3/4". Throws InputError.
-Shard parse_shard(const std::string& text);
-
-// The shard of this task in a Slurm array, from SLURM_ARRAY_TASK_ID, _COUNT, _MIN and _STEP; nullopt outside an array.
-// Throws InputError when the array is not a range.
-std::optional<Shard> slurm_shard();
 
 }  // namespace kadans

@@ -11,8 +11,8 @@
 
 #include "config/json/foreign_json.h"
 #include "config/json/problems.h"
+#include "kadans/campaign/statistics.h"
 #include "signal/number_text.h"
-#include "statistics.h"
 #include "telemetry/plot.h"
 
 namespace kadans {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "config/plan/experiment_plans.h"
-#include "statistics.h"
+#include "kadans/campaign/statistics.h"
 #include "sweep_case.h"
 #include "sweep_results.h"
 

@@ -1,4 +1,4 @@
-#include "job_pool.h"
+#include "kadans/campaign/job_pool.h"
 
 #include <algorithm>
 #include <chrono>

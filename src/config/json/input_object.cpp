@@ -1,6 +1,7 @@
 #include "kadans/config/input_object.h"
 
 #include "config/robot/project_root.h"
+#include "config/scenario/based_on.h"
 #include "fields.h"
 #include "signal/input_file.h"
 
@@ -39,6 +40,18 @@ bool InputObject::object(std::string_view name, std::string_view doc, const Read
       need(required));
 }
 
+bool InputObject::list(std::string_view name, std::string_view doc, const Read& read, bool required) {
+  return fields_->list(
+      name, {}, doc,
+      [&](Fields& inner) {
+        InputObject object(inner, *problems_);
+        read(object);
+      },
+      need(required));
+}
+
+bool InputObject::reading() const noexcept { return fields_->reading(); }
+
 bool InputObject::path(std::string_view name, std::string& value, std::string_view doc, bool required) {
   return fields_->string(name, value, doc, need(required)) &&
          !resolve_file_or_folder(value, fields_->place(name), fields_->path(name), *problems_).empty();
@@ -50,13 +63,18 @@ bool InputObject::is_file(const std::string& path) const {
 }
 
 void InputObject::refuse(std::string_view name, const std::string& message) {
-  problems_->add(fields_->place(name), message);
+  if (reading()) problems_->add(fields_->place(name), message);
 }
 
 void read_input_object(const std::filesystem::path& file, const InputObject::Read& read) {
+  read_input_text(read_input_file(file), file, read);
+}
+
+void read_input_text(std::string_view text, const std::filesystem::path& file, const InputObject::Read& read) {
+  const BasedJson json = parse_based_json(text, file.string());
+  if (!json.bases.empty()) read_input_object(json.bases.front(), read);
   Problems problems(file.string());
-  const JsonValue json = parse_json(read_input_file(file), file.string());
-  read_fields(json, problems, [&](Fields& fields) {
+  read_fields(json.value, problems, [&](Fields& fields) {
     InputObject object(fields, problems);
     read(object);
   });

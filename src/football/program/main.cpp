@@ -1,85 +1,73 @@
 // kadans-football: matches of robots on the SDK alone, as a program of anybody could be built.
-#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <memory>
 
+#include <sched.h>
+
+#include "command_line.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/output_file.h"
 #include "match_report.h"
+#include "match_summary.h"
+#include "served_match.h"
 
 namespace {
 
 using namespace kadans;
 using namespace kadans::football;
 
-constexpr int exit_passed = 0, exit_failed = 1, exit_usage = 2, exit_internal = 3;
+constexpr int exit_passed = 0, exit_failed = 1, exit_usage = 2, exit_internal = 3, exit_interrupted = 130;
 
-constexpr const char* usage =
-    "usage: kadans-football match FILE [--seed N] [--json] [--report FOLDER] [--verbose]\n"
-    "  FILE        a match, such as config/matches/striker_drill.json\n"
-    "  --seed N    seed of all random numbers (default: the file's)\n"
-    "  --json      print the result and all decisions of the referee as one JSON object\n"
-    "  --report    write there the result (.json), all that was said (.txt) and where all were (.csv)\n"
-    "  --verbose   tell on stderr what is decided and said while it goes on\n";
+volatile std::sig_atomic_t told_to_stop = 0;
 
-struct Options {
-  std::string file, report;
-  std::optional<std::uint64_t> seed;
-  bool json = false, verbose = false;
-};
+bool stopped() { return told_to_stop != 0; }
+
+void stop_when_told() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { told_to_stop = 1; };
+  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+}
 
 int refuse_usage(const std::string& why) {
   std::fprintf(stderr, "error: %s\n%s", why.c_str(), usage);
   return exit_usage;
 }
 
-std::string read_options(int argc, char** argv, Options& options) {
-  if (argc < 2) return "what shall it do? 'match'";
-  if (std::strcmp(argv[1], "match") != 0)
-    return "unknown command '" + std::string(argv[1]) + "', did you mean 'match'?";
-  for (int i = 2; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--json") {
-      options.json = true;
-    } else if (word == "--verbose" || word == "-v") {
-      options.verbose = true;
-    } else if (word == "--report") {
-      if (i + 1 >= argc) return "--report needs a folder";
-      options.report = argv[++i];
-    } else if (word == "--seed") {
-      const std::string number = i + 1 < argc ? argv[++i] : "";
-      std::uint64_t seed = 0;
-      const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), seed);
-      if (number.empty() || error != std::errc{} || end != number.data() + number.size())
-        return "--seed needs a whole number, not '" + number + "'";
-      options.seed = seed;
-    } else if (word.starts_with("-") && word != "-") {
-      return "unknown option '" + word + "'";
-    } else if (options.file.empty()) {
-      options.file = word;
-    } else {
-      return "one match at a time: '" + options.file + "' and '" + word + "'";
-    }
-  }
-  return options.file.empty() ? "which match? It is a file" : "";
+std::string command_of(const Options& options, std::uint64_t seed) {
+  std::string command = "kadans-football match " + options.files[0] + " --seed " + std::to_string(seed);
+  for (const std::string& setting : options.set) command += " --set " + setting;
+  return command;
 }
 
-int play(const Options& options) {
-  const MatchConfig match = read_match(options.file);
-  const std::uint64_t seed = options.seed.value_or(match.seed);
-  PlayedMatch played(match, seed);
+// Goes on to the end. Returns what was said.
+std::string play_out(PlayedMatch& played, const Options& options) {
   std::string said;
-  const std::clock_t began = std::clock();
-  for (bool goes_on = true; goes_on;) {
+  for (bool goes_on = true; goes_on && !stopped();) {
     goes_on = played.step();
     for (const std::string& line : played.take_lines()) {
       if (options.verbose) std::fprintf(stderr, "%s\n", line.c_str());
       if (!options.report.empty()) said += line + "\n";
     }
   }
+  return said;
+}
+
+int play(const Options& options) {
+  const MatchConfig match = read_match(options.files[0], options.set);
+  const std::uint64_t seed = options.seed.value_or(match.seed);
+  PlayedMatch played(match, seed);
+  if (!options.record.empty()) played.record(options.record, options.signals, command_of(options, seed));
+  if (options.live) played.show(static_cast<std::uint16_t>(*options.live));
+  stop_when_told();
+  const std::clock_t began = std::clock();
+  const std::string said = play_out(played, options);
   const double cpu_s = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+  if (!options.record.empty()) played.end_record();
+  if (stopped()) return exit_interrupted;
   const MatchResult& result = played.result();
   if (!options.report.empty()) {
     const std::string stem =
@@ -94,6 +82,74 @@ int play(const Options& options) {
   return ended_by_itself(result) ? exit_passed : exit_failed;
 }
 
+// A thread of real time, where the system lets it be one: the robots wait for the world.
+void take_priority() {
+  sched_param priority{};
+  priority.sched_priority = 40;
+  if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0)
+    std::fprintf(stderr, "without the right to real time (docs/realtime.md): robots may find the world late\n");
+}
+
+int serve(const Options& options) {
+  const MatchConfig match = read_match(options.files[0], options.set);
+  const std::uint64_t seed = options.seed.value_or(match.seed);
+  const ServedPlaces places = ServedPlaces::of(options.listen[0], options.referee);
+  auto world = std::make_unique<ServedMatch>(match, seed, places);
+  ServedMatch& served = *world;
+  if (!options.robots.empty()) std::fprintf(stderr, "%s", write_robots(match, places, options.robots).c_str());
+  std::fprintf(stderr, "serves %zu robots from %s on\n", match.robots().size(), options.listen[0].c_str());
+  stop_when_told();
+  while (!stopped() && !served.await(50)) {
+  }
+  if (stopped()) return exit_interrupted;
+  std::fprintf(stderr, "all robots are driven\n");
+  PlayedMatch played(match, seed, std::move(world), !options.referee.empty());
+  take_priority();
+  (void)play_out(played, options);
+  const MatchResult& result = played.result();
+  std::printf("%s\n", (options.json ? json_of(result, match) : text_of(result, match)).c_str());
+  if (served.lost_periods() > 0)
+    std::fprintf(stderr, "%llu periods of the world were lost: the machine is too slow or too busy\n",
+                 static_cast<unsigned long long>(served.lost_periods()));
+  if (stopped()) return exit_interrupted;
+  return ended_by_itself(result) ? exit_passed : exit_failed;
+}
+
+int tell(const std::vector<VariantResults>& all, bool json) {
+  std::printf("%s", json ? (summary_json(all) + "\n").c_str() : summary_text(all).c_str());
+  return all_well(all) ? exit_passed : exit_failed;
+}
+
+int play_all(const Options& options) {
+  const ManyMatches plan{.files = options.files,
+                         .settings = options.set,
+                         .varied = options.vary,
+                         .seed = options.seed.value_or(1),
+                         .cases = options.cases.value_or(20)};
+  const ManyChoices choices{
+      .out = options.out,
+      .shard = options.shard.empty() ? slurm_shard().value_or(Shard{}) : parse_shard(options.shard),
+      .jobs = options.jobs.value_or(0),
+      .told = options.verbose};
+  stop_when_told();
+  const int code = tell(play_many(plan, choices, stopped), options.json);
+  return stopped() ? exit_interrupted : code;
+}
+
+int obey(const Options& options) {
+  switch (options.command) {
+    case Options::Command::match:
+      return play(options);
+    case Options::Command::matches:
+      return play_all(options);
+    case Options::Command::merge:
+      return tell(merge_many(options.files), options.json);
+    case Options::Command::serve:
+      return serve(options);
+  }
+  return exit_usage;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -103,7 +159,7 @@ int main(int argc, char** argv) {
   const std::string wrong = read_options(argc, argv, options);
   if (!wrong.empty()) return refuse_usage(wrong);
   try {
-    const int code = play(options);
+    const int code = obey(options);
     return std::fflush(stdout) == 0 ? code : exit_failed;
   } catch (const InputError& error) {
     for (const InputProblem& problem : error.problems()) std::fprintf(stderr, "error: %s\n", problem.text().c_str());

@@ -1,9 +1,12 @@
 #include "match_file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <map>
 
 #include "kadans/config/input_object.h"
+#include "kadans/signal/input_error.h"
 #include "kadans/signal/random.h"
 
 namespace kadans::football {
@@ -13,6 +16,7 @@ constexpr double beside_gap_m = 1.0;  // between robots that stand beside the fi
 constexpr std::string_view name_letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
 const std::array<std::string, 3> division_names{"small", "middle", "large"};
 const std::array<std::string, 2> start_names{"touchline", "field"};
+
 const std::array<std::string, 7> begin_names{"play",      "free_kick", "indirect_free_kick", "penalty_kick", "throw_in",
                                              "goal_kick", "corner"};
 constexpr std::array<Restart, 7> begin_restarts{
@@ -20,6 +24,33 @@ constexpr std::array<Restart, 7> begin_restarts{
     Restart::penalty_kick, Restart::throw_in,         Restart::goal_kick,
     Restart::corner};
 const std::array<std::string, 2> side_names{"home", "away"};
+
+// A value of the command line as JSON: a number or a text.
+std::string json_value(const std::string& text) {
+  double ignored = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ignored);
+  return error == std::errc{} && end == text.data() + text.size() ? text : json_text(text);
+}
+
+// The text of a match file that is based on this one and says what is set. The keys of a match file are two deep.
+std::string set_text(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  std::map<std::string, std::string> objects;
+  std::string own;
+  for (const std::string& setting : settings) {
+    const std::size_t sign = setting.find('='), dot = setting.substr(0, sign).find('.');
+    if (sign == std::string::npos || sign == 0)
+      throw InputError({.file = "--set", .message = "'" + setting + "' must be KEY=VALUE, such as network.lost=0.3"});
+    const std::string value = json_value(setting.substr(sign + 1));
+    if (dot == std::string::npos) {
+      own += ", " + json_text(setting.substr(0, sign)) + ": " + value;
+      continue;
+    }
+    std::string& object = objects[setting.substr(0, dot)];
+    object += (object.empty() ? "" : ", ") + json_text(setting.substr(dot + 1, sign - dot - 1)) + ": " + value;
+  }
+  for (const auto& [name, members] : objects) own += ", " + json_text(name) + ": { " + members + " }";
+  return "{ \"based_on\": " + json_text(std::filesystem::absolute(file).lexically_normal().string()) + own + " }";
+}
 
 void read_rules(InputObject& f, MatchRules& rules) {
   f.number("half_s", rules.half_s, {5, 3600, "s"}, "length of a half");
@@ -116,7 +147,10 @@ Pose2 drill_place(const MatchConfig& match, RobotId id, std::uint64_t seed) {
 
 std::string world_model() {
   std::string text = R"({
-      "ball": { "what": "the ball", "place": "point", "within_m": 20, "forget_s": 6 },
+      "ball": { "what": "the ball, by its filter", "place": "point", "within_m": 20, "forget_s": 6, "fields": {
+          "x_m_s": { "unit": "m/s", "what": "its velocity, ahead", "min": -20, "max": 20 },
+          "y_m_s": { "unit": "m/s", "what": "its velocity, to the left", "min": -20, "max": 20 } } },
+      "ball_seen": { "what": "the ball as single pictures show it", "place": "point", "within_m": 20, "forget_s": 6 },
       "field": { "what": "the field's centre; ahead of it the goal that the team attacks", "place": "pose", "within_m": 30,
                  "forget_s": 3, "fields": { "known": { "what": "1 when the robot knows where it is", "min": 0, "max": 1 } } },
       "game": { "what": "the game controller's words", "fields": {
@@ -158,31 +192,18 @@ std::string differing(double share) {
 }
 
 std::string robot_fields(const MatchConfig& match, RobotId id, std::uint64_t seed) {
-  const TeamSetup& team = match.team(id.side);
   const Pose2 at = world_pose(drill_place(match, id, seed), id.side == Side::home ? -1 : 1);
-  std::string text =
-      "\"robot\": " + json_text(team.robot) +
-      ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
-      ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) + " }" +
-      differing(match.robots_differ) + ",\n    \"supervisor\": { \"decisions\": " +
-      json_text(team.folder + "/team.lua" + (team.parameters.empty() ? "" : "{" + team.parameters + "}")) +
-      ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
-  std::string peers;
-  for (unsigned number = 1; number <= team.players; ++number) {
-    const RobotId mate{id.side, static_cast<std::uint8_t>(number)};
-    if (!(mate == id)) peers += (peers.empty() ? "" : ", ") + json_text(robot_name(mate));
-  }
-  if (!peers.empty())
-    text += ",\n    \"messages\": { \"name\": " + json_text(robot_name(id)) + ", \"peers\": [" + peers +
-            "], \"messages_per_minute\": 300, \"bytes_per_minute\": 150000 }";
   const SensesConfig& senses = match.senses;
-  text +=
-      " },\n    \"perception\": [{ \"entry\": \"ball\", \"object\": \"ball\", \"rate_Hz\": " + number(senses.rate_Hz) +
-      ", \"latency_s\": " + number(senses.latency_s) + ", \"distance_noise\": " + number(senses.distance_noise) +
-      ", \"bearing_noise_rad\": " + number(senses.bearing_noise_rad) + ", \"missed\": " + number(senses.missed) +
-      ", \"view_rad\": " + number(senses.view_rad) + ", \"far_m\": " + number(senses.far_m) +
-      ", \"imagined\": " + number(senses.imagined) + ", \"hidden\": true }]";
-  return text;
+  return "\"robot\": " + json_text(match.team(id.side).robot) +
+         ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
+         ", \"start.y_m\": " + number(at.y_m) + ", \"start.yaw_rad\": " + number(at.theta_rad) + " }" +
+         differing(match.robots_differ) + ",\n    \"supervisor\": " + supervisor_of(match, id) +
+         ",\n    \"perception\": [{ \"entry\": \"ball_seen\", \"object\": \"ball\", \"rate_Hz\": " +
+         number(senses.rate_Hz) + ", \"latency_s\": " + number(senses.latency_s) +
+         ", \"distance_noise\": " + number(senses.distance_noise) +
+         ", \"bearing_noise_rad\": " + number(senses.bearing_noise_rad) + ", \"missed\": " + number(senses.missed) +
+         ", \"view_rad\": " + number(senses.view_rad) + ", \"far_m\": " + number(senses.far_m) +
+         ", \"imagined\": " + number(senses.imagined) + ", \"hidden\": true }]";
 }
 
 std::string box(const std::string& name, const Point& at, double z_m, double x_m, double y_m, double height_m) {
@@ -207,6 +228,26 @@ std::string goals(const Field& field) {
 }
 
 }  // namespace
+
+std::string supervisor_of(const MatchConfig& match, RobotId id, const RobotPlaces& places) {
+  const TeamSetup& team = match.team(id.side);
+  std::string peers, to;
+  for (unsigned number = 1; number <= team.players; ++number) {
+    const RobotId mate{id.side, static_cast<std::uint8_t>(number)};
+    if (!(mate == id)) peers += (peers.empty() ? "" : ", ") + json_text(robot_name(mate));
+  }
+  for (const std::string& place : places.to) to += (to.empty() ? "" : ", ") + json_text(place);
+  std::string text =
+      "{ \"decisions\": " +
+      json_text(team.folder + "/team.lua" + (team.parameters.empty() ? "" : "{" + team.parameters + "}")) +
+      ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
+  if (!places.perception.empty()) text += ",\n    \"perception\": " + json_text(places.perception);
+  if (!peers.empty())
+    text += ",\n    \"messages\": { \"name\": " + json_text(robot_name(id)) + ", \"peers\": [" + peers + "]" +
+            (places.listen.empty() ? "" : ", \"listen\": " + json_text(places.listen) + ", \"to\": [" + to + "]") +
+            ", \"messages_per_minute\": 300, \"bytes_per_minute\": 150000 }";
+  return text + " }";
+}
 
 std::string robot_name(RobotId id) { return (id.side == Side::home ? "home_" : "away_") + std::to_string(id.number); }
 
@@ -239,53 +280,61 @@ Pose2 place_before(const MatchConfig& match, RobotId id) {
 
 Pose2 world_pose(const Pose2& of_team, double sign) noexcept { return sign > 0 ? of_team : mirrored(of_team); }
 
-MatchConfig read_match(const std::filesystem::path& file) {
+void match_fields(InputObject& f, MatchConfig& match) {
+  std::string schema, base;
+  f.text("$schema", schema, "the schema of this file, for editors");
+  f.text("based_on", base, "another match; this file says only what is different");
+  f.text("name", match.name, "the match's name, which reports are called by", true);
+  if (match.name.empty() || match.name.find_first_not_of(name_letters) != std::string::npos)
+    f.refuse("name", "name must be small letters, digits and '_', such as two_against_two");
+  f.text("doc", match.doc, "what it shows, one or two sentences");
+  auto division = static_cast<std::size_t>(match.division), size = static_cast<std::size_t>(match.field_size);
+  f.choice("division", division, division_names, "the robots' division: it gives ball and goals");
+  f.choice("field", size, division_names, "the field's size: S, M or L");
+  match.division = static_cast<Division>(division);
+  match.field_size = static_cast<FieldSize>(size);
+  try {
+    (void)match.field();
+  } catch (const std::invalid_argument& error) {
+    f.refuse("field", error.what());
+  }
+  f.whole("seed", match.seed, 0, 9'007'199'254'740'992, "seed of all random numbers");
+  f.object("rules", "times that differ from the rules of 2026", [&](InputObject& e) { read_rules(e, match.rules); });
+  f.object(
+      "home", "the team that defends the left goal first, and kicks off",
+      [&](InputObject& e) { read_team(e, match.teams[0]); }, true);
+  f.object("away", "the other team; without one the goal is empty",
+           [&](InputObject& e) { read_team(e, match.teams[1]); });
+  std::size_t start = match.start_on_field ? 1 : 0;
+  f.choice("start", start, start_names, "where robots stand before a half: beside the field, or on it");
+  match.start_on_field = start == 1;
+  f.object("ends", "what ends it before the rules do", [&](InputObject& e) {
+    e.whole("goals", match.goals, 1, 1000, "with so many goals");
+    e.number("playing_s", match.playing_s, {1, 1e5, "s"}, "after so long in playing");
+  });
+  DrillStart begin = match.begins.value_or(DrillStart{});
+  if (f.object("begins", "a drill: it begins in the middle of a match", [&](InputObject& e) { read_begin(e, begin); }))
+    match.begins = begin;
+  f.number("robots_differ", match.robots_differ, {0, 1},
+           "0: all robots are as configured; 1: friction, masses, torque, gains and noise differ as in the sweeps");
+  f.number("rolling_friction_m", match.rolling_friction_m, {1e-4, 0.1, "m"}, "how the grass slows the ball");
+  f.object("network", "the network of each team", [&](InputObject& e) {
+    e.number("delay_s", match.delay_s, {0, 10, "s"}, "the least time that a message takes");
+    e.number("jitter_s", match.jitter_s, {0, 10, "s"}, "the most that it takes longer");
+    e.number("lost", match.lost, {0, 1}, "share of the messages that are lost");
+  });
+  f.object("senses", "what a robot's camera says", [&](InputObject& e) { read_senses(e, match.senses); });
+}
+
+MatchConfig read_match(const std::filesystem::path& file, const std::vector<std::string>& settings) {
   MatchConfig match;
   match.file = file.string();
-  read_input_object(file, [&](InputObject& f) {
-    f.text("name", match.name, "the match's name, which reports are called by", true);
-    if (match.name.empty() || match.name.find_first_not_of(name_letters) != std::string::npos)
-      f.refuse("name", "name must be small letters, digits and '_', such as two_against_two");
-    f.text("doc", match.doc, "what it shows, one or two sentences");
-    auto division = static_cast<std::size_t>(match.division), size = static_cast<std::size_t>(match.field_size);
-    f.choice("division", division, division_names, "the robots' division: it gives ball and goals");
-    f.choice("field", size, division_names, "the field's size: S, M or L");
-    match.division = static_cast<Division>(division);
-    match.field_size = static_cast<FieldSize>(size);
-    try {
-      (void)match.field();
-    } catch (const std::invalid_argument& error) {
-      f.refuse("field", error.what());
-    }
-    f.whole("seed", match.seed, 0, 9'007'199'254'740'992, "seed of all random numbers");
-    f.object("rules", "times that differ from the rules of 2026", [&](InputObject& e) { read_rules(e, match.rules); });
-    f.object(
-        "home", "the team that defends the left goal first, and kicks off",
-        [&](InputObject& e) { read_team(e, match.teams[0]); }, true);
-    match.teams[1].players = 0;
-    f.object("away", "the other team; without one the goal is empty",
-             [&](InputObject& e) { read_team(e, match.teams[1]); });
-    std::size_t start = 0;
-    f.choice("start", start, start_names, "where robots stand before a half: beside the field, or on it");
-    match.start_on_field = start == 1;
-    f.object("ends", "what ends it before the rules do", [&](InputObject& e) {
-      e.whole("goals", match.goals, 1, 1000, "with so many goals");
-      e.number("playing_s", match.playing_s, {1, 1e5, "s"}, "after so long in playing");
-    });
-    DrillStart begin;
-    if (f.object("begins", "a drill: it begins in the middle of a match",
-                 [&](InputObject& e) { read_begin(e, begin); }))
-      match.begins = begin;
-    f.number("robots_differ", match.robots_differ, {0, 1},
-             "0: all robots are as configured; 1: friction, masses, torque, gains and noise differ as in the sweeps");
-    f.number("rolling_friction_m", match.rolling_friction_m, {1e-4, 0.1, "m"}, "how the grass slows the ball");
-    f.object("network", "the network of each team", [&](InputObject& e) {
-      e.number("delay_s", match.delay_s, {0, 10, "s"}, "the least time that a message takes");
-      e.number("jitter_s", match.jitter_s, {0, 10, "s"}, "the most that it takes longer");
-      e.number("lost", match.lost, {0, 1}, "share of the messages that are lost");
-    });
-    f.object("senses", "what a robot's camera says", [&](InputObject& e) { read_senses(e, match.senses); });
-  });
+  match.teams[1].players = 0;
+  const auto read = [&](InputObject& f) { match_fields(f, match); };
+  if (settings.empty())
+    read_input_object(file, read);
+  else
+    read_input_text(set_text(file, settings), file.parent_path() / "--set", read);
   for (const Side side : both_sides) {
     TeamSetup& team = match.teams.at(index_of(side));
     if (team.name.empty()) team.name = side == Side::home ? "home" : "away";

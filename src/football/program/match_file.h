@@ -16,6 +16,10 @@
 #include "football/field.h"
 #include "football/match.h"
 
+namespace kadans {
+class InputObject;
+}
+
 namespace kadans::football {
 
 inline constexpr unsigned team_players_max = 4;  // of the robots that one world holds, eight
@@ -67,13 +71,22 @@ struct MatchConfig {
   std::vector<RobotId> robots() const;  // in the order of the scenario
 };
 
-// Throws InputError with all mistakes.
-MatchConfig read_match(const std::filesystem::path& file);
+// Throws InputError with all mistakes. `settings` stand in place of what the file says: "network.lost=0.3".
+MatchConfig read_match(const std::filesystem::path& file, const std::vector<std::string>& settings = {});
+void match_fields(InputObject& f, MatchConfig& match);  // for the reader, and for the schema
 
 // Where a robot stands before a half, in its team's frame: at the touchline, or on the field. Before the kick-off the
 // teams walk from there to their places.
 Pose2 place_before(const MatchConfig& match, RobotId id);
 Pose2 world_pose(const Pose2& of_team, double sign) noexcept;  // Match::sign of the team
+
+// Where a robot's supervisor listens and sends in a match over the wire, "host:port"; in a simulation nowhere.
+struct RobotPlaces {
+  std::string perception, listen;
+  std::vector<std::string> to;
+};
+// The text of a robot's `supervisor`.
+std::string supervisor_of(const MatchConfig& match, RobotId id, const RobotPlaces& places = {});
 
 std::string robot_name(RobotId id);            // "home_1"
 std::string json_text(std::string_view text);  // in JSON's quotes

@@ -1,6 +1,9 @@
 #include "match_report.h"
 
+#include <charconv>
 #include <cstdio>
+
+#include "kadans/config/input_object.h"
 
 namespace kadans::football {
 namespace {
@@ -22,10 +25,12 @@ std::string json_of(const PlayedRobot& robot) {
   return "{\"name\": " + json_text(robot.name) +
          line_of(
              ", \"falls\": %llu, \"penalties\": %llu, \"messages\": %llu, \"errors\": %llu, \"upright_s\": %.2f, "
-             "\"played_s\": %.2f, \"still_max_s\": %.2f, \"off_median_m\": %.3f, \"off_most_m\": %.3f}",
+             "\"played_s\": %.2f, \"still_max_s\": %.2f, \"off_median_m\": %.3f, \"off_most_m\": %.3f, "
+             "\"off_median_rad\": %.4f}",
              static_cast<unsigned long long>(robot.falls), static_cast<unsigned long long>(robot.penalties),
              static_cast<unsigned long long>(robot.messages), static_cast<unsigned long long>(robot.errors),
-             robot.upright_s, robot.played_s, robot.still_max_s, robot.off_median_m, robot.off_most_m);
+             robot.upright_s, robot.played_s, robot.still_max_s, robot.off_median_m, robot.off_most_m,
+             robot.off_median_rad);
 }
 
 template <typename T>
@@ -57,7 +62,9 @@ std::string text_of(const MatchResult& result, const MatchConfig& match) {
 
 std::string json_of(const MatchResult& result, const MatchConfig& match) {
   const auto team = [&](std::size_t side) {
-    return "{\"name\": " + json_text(match.teams.at(side).name) + line_of(", \"goals\": %u}", result.score.at(side));
+    return "{\"name\": " + json_text(match.teams.at(side).name) +
+           line_of(", \"goals\": %u, \"messages_left\": %u, \"over_budget\": %llu}", result.score.at(side),
+                   result.messages_left.at(side), static_cast<unsigned long long>(result.over_budget.at(side)));
   };
   return "{\"match\": " + json_text(result.match) +
          line_of(", \"seed\": %llu, \"ended\": ", static_cast<unsigned long long>(result.seed)) +
@@ -65,6 +72,71 @@ std::string json_of(const MatchResult& result, const MatchConfig& match) {
          line_of(", \"simulated_s\": %.2f, \"playing_s\": %.2f, \"state_hash\": \"%016llx\",\n  \"decisions\": ",
                  result.simulated_s, result.playing_s, static_cast<unsigned long long>(result.state_hash)) +
          json_list(result.decisions) + ",\n  \"robots\": " + json_list(result.robots) + "}";
+}
+
+namespace {
+
+constexpr double number_max = 1e12;
+constexpr std::uint64_t count_max = 9'007'199'254'740'992;
+
+void read_side(InputObject& f, MatchResult& result, std::size_t side) {
+  std::string name;
+  std::uint64_t goals = 0, left = 0;
+  f.text("name", name, "");
+  f.whole("goals", goals, 0, 10'000, "", true);
+  f.whole("messages_left", left, 0, 65'535, "", true);
+  f.whole("over_budget", result.over_budget.at(side), 0, count_max, "", true);
+  result.score.at(side) = static_cast<unsigned>(goals);
+  result.messages_left.at(side) = static_cast<unsigned>(left);
+}
+
+void read_robot(InputObject& f, MatchResult& result) {
+  PlayedRobot robot;
+  f.text("name", robot.name, "", true);
+  robot.id.side = robot.name.starts_with("away") ? Side::away : Side::home;
+  f.whole("falls", robot.falls, 0, count_max, "", true);
+  f.whole("penalties", robot.penalties, 0, count_max, "", true);
+  f.whole("messages", robot.messages, 0, count_max, "", true);
+  f.whole("errors", robot.errors, 0, count_max, "", true);
+  for (const auto& [key, value] : {std::pair{"upright_s", &robot.upright_s},
+                                   {"played_s", &robot.played_s},
+                                   {"still_max_s", &robot.still_max_s},
+                                   {"off_median_m", &robot.off_median_m},
+                                   {"off_most_m", &robot.off_most_m},
+                                   {"off_median_rad", &robot.off_median_rad}})
+    f.number(key, *value, {0, number_max}, "", true);
+  result.robots.push_back(std::move(robot));
+}
+
+void skip_decision(InputObject& f) {
+  double number = 0;
+  std::string text;
+  for (const char* key : {"time_s", "half", "remaining_s"}) f.number(key, number, {-number_max, number_max}, "");
+  for (const char* key : {"text", "rule"}) f.text(key, text, "");
+}
+
+}  // namespace
+
+MatchResult read_result(const std::filesystem::path& file) {
+  MatchResult result;
+  read_input_object(file, [&](InputObject& f) {
+    std::string hash;
+    f.text("match", result.match, "", true);
+    f.whole("seed", result.seed, 0, count_max, "", true);
+    f.text("ended", result.ended, "", true);
+    f.object(
+        "home", "", [&](InputObject& e) { read_side(e, result, 0); }, true);
+    f.object(
+        "away", "", [&](InputObject& e) { read_side(e, result, 1); }, true);
+    f.number("simulated_s", result.simulated_s, {0, number_max}, "", true);
+    f.number("playing_s", result.playing_s, {0, number_max}, "", true);
+    if (f.text("state_hash", hash, "", true))
+      (void)std::from_chars(hash.data(), hash.data() + hash.size(), result.state_hash, 16);
+    f.list("decisions", "", skip_decision, true);
+    f.list(
+        "robots", "", [&](InputObject& e) { read_robot(e, result); }, true);
+  });
+  return result;
 }
 
 }  // namespace kadans::football

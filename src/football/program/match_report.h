@@ -12,5 +12,7 @@ std::string text_of(const MatchResult& result, const MatchConfig& match);
 // One JSON object: {"match":, "seed":, "ended":, "home": {"name":, "goals":}, ..., "decisions": [...], "robots":
 // [...]}. The same match gives the same text.
 std::string json_of(const MatchResult& result, const MatchConfig& match);
+// And back: what json_of wrote into this file, but for the decisions. Throws InputError.
+MatchResult read_result(const std::filesystem::path& file);
 
 }  // namespace kadans::football

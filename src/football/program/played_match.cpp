@@ -9,18 +9,19 @@ namespace {
 constexpr std::int64_t referee_step_ns = 20'000'000, packet_every_ns = 500'000'000;
 constexpr std::int64_t track_every_ns = 200'000'000;
 constexpr double step_s = 1e-9 * static_cast<double>(referee_step_ns);
-constexpr double upright_up = 0.6;   // z of the trunk's axis: less is no longer on its feet
-constexpr double tries_rad_s = 0.3;  // joints that move so fast on the ground: it tries to get up
-constexpr double rests_s = 3;        // the longest rest in an attempt
-constexpr double holds_m = 0.12;     // a ball so near to the middle of the robot is within it
+constexpr std::int64_t answer_every_ns = 1'000'000'000;
+constexpr double carpet_edge_m = 0.2;  // from the edge, where a robot with a penalty stands
+constexpr double upright_up = 0.6;     // z of the trunk's axis: less is no longer on its feet
+constexpr double tries_rad_s = 0.3;    // joints that move so fast on the ground: it tries to get up
+constexpr double rests_s = 3;          // the longest rest in an attempt
+constexpr double holds_m = 0.12;       // a ball so near to the middle of the robot is within it
 constexpr double still_m = 0.05, still_rad = 0.15;
 constexpr double touching_far_m = 1.2;  // robots that touch each other are nearer
 
-Pose2 pose_of(const Pose& base) {
-  const Quat& q = base.orientation;
-  const double yaw_rad = std::atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
-  return {base.position_m[0], base.position_m[1], yaw_rad};
-}
+// What the page draws, and what is asked first of a match.
+constexpr const char* shown_signals =
+    "*plant.base.*@50, *world.*@50, *seen.*@10, *odometry.*@10, *supervisor.*@10, *behavior.*@20, "
+    "*joint.*.position_rad@50, *safety.*@10";
 
 double up_of(const Pose& base) {
   const Quat& q = base.orientation;
@@ -44,6 +45,13 @@ LinkSet arms_of(const RobotModel& model) {
   return arms;
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 std::string text_of(const SaidLine& line) {
   const char* mark = line.kind == SaidLine::Kind::error     ? "error: "
                      : line.kind == SaidLine::Kind::warning ? "warning: "
@@ -56,8 +64,13 @@ std::string text_of(const SaidLine& line) {
 }  // namespace
 
 PlayedMatch::PlayedMatch(const MatchConfig& match, std::uint64_t seed)
+    : PlayedMatch(match, seed, std::make_unique<SimulatedMatch>(match, seed), false) {}
+
+PlayedMatch::PlayedMatch(const MatchConfig& match, std::uint64_t seed, std::unique_ptr<MatchWorld> played_in,
+                         bool refereed_elsewhere)
     : match_(match),
-      simulation_(scenario_of(match, seed), match.file, seed),
+      played_in_(std::move(played_in)),
+      elsewhere_(refereed_elsewhere),
       referee_({.match = {.rules = match.rules,
                           .teams = {MatchTeam{.number = 1, .keeper = static_cast<std::uint8_t>(match.teams[0].keeper)},
                                     MatchTeam{.number = 2,
@@ -66,23 +79,21 @@ PlayedMatch::PlayedMatch(const MatchConfig& match, std::uint64_t seed)
                                               .keeper = static_cast<std::uint8_t>(match.teams[1].keeper)}}},
                 .field = match.field(),
                 .ball = league_ball(match.division)}),
-      ball_(simulation_.object("ball")),
+      ball_(played_in_->object("ball")),
       ball_radius_m_(league_ball(match.division).radius_m) {
   const std::vector<RobotId> ids = match_.robots();
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Player player;
     player.told.id = ids[i];
     player.told.name = robot_name(ids[i]);
-    player.senses = std::make_unique<RobotSenses>(match_, simulation_, i, ids[i], seed);
-    const Catalog& catalog = simulation_.catalog(i);
-    player.arms = arms_of(*catalog.model);
-    player.sent = catalog.signals.find("supervisor.sent");
+    player.senses = std::make_unique<RobotSenses>(match_, *played_in_, i, ids[i], seed);
+    player.arms = arms_of(*played_in_->catalog(i).model);
     players_.push_back(std::move(player));
   }
   if (match.begins) {
     const DrillStart& begin = *match.begins;
     const Point ball = referee_.begin_with(begin.restart, begin.side, drill_ball(match, seed));
-    simulation_.world().put(ball_, {ball.x_m, ball.y_m, ball_radius_m_});
+    played_in_->world().put(ball_, {ball.x_m, ball.y_m, ball_radius_m_});
   }
   result_.match = match.name;
   result_.seed = seed;
@@ -97,7 +108,7 @@ PlayedMatch::PlayedMatch(const MatchConfig& match, std::uint64_t seed)
 
 void PlayedMatch::note_touches() {
   for (std::size_t i = 0; i < players_.size(); ++i) {
-    const PlantTruth& truth = simulation_.robot(i).truth();
+    const PlantTruth& truth = played_in_->robot(i).truth();
     const LinkSet& links = truth.objects.at(ball_).links;
     players_[i].touched_ball = players_[i].touched_ball || links.any();
     players_[i].touched_with_arms = players_[i].touched_with_arms || (links & players_[i].arms).any();
@@ -107,20 +118,20 @@ void PlayedMatch::note_touches() {
 
 // The truth, as the referee is given it.
 void PlayedMatch::look() {
-  const PlantTruth& first = simulation_.robot(0).truth();
+  const PlantTruth& first = played_in_->robot(0).truth();
   const Vec3& ball = first.objects.at(ball_).pose.position_m;
   world_.ball = {ball[0], ball[1]};
   world_.ball_z_m = ball[2];
   for (std::size_t i = 0; i < players_.size(); ++i) {
     Player& player = players_[i];
-    const PlantTruth& truth = simulation_.robot(i).truth();
+    const PlantTruth& truth = played_in_->robot(i).truth();
     RobotTruth& robot = world_.robot(player.told.id);
     robot.present = true;
-    robot.pose = pose_of(truth.base);
+    robot.pose = ground_pose(truth.base);
     robot.upright = up_of(truth.base) > upright_up;
     player.joints_still_s = fastest_joint(truth) > tries_rad_s ? 0 : player.joints_still_s + step_s;
     robot.getting_up = !robot.upright && player.joints_still_s < rests_s;
-    robot.active = simulation_.status(i).safety.level < SafetyLevel::damp;
+    robot.active = played_in_->active(i);
     robot.touches_ball = player.touched_ball;
     robot.uses_arms = player.touched_with_arms && robot.upright;
     robot.holds_ball = distance(robot.pose.at(), world_.ball) < holds_m;
@@ -150,20 +161,100 @@ void PlayedMatch::note_contacts() {
 }
 
 void PlayedMatch::tell_players(bool at_once) {
-  const std::int64_t now_ns = simulation_.time_ns();
+  const std::int64_t now_ns = played_in_->time_ns();
   if (!at_once && now_ns < packet_due_ns_) return;
   packet_due_ns_ = now_ns + packet_every_ns;
   const auto packet = write_game_control(referee_.control(ControlReader::player));
-  for (Player& player : players_) player.senses->hear(packet);
+  played_in_->send(packet);
+  for (const auto& came : played_in_->packets()) {
+    for (Player& player : players_) player.senses->hear(came);
+  }
 }
 
 // People put the robots where they begin; each knows where that is.
 void PlayedMatch::prepare_half() {
   for (std::size_t i = 0; i < players_.size(); ++i) {
     const RobotId id = players_[i].told.id;
-    const Pose2 place = place_before(match_, id), at = world_pose(place, referee_.match().sign(id.side));
-    simulation_.robot(i).carry(at.x_m, at.y_m, at.theta_rad);
+    const Pose2 place = place_before(match_, id), at = world_pose(place, sign(id.side));
+    played_in_->robot(i).carry(at.x_m, at.y_m, at.theta_rad);
     players_[i].senses->placed(place);
+  }
+}
+
+bool PlayedMatch::plays(RobotId id) const noexcept {
+  if (!elsewhere_) return referee_.match().plays(id);
+  const TeamEntry* team = told_.team(static_cast<std::uint8_t>(1 + index_of(id.side)));
+  return team != nullptr && team->robots.at(id.index()).penalty == Penalty::none;
+}
+
+double PlayedMatch::sign(Side side) const noexcept {
+  if (!elsewhere_) return referee_.match().sign(side);
+  return told_.teams[0].number == 1 + index_of(side) ? -1 : 1;
+}
+
+bool PlayedMatch::over() const noexcept {
+  return elsewhere_ ? told_.state == GameState::finished && !told_.first_half : referee_.match().over();
+}
+
+std::array<unsigned, 2> PlayedMatch::scores() const noexcept {
+  if (!elsewhere_) return {referee_.match().score(Side::home), referee_.match().score(Side::away)};
+  const TeamEntry *home = told_.team(1), *away = told_.team(2);
+  return {home == nullptr ? 0U : home->score, away == nullptr ? 0U : away->score};
+}
+
+// By another game controller's packets.
+void PlayedMatch::follow() {
+  for (const auto& came : played_in_->packets()) {
+    const Checked<GameControl> packet = read_game_control(came);
+    if (!packet.value || packet.value->team(1) == nullptr || packet.value->team(2) == nullptr) continue;
+    follow(*packet.value);
+    for (Player& player : players_) player.senses->hear(came);
+  }
+  if (played_in_->time_ns() < answer_due_ns_) return;
+  answer_due_ns_ = played_in_->time_ns() + answer_every_ns;
+  answer_referee();
+}
+
+// What people around the field do when they hear it: the ball goes to the middle for a kick-off and to the mark for a
+// penalty kick, robots with a penalty go to the touchline, level with their own mark.
+void PlayedMatch::follow(const GameControl& packet) {
+  const GameControl before = std::exchange(told_, packet);
+  const Field field = match_.field();
+  if (packet.state != before.state || packet.set_play != before.set_play || packet.stopped != before.stopped)
+    lines_.push_back("the game controller: " + std::string(name_of(packet.state)) + " " +
+                     std::string(name_of(packet.set_play)) + (packet.stopped ? ", stopped" : ""));
+  if (packet.first_half != before.first_half) prepare_half();
+  if (packet.state == GameState::set && before.state != GameState::set) {
+    const bool at_mark = packet.set_play == SetPlay::penalty_kick;
+    const double toward = packet.kicking_team == 1 ? sign(Side::home) : sign(Side::away);
+    played_in_->world().put(ball_, {at_mark ? toward * field.penalty_mark_x_m() : 0, 0, ball_radius_m_});
+  }
+  for (std::size_t i = 0; i < players_.size(); ++i) {
+    const RobotId id = players_[i].told.id;
+    const auto number = static_cast<std::uint8_t>(1 + index_of(id.side));
+    const TeamEntry* was = before.team(number);
+    const Penalty now = packet.team(number)->robots.at(id.index()).penalty;
+    const Penalty old = was == nullptr ? Penalty::none : was->robots.at(id.index()).penalty;
+    if (now == old || now == Penalty::none || now == Penalty::motion_in_set) continue;
+    ++players_[i].told.penalties;
+    const double side = id.number % 2 == 0 ? 1 : -1;
+    const Pose2 at = world_pose({-field.penalty_mark_x_m(), side * (field.width_m / 2 + field.border_m - carpet_edge_m),
+                                 -side * std::numbers::pi / 2},
+                                sign(id.side));
+    played_in_->robot(i).carry(at.x_m, at.y_m, at.theta_rad);
+  }
+}
+
+void PlayedMatch::answer_referee() {
+  for (const Player& player : players_) {
+    const RobotId id = player.told.id;
+    const std::optional<RobotSenses::BallNow> ball = player.senses->ball();
+    RobotReturn told{.player = id.number,
+                     .team = static_cast<std::uint8_t>(1 + index_of(id.side)),
+                     .fallen = !world_.robot(id).upright,
+                     .pose = player.senses->belief().pose};
+    if (ball) told.ball_age_s = ball->age_s, told.ball = ball->at;
+    played_in_->answer_referee(told);
   }
 }
 
@@ -175,11 +266,11 @@ void PlayedMatch::heed(const RefereeReport& report) {
   }
   for (Player& player : players_)
     player.told.penalties += static_cast<std::uint64_t>(std::ranges::count(report.penalised, player.told.id));
-  if (report.ball) simulation_.world().put(ball_, {report.ball->x_m, report.ball->y_m, ball_radius_m_});
+  if (report.ball) played_in_->world().put(ball_, {report.ball->x_m, report.ball->y_m, ball_radius_m_});
   for (const RobotPlacement& placed : report.robots) {
     for (std::size_t i = 0; i < players_.size(); ++i) {
       if (players_[i].told.id == placed.robot)
-        simulation_.robot(i).carry(placed.pose.x_m, placed.pose.y_m, placed.pose.theta_rad);
+        played_in_->robot(i).carry(placed.pose.x_m, placed.pose.y_m, placed.pose.theta_rad);
     }
   }
   if (report.whistles_short > 0) {
@@ -193,30 +284,31 @@ void PlayedMatch::heed(const RefereeReport& report) {
 }
 
 void PlayedMatch::measure(Player& player) {
-  const Match& match = referee_.match();
   const RobotTruth& robot = world_.robot(player.told.id);
   if (player.was_upright && !robot.upright) ++player.told.falls;
   player.was_upright = robot.upright;
   if (robot.upright) player.told.upright_s += step_s;
-  const bool plays = match.state() == GameState::playing && !match.stopped() && match.plays(player.told.id);
+  const bool in_play = state() == GameState::playing && !stopped() && plays(player.told.id);
   const bool moved = distance(robot.pose.at(), player.still.at()) > still_m ||
                      std::abs(wrapped(robot.pose.theta_rad - player.still.theta_rad)) > still_rad;
-  if (moved || !plays) {
+  if (moved || !in_play) {
     player.still = robot.pose;
     player.still_s = 0;
   }
-  if (!plays) return;
+  if (!in_play) return;
   player.told.played_s += step_s;
   player.still_s += step_s;
   player.told.still_max_s = std::max(player.told.still_max_s, player.still_s);
   if (!robot.upright) return;
-  const Pose2 truth = world_pose(robot.pose, match.sign(player.told.id.side));
-  player.off_m.push_back(distance(truth.at(), player.senses->belief().pose.at()));
+  const Pose2 truth = world_pose(robot.pose, sign(player.told.id.side));
+  const Pose2& thought = player.senses->belief().pose;
+  player.off_m.push_back(distance(truth.at(), thought.at()));
+  player.off_rad.push_back(std::abs(wrapped(truth.theta_rad - thought.theta_rad)));
 }
 
 void PlayedMatch::note_lines() {
   const std::string& first = players_.front().told.name;
-  for (SaidLine& line : simulation_.take_lines()) {
+  for (SaidLine& line : played_in_->take_lines()) {
     if (line.who.find('.') == std::string::npos) line.who.insert(0, first + ".");
     for (Player& player : players_) {
       if (line.kind == SaidLine::Kind::error && line.who.starts_with(player.told.name + ".")) ++player.told.errors;
@@ -226,15 +318,15 @@ void PlayedMatch::note_lines() {
 }
 
 void PlayedMatch::track_places() {
-  if (simulation_.time_ns() < track_due_ns_) return;
-  track_due_ns_ = simulation_.time_ns() + track_every_ns;
+  if (played_in_->time_ns() < track_due_ns_) return;
+  track_due_ns_ = played_in_->time_ns() + track_every_ns;
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "%.2f,%.3f,%.3f,%.3f", 1e-9 * static_cast<double>(simulation_.time_ns()),
+  std::snprintf(text.data(), text.size(), "%.2f,%.3f,%.3f,%.3f", 1e-9 * static_cast<double>(played_in_->time_ns()),
                 world_.ball.x_m, world_.ball.y_m, world_.ball_z_m);
   track_ += text.data();
   for (const Player& player : players_) {
     const RobotTruth& robot = world_.robot(player.told.id);
-    const Pose2 thought = world_pose(player.senses->belief().pose, referee_.match().sign(player.told.id.side));
+    const Pose2 thought = world_pose(player.senses->belief().pose, sign(player.told.id.side));
     std::snprintf(text.data(), text.size(), ",%.3f,%.3f,%.3f,%d,%.3f,%.3f,%.3f", robot.pose.x_m, robot.pose.y_m,
                   robot.pose.theta_rad, robot.upright ? 1 : 0, thought.x_m, thought.y_m, thought.theta_rad);
     track_ += text.data();
@@ -245,10 +337,13 @@ void PlayedMatch::track_places() {
 bool PlayedMatch::step() {
   const Match& match = referee_.match();
   if (!result_.ended.empty()) return false;
-  const std::int64_t until_ns = simulation_.time_ns() + referee_step_ns;
+  const std::int64_t until_ns = played_in_->time_ns() + referee_step_ns;
   try {
-    while (simulation_.time_ns() < until_ns) {
-      simulation_.step();
+    while (played_in_->time_ns() < until_ns) {
+      if (!played_in_->step()) {
+        result_.ended = "because no robot is driven any more";
+        return false;
+      }
       note_touches();
     }
   } catch (const std::runtime_error& error) {
@@ -258,38 +353,53 @@ bool PlayedMatch::step() {
   look();
   for (std::size_t i = 0; i < players_.size(); ++i) {
     PlayedRobot& told = players_[i].told;
-    if (!players_[i].sent) continue;
-    const auto sent = static_cast<std::uint64_t>(simulation_.signal(i, *players_[i].sent));
-    for (; told.messages < sent; ++told.messages) referee_.team_message(told.id.side, 0);
+    const std::uint64_t sent = played_in_->messages(i);
+    for (; told.messages < sent; ++told.messages) {
+      if (match.runs() && match.message_budget(told.id.side) == 0) ++result_.over_budget.at(index_of(told.id.side));
+      referee_.team_message(told.id.side, 0);
+    }
   }
-  if (match.state() == GameState::playing && !match.stopped()) result_.playing_s += step_s;
-  heed(referee_.step(referee_step_ns, world_));
+  if (state() == GameState::playing && !stopped()) result_.playing_s += step_s;
+  if (elsewhere_)
+    follow();
+  else
+    heed(referee_.step(referee_step_ns, world_));
   for (Player& player : players_) {
-    player.senses->step(world_, match.sign(player.told.id.side));
+    player.senses->step(world_, sign(player.told.id.side));
     measure(player);
   }
   note_lines();
   track_places();
-  if (match.over()) result_.ended = "by the rules";
-  if (match_.goals > 0 && match.score(Side::home) + match.score(Side::away) >= match_.goals)
+  if (over()) result_.ended = "by the rules";
+  const std::array<unsigned, 2> score = scores();
+  if (match_.goals > 0 && score[0] + score[1] >= match_.goals)
     result_.ended = "by its goals";
   else if (match_.playing_s > 0 && result_.playing_s >= match_.playing_s && result_.ended.empty())
     result_.ended = "by its time";
   return result_.ended.empty();
 }
 
+void PlayedMatch::record(const std::string& file, const std::string& signals, const std::string& repeat) {
+  simulation().record({.file = file, .signals = signals.empty() ? shown_signals : signals, .repeat = repeat});
+}
+
+void PlayedMatch::end_record() {
+  const MatchResult& all = result();
+  simulation().end_record({{"ended", all.ended},
+                           {"home_goals", std::to_string(all.score[0])},
+                           {"away_goals", std::to_string(all.score[1])}});
+}
+
 const MatchResult& PlayedMatch::result() {
-  result_.simulated_s = 1e-9 * static_cast<double>(simulation_.time_ns());
-  result_.state_hash = simulation_.state_hash();
-  result_.score = {referee_.match().score(Side::home), referee_.match().score(Side::away)};
+  result_.simulated_s = 1e-9 * static_cast<double>(played_in_->time_ns());
+  result_.state_hash = played_in_->state_hash();
+  result_.messages_left = {referee_.match().message_budget(Side::home), referee_.match().message_budget(Side::away)};
+  result_.score = scores();
   result_.robots.clear();
   for (Player& player : players_) {
-    std::vector<double> off = player.off_m;
-    std::ranges::sort(off);
-    if (!off.empty()) {
-      player.told.off_median_m = off[off.size() / 2];
-      player.told.off_most_m = off.back();
-    }
+    player.told.off_median_m = median(player.off_m);
+    player.told.off_median_rad = median(player.off_rad);
+    player.told.off_most_m = player.off_m.empty() ? 0 : std::ranges::max(player.off_m);
     result_.robots.push_back(player.told);
   }
   return result_;

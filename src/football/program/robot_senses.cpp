@@ -10,14 +10,20 @@ constexpr double false_share = 0.05, landmark_missed = 0.4, line_missed = 0.3, l
 constexpr double placed_sd_m = 0.1, placed_sd_rad = 0.1, penalised_sd_m = 0.5, penalised_sd_rad = 0.25;
 constexpr double penalised_edge_m = 0.2;  // from the carpet's edge
 constexpr double near_m = 0.3;            // what lies nearer is below the camera
+constexpr double ball_sd_m = 0.03;
+constexpr std::size_t ways_kept = 40;  // 0.8 s
 constexpr std::int64_t self_every_ns = 1'000'000'000;
+
+std::uint32_t entry_of(const Catalog& catalog, const std::string& name) {
+  return static_cast<std::uint32_t>(std::ranges::find(catalog.seen, name, &SeenInfo::name) - catalog.seen.begin());
+}
 
 }  // namespace
 
-RobotSenses::RobotSenses(const MatchConfig& match, Simulation& simulation, std::size_t number, RobotId id,
+RobotSenses::RobotSenses(const MatchConfig& match, MatchWorld& played_in, std::size_t number, RobotId id,
                          std::uint64_t seed)
     : match_(match),
-      simulation_(simulation),
+      played_in_(played_in),
       number_(number),
       id_(id),
       team_number_(static_cast<std::uint8_t>(1 + index_of(id.side))),
@@ -27,12 +33,14 @@ RobotSenses::RobotSenses(const MatchConfig& match, Simulation& simulation, std::
       camera_scale_(random_.uniform(0.95, 1.05)),
       camera_rad_(random_.uniform(-0.03, 0.03)),
       localisation_({.field = field_, .seed = seed + number}),
-      field_entry_(simulation.entry(number, "field")),
-      game_entry_(simulation.entry(number, "game")),
-      whistle_entry_(simulation.entry(number, "whistle")),
-      me_entry_(simulation.entry(number, "me")) {
+      ball_entry_(entry_of(played_in.catalog(number), "ball")),
+      ball_seen_entry_(entry_of(played_in.catalog(number), "ball_seen")),
+      field_entry_(entry_of(played_in.catalog(number), "field")),
+      game_entry_(entry_of(played_in.catalog(number), "game")),
+      whistle_entry_(entry_of(played_in.catalog(number), "whistle")),
+      me_entry_(entry_of(played_in.catalog(number), "me")) {
   for (std::size_t i = 1; i <= robots_told; ++i)
-    robot_entries_.push_back(simulation.entry(number, "robot_" + std::to_string(i)));
+    robot_entries_.push_back(entry_of(played_in.catalog(number), "robot_" + std::to_string(i)));
   placed(place_before(match, id));
 }
 
@@ -41,19 +49,43 @@ void RobotSenses::placed(const Pose2& place) {
   const double sd_rad = match_.begins ? match_.begins->robots_scatter_rad : 0;
   localisation_.place(std::span(&place, 1), std::max(placed_sd_m, sd_m), std::max(placed_sd_rad, sd_rad));
   late_views_.clear();
+  ball_.forget();
+}
+
+// Along the odometry's path, which does not jump as localisation may. Told is what this picture shows; of one that does
+// not fit nothing is.
+void RobotSenses::note_ball(const Observation& seen) {
+  const auto then = std::ranges::find_if(ways_, [&](const auto& one) { return one.first >= seen.time_ns; });
+  if (then == ways_.end()) return;
+  const Pose2& pose = then->second;
+  const Point at{seen.fields[0], seen.fields[1]};
+  const double time_s = 1e-9 * static_cast<double>(seen.time_ns);
+  const double sd_m = ball_sd_m + std::hypot(match_.senses.distance_noise, match_.senses.bearing_noise_rad) * norm(at);
+  if (!ball_.saw({time_s, from_frame(pose, at), sd_m})) return;
+  const BallFilter::Estimate ball = ball_.estimate(time_s);
+  if (!ball.known || ball.age_s > 0) return;
+  const Point place = in_frame(pose, ball.at), velocity_m_s = turned(ball.velocity_m_s, -pose.theta_rad);
+  Observation told{
+      .entry = ball_entry_, .time_ns = seen.time_ns, .confidence = seen.confidence, .source = SeenSource::scenario};
+  told.fields = {place.x_m, place.y_m, velocity_m_s.x_m, velocity_m_s.y_m};
+  played_in_.observe(number_, told);
+}
+
+std::optional<RobotSenses::BallNow> RobotSenses::ball() const noexcept {
+  const BallFilter::Estimate ball = ball_.estimate(1e-9 * static_cast<double>(now_ns()));
+  if (!ball.known || ways_.empty()) return std::nullopt;
+  return BallNow{in_frame(ways_.back().second, ball.at), ball.age_s};
 }
 
 void RobotSenses::tell(std::uint32_t entry, std::initializer_list<double> fields) {
   Observation observation{.entry = entry, .time_ns = now_ns(), .source = SeenSource::scenario};
   std::ranges::copy(fields, observation.fields.begin());
-  simulation_.observe(number_, observation);
+  played_in_.observe(number_, observation);
 }
 
 void RobotSenses::step(const WorldTruth& world, double sign) {
   const std::int64_t at_ns = now_ns();
-  const OdometryStatus& odometry = simulation_.status(number_).odometry;
-  localisation_.odometry(1e-9 * static_cast<double>(at_ns),
-                         {odometry.path_x_m, odometry.path_y_m, odometry.path_heading_rad});
+  localisation_.odometry(1e-9 * static_cast<double>(at_ns), played_in_.odometry(number_));
   if (at_ns >= picture_due_ns_) {
     picture_due_ns_ = at_ns + std::llround(1e9 / match_.senses.rate_Hz);
     take_picture(world, sign);
@@ -61,8 +93,13 @@ void RobotSenses::step(const WorldTruth& world, double sign) {
   for (; !late_views_.empty() && late_views_.front().due_ns <= at_ns; late_views_.pop_front())
     (void)localisation_.view(late_views_.front().view);
   for (; !late_.empty() && late_.front().due_ns <= at_ns; late_.pop_front())
-    simulation_.observe(number_, late_.front().observation);
+    played_in_.observe(number_, late_.front().observation);
   tell_place();
+  ways_.emplace_back(at_ns, played_in_.odometry(number_));
+  while (ways_.size() > ways_kept) ways_.pop_front();
+  for (const Observation& seen : played_in_.take_observed(number_)) {
+    if (seen.entry == ball_seen_entry_) note_ball(seen);
+  }
   tell_self();
 }
 
@@ -96,6 +133,7 @@ void RobotSenses::hear(Bytes packet) {
                                       Pose2{-field_.penalty_mark_x_m(), -y_m, std::numbers::pi / 2}};
     localisation_.place(places, penalised_sd_m, penalised_sd_rad);
     late_views_.clear();
+    ball_.forget();
   }
   penalty_ = penalty;
   const double ours = control.kicking_team == no_team ? -1 : control.kicking_team == team_number_ ? 1 : 0;

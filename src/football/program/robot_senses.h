@@ -1,4 +1,4 @@
-// What one robot of a simulated match perceives beside the ball, and what it makes of it: where it is on the field, who
+// What one robot of a simulated match perceives, and what it makes of it: where it is on the field, who
 // is near, what the game controller and the whistle say. It goes to the robot's world model, which its decisions read.
 //
 // The camera is mounted a little askew. It sees lines, crossings, posts, marks and the circle of the field late, with
@@ -6,25 +6,29 @@
 // robot's own odometry. The robot knows that a person carried it from what the game controller says: nothing else tells
 // it.
 //
+// The ball comes from the world's simulated perception, picture by picture; BallFilter makes of that where it is and
+// how it rolls, and leaves out what is not it.
+//
 // All random numbers come from streams of the run's seed. One thread, no physics.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "football/ball_filter.h"
 #include "football/localisation.h"
 #include "football/positions.h"
-#include "kadans/app/simulation.h"
-#include "match_file.h"
+#include "match_world.h"
 
 namespace kadans::football {
 
 class RobotSenses {
  public:
   // The robot with this number of the simulation. Keeps references.
-  RobotSenses(const MatchConfig& match, Simulation& simulation, std::size_t number, RobotId id, std::uint64_t seed);
+  RobotSenses(const MatchConfig& match, MatchWorld& played_in, std::size_t number, RobotId id, std::uint64_t seed);
 
   // To be called at 50 Hz. `sign`: of the team (Match::sign).
   void step(const WorldTruth& world, double sign);
@@ -35,6 +39,12 @@ class RobotSenses {
   void placed(const Pose2& place);
 
   const Localisation::Estimate& belief() const noexcept { return belief_; }  // in its team's frame
+  // Where its ball is, from where it stands, and how old that is; nothing while it knows of none.
+  struct BallNow {
+    Point at;
+    double age_s = 0;
+  };
+  std::optional<BallNow> ball() const noexcept;
 
  private:
   struct Late {
@@ -50,16 +60,17 @@ class RobotSenses {
   void see_landmark(FieldView& view, const Pose2& camera, LandmarkKind kind, const Point& on_field);
   void see_line(FieldView& view, const Pose2& camera, const Segment& on_field);
   void see_robots(const WorldTruth& world);
+  void note_ball(const Observation& seen);
   void tell_place();
   void tell_self();
-  std::int64_t now_ns() const noexcept { return simulation_.time_ns() - simulation_.period_ns(); }  // of the last tick
+  std::int64_t now_ns() const noexcept { return played_in_.time_ns() - played_in_.period_ns(); }  // of the last tick
   void tell(std::uint32_t entry, std::initializer_list<double> fields);
   bool sees(const Point& at) const noexcept;
   Point noisy(const Point& at);
   Point nothing();
 
   const MatchConfig& match_;
-  Simulation& simulation_;
+  MatchWorld& played_in_;
   std::size_t number_;
   RobotId id_;
   std::uint8_t team_number_;
@@ -69,10 +80,12 @@ class RobotSenses {
   double camera_scale_, camera_rad_;  // how askew the camera is mounted
   Localisation localisation_;
   Localisation::Estimate belief_;
+  BallFilter ball_{{}};
+  std::deque<std::pair<std::int64_t, Pose2>> ways_;  // where its odometry had it, for pictures that come late
   std::deque<Late> late_;
   std::deque<LateView> late_views_;
   std::int64_t picture_due_ns_ = 0, self_due_ns_ = 0;
-  std::uint32_t field_entry_, game_entry_, whistle_entry_, me_entry_;
+  std::uint32_t ball_entry_, ball_seen_entry_, field_entry_, game_entry_, whistle_entry_, me_entry_;
   std::vector<std::uint32_t> robot_entries_;
   std::uint32_t whistles_ = 0;
   Penalty penalty_ = Penalty::none;

@@ -1,0 +1,180 @@
+#include "match_summary.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <numbers>
+
+#include "match_report.h"
+
+namespace kadans::football {
+namespace {
+
+constexpr std::uint64_t bootstrap_seed = 1;
+constexpr std::size_t missing_told = 10;
+
+template <typename... Values>
+std::string told(const char* pattern, Values... values) {
+  std::array<char, 300> text{};
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
+
+// What each match gives one number of.
+template <typename Of>
+SampleStatistics statistics_of(const VariantResults& all, const char* name, Of&& of) {
+  std::vector<double> values;
+  for (const MatchResult& result : all.results) values.push_back(of(result));
+  return sample_statistics(values, bootstrap_seed, name);
+}
+
+template <typename Is>
+Share share_of(const VariantResults& all, Is&& is) {
+  return {static_cast<std::size_t>(std::ranges::count_if(all.results, is)), all.results.size()};
+}
+
+template <typename Of>
+double worst(const MatchResult& result, Of&& of) {
+  double most = 0;
+  for (const PlayedRobot& robot : result.robots) most = std::max(most, of(robot));
+  return most;
+}
+
+double falls_per_minute(const MatchResult& result) {
+  double falls = 0;
+  for (const PlayedRobot& robot : result.robots) falls += static_cast<double>(robot.falls);
+  return falls / (static_cast<double>(result.robots.size()) * result.simulated_s / 60);
+}
+
+// The team that said more.
+double most_messages(const MatchResult& result) {
+  std::array<double, 2> sent{};
+  for (const PlayedRobot& robot : result.robots)
+    sent.at(index_of(robot.id.side)) += static_cast<double>(robot.messages);
+  return std::max(sent[0], sent[1]);
+}
+
+std::string line_of(const char* what, const Share& share) {
+  const double percent = share.of == 0 ? 0 : 100.0 * static_cast<double>(share.hits) / static_cast<double>(share.of);
+  const Interval around = share.interval();
+  return told("  %-34s %4zu of %-4zu %5.1f %%  (%.1f to %.1f)\n", what, share.hits, share.of, percent, 100 * around.low,
+              100 * around.high);
+}
+
+std::string line_of(const char* what, const SampleStatistics& value, const char* unit, double scale = 1) {
+  return told("  %-34s %8.3g %s  (%.3g to %.3g), median %.3g, most %.3g\n", what, scale * value.mean, unit,
+              scale * value.mean_interval.low, scale * value.mean_interval.high, scale * value.median,
+              scale * value.greatest);
+}
+
+std::string json_of(const Share& share) {
+  const Interval around = share.interval();
+  return told("{\"hits\": %zu, \"of\": %zu, \"low\": %.4f, \"high\": %.4f}", share.hits, share.of, around.low,
+              around.high);
+}
+
+std::string json_of(const SampleStatistics& value) {
+  return told("{\"mean\": %.6g, \"low\": %.6g, \"high\": %.6g, \"median\": %.6g, \"most\": %.6g}", value.mean,
+              value.mean_interval.low, value.mean_interval.high, value.median, value.greatest);
+}
+
+std::string json_of(const VariantResults& all) {
+  const MatchSummary s = summary_of(all);
+  std::string settings;
+  for (const std::string& setting : all.variant.settings)
+    settings += (settings.empty() ? "" : ", ") + json_text(setting);
+  std::string text = "{\"file\": " + json_text(all.variant.file) + ", \"settings\": [" + settings + "]" +
+                     told(", \"matches\": %zu, \"missing\": %zu, \"errors\": %llu", s.matches, s.missing,
+                          static_cast<unsigned long long>(s.errors));
+  const std::pair<const char*, const Share*> shares[] = {{"ended_by_itself", &s.ended_by_itself},
+                                                         {"home_won", &s.home_won},
+                                                         {"drawn", &s.drawn},
+                                                         {"away_won", &s.away_won},
+                                                         {"with_goals", &s.with_goals},
+                                                         {"still_below_20_s", &s.still_below_limit},
+                                                         {"within_budget", &s.within_budget}};
+  for (const auto& [name, share] : shares) text += ",\n    \"" + std::string(name) + "\": " + json_of(*share);
+  const std::pair<const char*, const SampleStatistics*> values[] = {{"goals", &s.goals},
+                                                                    {"home_goals", &s.home_goals},
+                                                                    {"away_goals", &s.away_goals},
+                                                                    {"falls_per_robot_and_minute", &s.falls_per_minute},
+                                                                    {"still_max_s", &s.still_max_s},
+                                                                    {"off_m", &s.off_m},
+                                                                    {"off_rad", &s.off_rad},
+                                                                    {"messages_of_a_team", &s.messages}};
+  for (const auto& [name, value] : values) text += ",\n    \"" + std::string(name) + "\": " + json_of(*value);
+  return text + "}";
+}
+
+}  // namespace
+
+MatchSummary summary_of(const VariantResults& all) {
+  MatchSummary s;
+  s.matches = all.results.size();
+  s.missing = all.missing.size();
+  s.ended_by_itself = share_of(all, ended_by_itself);
+  s.home_won = share_of(all, [](const MatchResult& r) { return r.score[0] > r.score[1]; });
+  s.drawn = share_of(all, [](const MatchResult& r) { return r.score[0] == r.score[1]; });
+  s.away_won = share_of(all, [](const MatchResult& r) { return r.score[0] < r.score[1]; });
+  s.with_goals = share_of(all, [](const MatchResult& r) { return r.score[0] + r.score[1] > 0; });
+  s.within_budget = share_of(all, [](const MatchResult& r) { return r.over_budget[0] + r.over_budget[1] == 0; });
+  const auto still_s = [](const MatchResult& r) {
+    return worst(r, [](const PlayedRobot& p) { return p.still_max_s; });
+  };
+  s.still_below_limit = share_of(all, [&](const MatchResult& r) { return still_s(r) <= still_limit_s; });
+  s.goals = statistics_of(all, "goals", [](const MatchResult& r) { return double{0} + r.score[0] + r.score[1]; });
+  s.home_goals = statistics_of(all, "home", [](const MatchResult& r) { return static_cast<double>(r.score[0]); });
+  s.away_goals = statistics_of(all, "away", [](const MatchResult& r) { return static_cast<double>(r.score[1]); });
+  s.falls_per_minute = statistics_of(all, "falls", falls_per_minute);
+  s.still_max_s = statistics_of(all, "still", still_s);
+  s.off_m = statistics_of(
+      all, "off_m", [](const MatchResult& r) { return worst(r, [](const PlayedRobot& p) { return p.off_median_m; }); });
+  s.off_rad = statistics_of(all, "off_rad", [](const MatchResult& r) {
+    return worst(r, [](const PlayedRobot& p) { return p.off_median_rad; });
+  });
+  s.messages = statistics_of(all, "messages", most_messages);
+  for (const MatchResult& result : all.results) {
+    for (const PlayedRobot& robot : result.robots) s.errors += robot.errors;
+  }
+  return s;
+}
+
+bool all_well(const std::vector<VariantResults>& all) {
+  return std::ranges::all_of(all, [](const VariantResults& one) {
+    const MatchSummary s = summary_of(one);
+    return s.missing == 0 && s.errors == 0 && s.ended_by_itself.hits == s.matches && s.within_budget.hits == s.matches;
+  });
+}
+
+std::string summary_text(const std::vector<VariantResults>& all) {
+  std::string text;
+  for (const VariantResults& one : all) {
+    const MatchSummary s = summary_of(one);
+    text += one.variant.name() + told(": %zu matches\n", s.matches);
+    if (s.matches > 0) {
+      text += line_of("ended by the rules or its file", s.ended_by_itself);
+      text += line_of("won by home", s.home_won) + line_of("drawn", s.drawn) + line_of("won by away", s.away_won);
+      text += line_of("with goals", s.with_goals);
+      text += line_of("goals a match", s.goals, "");
+      text += line_of("falls a robot and minute", s.falls_per_minute, "");
+      text += line_of("nobody still for 20 s of play", s.still_below_limit);
+      text += line_of("longest stand in play", s.still_max_s, "s");
+      text += line_of("off in the median, worst robot", s.off_m, "m");
+      text += line_of("turned off, worst robot", s.off_rad, "deg", 180 / std::numbers::pi);
+      text += line_of("messages of the team that says more", s.messages, "");
+      text += line_of("within the messages' budget", s.within_budget);
+    }
+    if (s.errors > 0)
+      text += told("  %llu errors of decisions or behaviors\n", static_cast<unsigned long long>(s.errors));
+    if (s.missing > 0) text += told("  %zu without a result:\n", s.missing);
+    for (std::size_t i = 0; i < std::min(one.missing.size(), missing_told); ++i) text += "    " + one.missing[i] + "\n";
+  }
+  return text;
+}
+
+std::string summary_json(const std::vector<VariantResults>& all) {
+  std::string text;
+  for (const VariantResults& one : all) text += (text.empty() ? "" : ",\n  ") + json_of(one);
+  return "{\"variants\": [" + text + "]}";
+}
+
+}  // namespace kadans::football
