@@ -290,6 +290,10 @@ void Assembly::make_supervisor(BehaviorLog& told) {
 
 void Assembly::make_perception() {
   for (const ScenarioPerception& one : variant_.perception) {
+    if (!one.record.name.empty()) {
+      recorded_.push_back(std::make_unique<RecordedPerception>(one, control_system_->catalog.seen, scenario_.file));
+      continue;
+    }
     perception_.push_back(std::make_unique<SimulatedPerception>(one, control_system_->catalog.seen,
                                                                 variant_.plant.world.objects, seed_, scenario_.file));
   }
@@ -539,6 +543,7 @@ RunParts Assembly::parts_in(Lockstep& lockstep) {
                  .name = number_ == 0 ? "" : scenario_.name,
                  .faulty = number_ == 0 ? nullptr : faulty_.get()};
   for (const auto& one : perception_) parts.perception.push_back(one.get());
+  for (const auto& one : recorded_) parts.recorded.push_back(one.get());
   for (const auto& other : others_) parts.others.push_back(other->parts_in(lockstep));
   return parts;
 }

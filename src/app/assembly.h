@@ -220,6 +220,7 @@ class Assembly {
   std::unique_ptr<JoystickSource> joystick_;
   std::unique_ptr<SimulatedSight> sight_;
   std::vector<std::unique_ptr<SimulatedPerception>> perception_;
+  std::vector<std::unique_ptr<RecordedPerception>> recorded_;
 };
 
 }  // namespace kadans

@@ -228,6 +228,9 @@ void add_robot(const Assembly& assembly, Gathering& files) {
     add_scripts(folders.project_file, folders.robot, files);
     add_scripts(folders.project_file, "lib", files);
   }
+  for (const ScenarioPerception& one : assembly.scenario().perception) {
+    if (!one.record.name.empty()) files.add(one.record.name);
+  }
   for (const auto& other : assembly.others()) add_robot(*other, files);
 }
 
