@@ -211,11 +211,11 @@ end)
   CAPTURE(outcome.out);
   CHECK(outcome.exit_code == 1);
   CHECK(has(outcome.out, "5 passed, 7 failed"));
-  CHECK(has(outcome.out, "pass_test.lua:38: plays: 'walk' does not play; what does: squat"));
-  CHECK(has(outcome.out, "pass_test.lua:39: play_ends: what plays ends as \"done\" or \"failed\""));
-  CHECK(has(outcome.out, "pass_test.lua:40: play_ends: nothing plays"));
-  CHECK(has(outcome.out, "pass_test.lua:41: play_ends: nothing decides here"));
-  CHECK(has(outcome.out, "pass_test.lua:42: the decisions do not declare the event 'robot.pas'"));
+  CHECK(has(outcome.out, "pass_test.lua:37: plays: 'walk' does not play; what does: squat"));
+  CHECK(has(outcome.out, "pass_test.lua:38: play_ends: what plays ends as \"done\" or \"failed\""));
+  CHECK(has(outcome.out, "pass_test.lua:39: play_ends: nothing plays"));
+  CHECK(has(outcome.out, "pass_test.lua:40: play_ends: nothing decides here"));
+  CHECK(has(outcome.out, "pass_test.lua:41: the decisions do not declare the event 'robot.pas'"));
   CHECK(has(outcome.out, "fetsh.json"));
-  CHECK(has(outcome.out, "pass_test.lua:44: no sensor 'seen.bal.x_m'"));
+  CHECK(has(outcome.out, "pass_test.lua:43: no sensor 'seen.bal.x_m'"));
 }

@@ -87,8 +87,8 @@ class SetSensors final : public SnapshotFilter {
         return only("safety");
       case joystick:
         return only("joystick");
-      case ball:
-        return only("seen.ball");
+      case ball:  // an entry of the world model with that name takes its place
+        return std::ranges::find(seen_, "ball") == seen_.end() ? only("seen.ball") : std::nullopt;
       case seen: {
         const std::optional<std::size_t> entry = one_of("seen", seen_);
         return entry && field.is_of(seen, *entry) ? entry : std::nullopt;

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "kadans/signal/input_error.h"
 #include "record_rows.h"
@@ -19,27 +20,30 @@ namespace kadans {
 namespace {
 
 constexpr double same_time_s = 2e-4;  // ages of one observation, in ticks that follow, tell one time but for rounding
-constexpr std::int64_t past_ns = 3'000'000'000;
 constexpr double age_max_s = 60;
 
 const double no_value = std::numeric_limits<double>::quiet_NaN();
 
-// Reads a record tick by tick, and notes each observation when it is a new one.
+// The messages of a topic come in the order of time, those of two topics need not. All signals of an entry are in one
+// message, those of the odometry in another one; so places are carried back when all of the record was read.
 class ObservationReader {
  public:
   explicit ObservationReader(const std::string& record) : file_(record), rows_(record) {}
 
   std::vector<RecordedObservation> read() {
     while (rows_.next()) {
-      if (rows_.values().empty()) continue;
-      if (rows_.time_ns() != now_ns_) look();
-      now_ns_ = rows_.time_ns();
-      take();
+      if (!rows_.values().empty()) take();
     }
-    look();
     if (!rows_.reader().complete() && !rows_.reader().problem().empty() && found_.empty())
       throw InputError({.file = file_, .message = rows_.reader().problem()});
-    return std::move(found_);
+    std::ranges::stable_sort(poses_, {}, &Pose::time_ns);
+    for (Found& one : found_) {
+      if (one.carried) carry_back(one.observation);
+    }
+    std::ranges::stable_sort(found_, {}, [](const Found& one) { return one.observation.came_ns; });
+    std::vector<RecordedObservation> all;
+    for (Found& one : found_) all.push_back(std::move(one.observation));
+    return all;
   }
   bool has_entries() const noexcept { return !entries_.empty(); }
 
@@ -52,18 +56,29 @@ class ObservationReader {
     double age_s = no_value, confidence = 0, carried = 1;
     std::vector<std::pair<std::string, double>> fields{};
     double of_s = no_value;  // time of its last observation
+    bool told = false;       // by the message that is looked at
+  };
+  struct Found {
+    RecordedObservation observation;
+    bool carried = true;
   };
 
   // The values of this message.
   void take() {
     const std::vector<Signal>& signals = rows_.topic().signals;
+    Pose pose{.time_ns = rows_.time_ns()};
+    bool walks = false;
     for (std::size_t i = 0; i < signals.size() && i < rows_.values().size(); ++i) {
       const std::string& name = signals[i].name;
       const double value = rows_.values()[i];
       if (name.starts_with("seen.")) take_seen(name.substr(5), value);
-      if (name == "odometry.x_m") now_.x_m = value, walks_ = true;
-      if (name == "odometry.y_m") now_.y_m = value;
-      if (name == "odometry.heading_rad") now_.heading_rad = value;
+      if (name == "odometry.x_m") pose.x_m = value, walks = true;
+      if (name == "odometry.y_m") pose.y_m = value;
+      if (name == "odometry.heading_rad") pose.heading_rad = value;
+    }
+    if (walks) poses_.push_back(pose);
+    for (auto& [name, entry] : entries_) {
+      if (std::exchange(entry.told, false)) look(name, entry);
     }
   }
 
@@ -72,6 +87,7 @@ class ObservationReader {
     if (dot == std::string::npos) return;
     const std::string field = name.substr(dot + 1);
     Entry& entry = entries_[name.substr(0, dot)];
+    entry.told = true;
     if (field == "age_s") {
       entry.age_s = value;
     } else if (field == "confidence") {
@@ -88,54 +104,46 @@ class ObservationReader {
     }
   }
 
-  // At the end of a tick.
-  void look() {
-    if (now_ns_ == not_begun) return;
-    now_.time_ns = now_ns_;
-    if (walks_) past_.push_back(now_);
-    while (!past_.empty() && past_.front().time_ns < now_ns_ - past_ns) past_.pop_front();
-    for (auto& [name, entry] : entries_) {
-      if (!(entry.confidence > 0) || !(entry.age_s >= 0 && entry.age_s <= age_max_s)) continue;
-      const double of_s = seconds(now_ns_) - entry.age_s;
-      if (std::abs(of_s - entry.of_s) < same_time_s) continue;
-      entry.of_s = of_s;
-      found_.push_back({now_ns_, name, entry.age_s, entry.confidence, entry.fields});
-      if (entry.carried != 0) carry_back(found_.back().fields, now_ns_ - std::llround(1e9 * entry.age_s));
-    }
+  // Whether it is of another time than the last one.
+  void look(const std::string& name, Entry& entry) {
+    if (!(entry.confidence > 0) || !(entry.age_s >= 0 && entry.age_s <= age_max_s)) return;
+    const double of_s = seconds(rows_.time_ns()) - entry.age_s;
+    if (std::abs(of_s - entry.of_s) < same_time_s) return;
+    entry.of_s = of_s;
+    found_.push_back({{rows_.time_ns(), name, entry.age_s, entry.confidence, entry.fields}, entry.carried != 0});
   }
 
-  // A place from here and now to where the robot was then.
-  void carry_back(std::vector<std::pair<std::string, double>>& fields, std::int64_t then_ns) const {
+  // As it was told last by then; nullptr: never.
+  const Pose* pose_at(std::int64_t time_ns) const {
+    const auto after = std::ranges::upper_bound(poses_, time_ns, {}, &Pose::time_ns);
+    return after == poses_.begin() ? nullptr : &*std::prev(after);
+  }
+
+  // A place from where the robot is when it comes to where the robot was then.
+  void carry_back(RecordedObservation& one) const {
     const auto value = [&](const char* name) -> double* {
-      const auto found = std::ranges::find(fields, name, &std::pair<std::string, double>::first);
-      return found == fields.end() ? nullptr : &found->second;
+      const auto found = std::ranges::find(one.fields, name, &std::pair<std::string, double>::first);
+      return found == one.fields.end() ? nullptr : &found->second;
     };
     double *const x_m = value("x_m"), *const y_m = value("y_m"), *const heading_rad = value("heading_rad");
-    if (x_m == nullptr || y_m == nullptr || past_.empty()) return;
-    const auto nearer = [&](const Pose& a, const Pose& b) {
-      return std::abs(a.time_ns - then_ns) < std::abs(b.time_ns - then_ns);
-    };
-    const Pose& then = *std::ranges::min_element(past_, nearer);
-    const auto [sin_now, cos_now] = sine_cosine(now_.heading_rad);
-    const double at_x_m = now_.x_m + cos_now * *x_m - sin_now * *y_m - then.x_m;
-    const double at_y_m = now_.y_m + sin_now * *x_m + cos_now * *y_m - then.y_m;
-    const auto [sin, cos] = sine_cosine(then.heading_rad);
+    const Pose* now = pose_at(one.came_ns);
+    const Pose* then = pose_at(one.came_ns - std::llround(1e9 * one.age_s));
+    if (x_m == nullptr || y_m == nullptr || now == nullptr || then == nullptr) return;
+    const auto [sin_now, cos_now] = sine_cosine(now->heading_rad);
+    const double at_x_m = now->x_m + cos_now * *x_m - sin_now * *y_m - then->x_m;
+    const double at_y_m = now->y_m + sin_now * *x_m + cos_now * *y_m - then->y_m;
+    const auto [sin, cos] = sine_cosine(then->heading_rad);
     *x_m = cos * at_x_m + sin * at_y_m;
     *y_m = cos * at_y_m - sin * at_x_m;
     if (heading_rad != nullptr)
-      *heading_rad = std::remainder(*heading_rad + now_.heading_rad - then.heading_rad, 2 * std::numbers::pi);
+      *heading_rad = std::remainder(*heading_rad + now->heading_rad - then->heading_rad, 2 * std::numbers::pi);
   }
-
-  static constexpr std::int64_t not_begun = std::numeric_limits<std::int64_t>::min();
 
   std::string file_;
   RecordRows rows_;
-  std::int64_t now_ns_ = not_begun;
-  Pose now_;
-  bool walks_ = false;  // the record has odometry
-  std::deque<Pose> past_;
+  std::vector<Pose> poses_;
   std::map<std::string, Entry> entries_;
-  std::vector<RecordedObservation> found_;
+  std::vector<Found> found_;
 };
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -250,7 +258,7 @@ std::vector<std::string> observation_lines(const std::vector<RecordedObservation
   for (const std::string& name : names) head += "," + name;
   std::vector<std::string> lines{head};
   for (const RecordedObservation& one : observations) {
-    std::string line = number_text(1e-9 * static_cast<double>(one.came_ns)) + "," + one.entry + "," +
+    std::string line = number_text(static_cast<double>(one.came_ns) / 1e9) + "," + one.entry + "," +
                        number_text(one.age_s) + "," + number_text(one.confidence);
     for (const std::string& name : names) {
       const auto found = std::ranges::find(one.fields, name, &std::pair<std::string, double>::first);
