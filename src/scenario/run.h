@@ -12,11 +12,11 @@
 #include "kadans/plant/world.h"
 #include "kadans/signal/state_hash.h"
 #include "plant/joystick/stick.h"
+#include "recorded_perception.h"
 #include "scenario/disturb/disturbances.h"
 #include "scenario/disturb/planned_faults.h"
 #include "scenario/judge/checks.h"
 #include "scenario/judge/truth_signals.h"
-#include "recorded_perception.h"
 #include "simulated_perception.h"
 #include "simulated_sight.h"
 
@@ -69,7 +69,7 @@ struct RunParts {
   SimulatedSight* sight = nullptr;
   std::vector<SimulatedPerception*> perception{};
   std::vector<RecordedPerception*> recorded{};  // likewise, of recorded runs
-  ObservationSink* observed = nullptr;  // who takes what perception says
+  ObservationSink* observed = nullptr;          // who takes what perception says
   // Signals that are no part of the state hash, rising: the interpreter's own needs (memory, instructions, pauses),
   // because memory depends on the machine; and odometry, which follows from what is in the hash.
   std::vector<SignalId> unhashed{};
