@@ -131,14 +131,14 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
 }
 
 Assembly::Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
-                   ProcessHost* outside)
+                   const Outside& outside)
     : Assembly(Begun{}, scenario, seed, log, link, outside, 0) {
   begin_others();
   complete();
 }
 
 Assembly::Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
-                   ProcessHost* outside, std::size_t number)
+                   const Outside& outside, std::size_t number)
     : scenario_(scenario),
       seed_(seed),
       number_(number),
@@ -171,7 +171,7 @@ void Assembly::begin_others() {
     robot.world.carried.clear();
     robot.plugins = scenario_.plugins;
     const std::uint64_t seed = RandomStream(seed_, "robot " + robot.name).next();
-    others_.emplace_back(new Assembly(Begun{}, robot, seed, log_, nullptr, nullptr, others_.size() + 1));
+    others_.emplace_back(new Assembly(Begun{}, robot, seed, log_, nullptr, Outside(), others_.size() + 1));
     for (const QuantityValue& theirs : others_.back()->quantities_)
       quantities_.push_back({robot.name + "." + theirs.name, theirs.value});
   }
@@ -211,9 +211,9 @@ void Assembly::complete() {
     }
   }
   BehaviorLog& told = named_log_ ? *named_log_ : static_cast<BehaviorLog&>(log_);
-  if (outside_ == nullptr) host_ = make_script_host(scenario_, robot_.config, catalog, seed_, told);
+  if (outside_.behaviors == nullptr) host_ = make_script_host(scenario_, robot_.config, catalog, seed_, told);
   upkeep_first_ = catalog.signals.size();
-  if (outside_ != nullptr) outside_->attach(catalog, safe_posture_of(robot_.config.safe));
+  if (outside_.behaviors != nullptr) outside_.behaviors->attach(catalog, safe_posture_of(robot_.config.safe));
   if (host_) {
     host_->declare_signals(catalog.signals);
     states_.assign(host_->signal_states().begin(), host_->signal_states().end());
@@ -232,7 +232,8 @@ void Assembly::complete() {
   }
   if (host_) faulty_host_ = make_faulty_host(scenario_, *host_);
   if (supervisor_ && !scenario_.repeats)  // what is repeated was told what decided
-    supervised_ = std::make_unique<SupervisedHost>(supervising_, played(), *host_, *supervisor_link_, told);
+    supervised_ = std::make_unique<SupervisedHost>(
+        supervising_, played(), SupervisedHost::Players{host_.get(), outside_.behaviors}, *supervisor_link_, told);
   disturbances_ = std::make_unique<Disturbances>(scenario_, robot_.config.model);
   make_joystick_player();
   make_sight();
@@ -249,10 +250,6 @@ void Assembly::take_supervisor() {
   if (variant_.sees && ball != catalog.seen.end())
     refuse(scenario_.file, scenario_.sight.ball.place,
            "sight shows s.seen.ball, which the supervisor's world has already: take perception");
-  if (supervising_.given && outside_ != nullptr)
-    throw InputError(
-        {.file = robot_.config.file,
-         .message = "supervisor: it decides over behaviors of its own process: run with --behaviors thread"});
 }
 
 // Of a run: the sockets that the configuration names. What is repeated was told what they said.
@@ -271,11 +268,6 @@ void Assembly::open_sockets() {
 
 // In lockstep it shares the behaviors' thread and log; a log is of one thread.
 void Assembly::make_supervisor(BehaviorLog& told) {
-  ScriptLimits limits;
-  if (scenario_.on_wall_clock) {
-    limits.tick_wall_ns = std::llround(0.5e9 / supervising_.rate_Hz);
-    limits.load_wall_ns = 20 * limits.tick_wall_ns;
-  }
   open_sockets();
   const bool named = !supervising_.messages.name.empty();
   // A number that another start has not: of a run the time, of a simulation always the same.
@@ -286,10 +278,11 @@ void Assembly::make_supervisor(BehaviorLog& told) {
                                                                   .root = project_root(scenario_.file),
                                                                   .folders = folders_of(scenario_),
                                                                   .seed = seed_,
-                                                                  .limits = limits,
+                                                                  .on_wall_clock = scenario_.on_wall_clock,
                                                                   .messages = named ? message_channel_ : nullptr,
                                                                   .perception = perceived_.get(),
-                                                                  .boot = boot},
+                                                                  .boot = boot,
+                                                                  .start = outside_.decisions},
                                              control_system_->catalog, *supervisor_link_, exchange_->seen,
                                              link_ != nullptr ? supervisor_log_ : told);
   supervisor_->declare_signals(control_system_->catalog.signals, states_);
@@ -297,6 +290,10 @@ void Assembly::make_supervisor(BehaviorLog& told) {
 
 void Assembly::make_perception() {
   for (const ScenarioPerception& one : variant_.perception) {
+    if (!one.record.name.empty()) {
+      recorded_.push_back(std::make_unique<RecordedPerception>(one, control_system_->catalog.seen, scenario_.file));
+      continue;
+    }
     perception_.push_back(std::make_unique<SimulatedPerception>(one, control_system_->catalog.seen,
                                                                 variant_.plant.world.objects, seed_, scenario_.file));
   }
@@ -499,7 +496,7 @@ void Assembly::make_sight() {
 BehaviorHost& Assembly::played() noexcept {
   if (supervised_) return *supervised_;
   if (faulty_host_) return *faulty_host_;
-  return outside_ != nullptr ? static_cast<BehaviorHost&>(*outside_) : *host_;
+  return outside_.behaviors != nullptr ? static_cast<BehaviorHost&>(*outside_.behaviors) : *host_;
 }
 
 void Assembly::make_behaviors() {
@@ -546,6 +543,7 @@ RunParts Assembly::parts_in(Lockstep& lockstep) {
                  .name = number_ == 0 ? "" : scenario_.name,
                  .faulty = number_ == 0 ? nullptr : faulty_.get()};
   for (const auto& one : perception_) parts.perception.push_back(one.get());
+  for (const auto& one : recorded_) parts.recorded.push_back(one.get());
   for (const auto& other : others_) parts.others.push_back(other->parts_in(lockstep));
   return parts;
 }

@@ -73,13 +73,19 @@ class Assembly {
  public:
   // Reads the robot and the behaviors that the scenario names. Throws InputError with all mistakes. `log`, `link` and
   // `outside` must outlive the assembly. With `link` the world runs on a thread of its own, and the engines use the
-  // other side of the link. With `outside` the scenario's behaviors play in that process, which has been started with
-  // them. When the scenario's plant is no model, there is no world: parts(), world() and truth() cannot be used.
+  // other side of the link. What `outside` names runs in a process of its own, in a run on the wall clock. When the
+  // scenario's plant is no model, there is no world: parts(), world() and truth() cannot be used.
   //
   // Each further robot of the scenario gets an assembly of its own. What it does is among this robot's signals, as
   // NAME.<signal>, and its behaviors report as NAME.<behavior>.
-  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr,
-           ProcessHost* outside = nullptr);
+  struct Outside {
+    ProcessHost* behaviors = nullptr;    // plays them, and has been started with them
+    DecisionProcess::Start decisions{};  // starts the process of the robot's decisions, if it has any
+  };
+  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
+           const Outside& outside);
+  Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr)
+      : Assembly(scenario, seed, log, link, Outside()) {}
 
   const RobotConfig& robot() const noexcept { return robot_.config; }
   const Catalog& catalog() const noexcept { return control_system_->catalog; }
@@ -87,7 +93,9 @@ class Assembly {
   ScriptHost& host() noexcept { return *host_; }
   std::span<const SignalState> signal_states() const noexcept { return states_; }  // of behaviors and decisions
   const ScriptHost* own_host() const noexcept { return host_.get(); }              // nullptr when they play outside
-  OrderTaker& orders() noexcept { return outside_ != nullptr ? static_cast<OrderTaker&>(*outside_) : *host_; }
+  OrderTaker& orders() noexcept {
+    return outside_.behaviors != nullptr ? static_cast<OrderTaker&>(*outside_.behaviors) : *host_;
+  }
   // Call before the run: from now on saved files are reloaded. Throws std::runtime_error when files cannot be watched.
   void watch_behaviors() {
     host_->watch();
@@ -121,6 +129,12 @@ class Assembly {
   // What decides what is played; nullptr: nothing does. In a run on threads it is ticked by its own.
   Supervisor* supervisor() noexcept { return supervisor_.get(); }
   const Supervisor* supervisor() const noexcept { return supervisor_.get(); }
+  // What people ask of the decisions; nullptr: nothing decides here.
+  DecisionQuestions* decision_questions() noexcept {
+    return supervised_ && supervisor_->decider() != nullptr ? &supervisor_link_->questions : nullptr;
+  }
+  // In which the decisions run; nullptr: they run here, or there are none.
+  const ProcessHost* decision_process() const noexcept { return supervisor_ ? supervisor_->process() : nullptr; }
   const SupervisorConfig& supervising() const noexcept { return supervising_; }  // the scenario's or the robot's
   void stop_deciding() noexcept {
     if (supervised_) supervised_->leave();
@@ -134,7 +148,7 @@ class Assembly {
   struct Begun {};
   // Reads and varies the robot; complete() does the rest, once there is a world. Robot 0 is the first.
   Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link,
-           ProcessHost* outside, std::size_t number);
+           const Outside& outside, std::size_t number);
   void complete();
   RunParts parts_in(Lockstep& lockstep);
   void begin_others();
@@ -165,7 +179,7 @@ class Assembly {
   RunLog& log_;
   std::shared_ptr<BehaviorLog> named_log_;  // of a further robot
   PlantExchange* link_;
-  ProcessHost* outside_;
+  Outside outside_;
   Robot robot_;
   PlantVariant variant_;
   std::vector<QuantityValue> quantities_;
@@ -206,6 +220,7 @@ class Assembly {
   std::unique_ptr<JoystickSource> joystick_;
   std::unique_ptr<SimulatedSight> sight_;
   std::vector<std::unique_ptr<SimulatedPerception>> perception_;
+  std::vector<std::unique_ptr<RecordedPerception>> recorded_;
 };
 
 }  // namespace kadans

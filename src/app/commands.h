@@ -90,11 +90,11 @@ struct RunOptions {
   bool verbose = false;
   std::string log_file;  // "": none
   bool json = false;
-  std::string behaviors = "thread";    // where behaviors play: "thread" or "process"
-  double behaviors_patience_s = 0;     // time for the process to answer; 0: the default
-  std::uint32_t behaviors_deaths = 0;  // deaths in a row before it stays down; 0: the default
-  double behaviors_memory_MB = 256;    // beyond what the process has when it begins to play
-  CtlServiceOptions ctl;               // on virtual time only when a folder is named
+  std::string behaviors = "thread", decisions;  // "thread" or "process"; "": decisions as behaviors
+  double behaviors_patience_s = 0;              // time for the process to answer; 0: the default
+  std::uint32_t behaviors_deaths = 0;           // deaths in a row before it stays down; 0: the default
+  double behaviors_memory_MB = 256;             // beyond what the process has when it begins to play
+  CtlServiceOptions ctl;                        // on virtual time only when a folder is named
   LiveServiceOptions live;
   Ros2Options ros2;
 };

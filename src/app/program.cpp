@@ -79,17 +79,20 @@ void add_run(CLI::App& app, RunOptions& options) {
                   "Play behaviors in a thread (default), or in a process of their own, which may die")
       ->check(CLI::IsMember({"thread", "process"}));
   run->add_option(
-         "--behaviors-patience", options.behaviors_patience_s,
-         "Time without an answer after which the behaviors' process is killed (default: 0.3; on virtual time 10)")
+         "--decisions", options.decisions,
+         "Run the supervisor's decisions in its thread, or in a process of their own (default: as --behaviors)")
+      ->check(CLI::IsMember({"thread", "process"}));
+  run->add_option("--behaviors-patience", options.behaviors_patience_s,
+                  "Time without an answer after which such a process is killed (default: 0.3; on virtual time 10)")
       ->type_name("S")
       ->check(number_within(0.01, 1000.0));
   run->add_option("--behaviors-deaths", options.behaviors_deaths,
-                  "Deaths in a row after which the behaviors' process is not started again (default: 8)")
+                  "Deaths in a row after which such a process is not started again (default: 8)")
       ->type_name("N")
       ->check(whole_within(1, 1'000'000'000));
   run->add_option(
          "--behaviors-memory", options.behaviors_memory_MB,
-         "Memory that the behaviors' process may take in addition to what it has when it begins to play (default: 256)")
+         "Memory that such a process may take in addition to what it has when it begins to play (default: 256)")
       ->type_name("MB")
       ->check(number_within(1.0, 1e6));
   add_ctl_service(*run, options.ctl);
@@ -101,9 +104,9 @@ void add_run(CLI::App& app, RunOptions& options) {
       ->type_name("FILE");
 }
 
-// A hidden command that `run` starts.
+// A hidden command that `run` starts, under another name for each process, for those who list processes.
 void add_behavior_process(CLI::App& app, RunOptions& options) {
-  CLI::App* process = app.add_subcommand("behavior-process", "")->group("");
+  CLI::App* process = app.add_subcommand("behavior-process", "")->alias("decision-process")->group("");
   process->add_option("robot", options.robot)->required();
   process->add_option("--play", options.play);
   process->add_option("--seed", options.seed)->check(any_seed());

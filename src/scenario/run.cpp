@@ -135,6 +135,7 @@ void RunParts::begin_step() const {
   if (joystick != nullptr) control.exchange().joystick.publish(joystick->at(lockstep.time_ns()));
   if (sight != nullptr) control.exchange().ball.publish(sight->at(lockstep.time_ns(), robot.truth()));
   for (SimulatedPerception* one : perception) one->look(lockstep.time_ns(), robot.truth(), *observed);
+  for (RecordedPerception* one : recorded) one->look(lockstep.time_ns(), *observed);
   for (const RunParts& other : others) other.begin_step();
 }
 

@@ -12,6 +12,7 @@
 #include "kadans/plant/world.h"
 #include "kadans/signal/state_hash.h"
 #include "plant/joystick/stick.h"
+#include "recorded_perception.h"
 #include "scenario/disturb/disturbances.h"
 #include "scenario/disturb/planned_faults.h"
 #include "scenario/judge/checks.h"
@@ -67,7 +68,8 @@ struct RunParts {
   JoystickSource* joystick = nullptr;
   SimulatedSight* sight = nullptr;
   std::vector<SimulatedPerception*> perception{};
-  ObservationSink* observed = nullptr;  // who takes what perception says
+  std::vector<RecordedPerception*> recorded{};  // likewise, of recorded runs
+  ObservationSink* observed = nullptr;          // who takes what perception says
   // Signals that are no part of the state hash, rising: the interpreter's own needs (memory, instructions, pauses),
   // because memory depends on the machine; and odometry, which follows from what is in the hash.
   std::vector<SignalId> unhashed{};

@@ -229,6 +229,49 @@ TEST_CASE("ctl commands a run whose behaviors play in a process of their own, an
   CHECK(has(wrong, "there is no console while behaviors play in a process of their own"));
 }
 
+TEST_CASE("ctl asks decisions why, and lets them read their files again, in a thread and in a process of their own") {
+  const auto project = project_copy("ctl_decisions");
+  const std::string decides = R"(local k = require "kadans"
+return k.decisions "decide" {
+  initial = "a",
+  k.state "a" {
+    enter = function(m) m:replace("squat{repeats=100}") end,
+    { when = function(s) return s.time_s < 0 end, to = "b" },
+  },
+  k.final "b" {},
+})";
+  write(project / "config/tulip/decides.json",
+        R"({ "based_on": "config/tulip/robot.json", "supervisor": { "decisions": "decide" } })");
+  for (const char* where : {"thread", "process"}) {
+    CAPTURE(where);
+    write(project / "behaviors/tulip/decide.lua", decides);
+    REQUIRE(beside(project,
+                   "run config/tulip/decides.json --plant ideal --threads-on-virtual-time -v --decisions " +
+                       std::string(where),
+                   "until ctl why | grep -q squat; do kill -0 $run || exit 8; done\n"
+                   "ctl why decide; echo $?; ctl why >both; ctl why nobody; echo $?\n"
+                   "ctl reload decide; echo $?\n"
+                   "sed -i 's/s.time_s < 0/s.time_s < -1/' behaviors/tulip/decide.lua; ctl reload decide; echo $?\n"
+                   "ctl reload; echo $?\n"
+                   "sed -i 's/to = \"b\"/to = \"c\"/' behaviors/tulip/decide.lua; ctl reload decide; echo $?\n"
+                   "ctl why decide | grep -c 'loaded'; echo over\n") == 0);
+    const std::string said = read(project / "said"), wrong = read(project / "wrong"), both = read(project / "both");
+    CAPTURE(said);
+    CAPTURE(wrong);
+    CHECK(has(said, "the guard gives false"));
+    CHECK(has(said, "s.time_s < 0"));
+    CHECK(has(both, "decide"));
+    CHECK(has(both, "squat"));
+    CHECK(has(wrong, "unknown behavior 'nobody'"));
+    CHECK(has(said, "decide: no new version: the files are as they were loaded\n0\n"));
+    CHECK(has(said, "decide: reloaded behaviors/tulip/decide.lua\n0\n"));
+    CHECK(has(said, "no new version: the files are as they were loaded\ndecide: no new version"));
+    CHECK(has(wrong, "decide: reload refused, the old version goes on: behaviors/tulip/decide.lua:6:"));
+    CHECK(has(read(project / "err"), "decide: reloaded behaviors/tulip/decide.lua"));  // the log has it, too
+    CHECK(read(project / "code") == "0\n");
+  }
+}
+
 TEST_CASE("ctl tells of behaviors in a process of their own what it tells of those in a thread") {
   const auto project = project_copy("ctl_tables");
   write(project / "behaviors/tulip/listen.lua", listener);

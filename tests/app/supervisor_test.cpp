@@ -104,11 +104,31 @@ TEST_CASE("A simulation with decisions is repeated from its record alone, which 
   CHECK(nlohmann::json::parse(outcome.out)["same"] == true);
 }
 
-TEST_CASE("A supervisor decides over behaviors of its own process alone") {
+TEST_CASE("Decisions play the same in a thread and in a process, over behaviors in a thread and in a process") {
   const fs::path project = supervised_project("supervised_process");
-  const Outcome outcome = run("run config/tulip/decides.json --plant ideal --duration 1 --behaviors process", project);
+  for (const char* how : {"--behaviors process", "--behaviors process --decisions thread", "--decisions process"}) {
+    CAPTURE(how);
+    const Outcome made = run("run config/tulip/decides.json --plant ideal --duration 8.5 --threads-on-virtual-time " +
+                                 std::string(how) + " --record run.mcap --flight 0 -v --json",
+                             project);
+    REQUIRE_MESSAGE(made.exit_code == 0, made.err);
+    CHECK_MESSAGE(has(made.err, "decide: wave -> squat"), made.err);  // it heard how the wave ended
+    CHECK_MESSAGE(has(made.err, "squat: settle -> squat"), made.err);
+    const auto result = nlohmann::json::parse(last_line(made.out));
+    CHECK(result.contains("decision_process") == !has(how, "--decisions thread"));
+    CHECK(result.contains("behavior_process") == has(how, "--behaviors process"));
+    const Outcome outcome = run("replay run.mcap --json", project);
+    CHECK_MESSAGE(outcome.exit_code == 0, (outcome.out + outcome.err));
+    CHECK(nlohmann::json::parse(outcome.out)["same"] == true);
+  }
+}
+
+TEST_CASE("Decisions in a process of their own are refused with their place when they are wrong") {
+  const fs::path project = supervised_project("supervised_process_wrong");
+  REQUIRE(edit(project / "behaviors/tulip/decide.lua", "to = \"squat\"", "to = \"sqat\""));
+  const Outcome outcome = run("run config/tulip/decides.json --plant ideal --duration 1 --decisions process", project);
   CHECK(outcome.exit_code == 2);
-  CHECK_MESSAGE(has(outcome.err, "run with --behaviors thread"), outcome.err);
+  CHECK_MESSAGE(has(outcome.err, "behaviors/tulip/decide.lua:6:"), outcome.err);
 }
 
 TEST_CASE("A k.decisions is no behavior, and a behavior decides nothing: both are refused with their places") {

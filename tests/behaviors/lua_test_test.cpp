@@ -92,7 +92,7 @@ TEST_CASE("k.play refuses an option that it does not have, and what is no file")
                                  "it('h', function() local run = k.play('squat.lua')\n"
                                  "  run:advance(0.5) expect(run.feet.left.contact).to_be_false() end)\n");
   CHECK(outcome.exit_code == 1);
-  CHECK(has(outcome.out, "my_test.lua:2: k.play has no option 'robt'; there are: robot, plant"));
+  CHECK(has(outcome.out, "my_test.lua:2: k.play has no option 'robt'; there are: robot, plant, scenario"));
   CHECK(has(outcome.out, "my_test.lua:3: k.play: options are a table, { robot = FILE }"));
   CHECK(has(outcome.out, "my_test.lua:4: k.play: robot must be a text, not a number"));
   CHECK(has(outcome.out, "my_test.lua:5: k.play needs the file of a behavior"));
@@ -138,4 +138,84 @@ TEST_CASE("a file of tests that does not load is told, the others run, and what 
   CHECK(has(outcome.err, "behaviors/tulip/a_test.lua:2:"));
   CHECK(has(outcome.out, "3 passed, 1 failed"));
   CHECK(has(outcome.out, "it belongs into describe, not into another it"));
+}
+
+TEST_CASE(
+    "decisions are tested without anything that plays: the world, the ends of plays and messages are the test's") {
+  const auto project = project_copy("lua_test_decisions");
+  write(project / "behaviors/tulip/pass.lua", R"(local k = require "kadans"
+k.events { ["robot.pass"] = { x_m = { "m", min = -10, max = 10 }, from = { k.text, optional = true } },
+           whistle = { loud = k.flag } }
+return k.decisions "pass" {
+  initial = "a",
+  k.state "a" {
+    enter = function(m) m:play("squat", { repeats = 2 }) end,
+    { on = "play.done", to = "b" },
+    { on = "play.failed", to = "c" },
+    { on = "robot.pass", to = "d", action = function(_, s) k.log.info("%s at %g", s.event.data.from, s.event.data.x_m) end },
+    { when = function(_, m) return m:plays("squat") == "squat" end, to = "e" },
+  },
+  k.state "b" { enter = function(m) m:replace("squat{repeats=-5}") end, { on = "play.refused", to = "c" } },
+  k.state "c" { endless = true, enter = function(m, s) m:send("robot.pass", { x_m = s.seen.ball.x_m }) m:stop() end },
+  k.state "d" { endless = true, enter = function(m) m:emit("whistle", { loud = true }, { to = "squat" }) end },
+  k.state "e" { endless = true },
+}
+)");
+  write(project / "behaviors/tulip/pass_test.lua", R"(local k = require "kadans"
+local run
+describe("pass", function()
+  before_each(function()
+    run = k.play("pass.lua", { scenario = "config/scenarios/fetch.json" })
+    run:set_sensor("seen.ball.x_m", 1.5)
+    run:advance(0.1)
+  end)
+  it("plays", function()
+    expect(run.orders).to_equal { { word = "play", list = "squat", arguments = { repeats = 2 } } }
+    expect(run.messages).to_equal {}
+  end)
+  it("hears the end, and what was refused", function()
+    run:play_ends()
+    run:advance(0.2)
+    expect(run.states).to_equal "a b c"
+    expect(run.orders[2].refused).to_contain "repeats"
+    expect(run.orders[3]).to_equal { word = "stop" }
+    expect(run.messages).to_equal { { event = "robot.pass", data = { x_m = 1.5 } } }
+  end)
+  it("hears a failure", function()
+    run:play_ends("failed")
+    run:advance(0.1)
+    expect(run.state).to_equal "c"
+  end)
+  it("hears a message", function()
+    run:emit("robot.pass", { x_m = 2, from = "red_2" })
+    run:advance(0.1)
+    expect(run.log).to_contain "red_2 at 2"
+    expect(run.orders[2]).to_equal { word = "emit", event = "whistle", data = { loud = true }, to = "squat" }
+  end)
+  it("sees what plays", function()
+    run:plays("squat", "squat")
+    run:advance(0.1)
+    expect(run.state).to_equal "e"
+  end)
+  it("A", function() run:plays("walk", "squat") end)
+  it("B", function() run:play_ends("dnoe") end)
+  it("C", function() run:play_ends() run:play_ends() end)
+  it("D", function() k.play("squat.lua"):play_ends() end)
+  it("E", function() run:emit("robot.pas", {}) end)
+  it("F", function() k.play("pass.lua", { scenario = "config/scenarios/fetsh.json" }) end)
+  it("G", function() run:set_sensor("seen.bal.x_m", 1) end)
+end)
+)");
+  const Outcome outcome = run("behavior test behaviors/tulip/pass_test.lua", project);
+  CAPTURE(outcome.err);
+  CAPTURE(outcome.out);
+  CHECK(outcome.exit_code == 1);
+  CHECK(has(outcome.out, "5 passed, 7 failed"));
+  CHECK(has(outcome.out, "pass_test.lua:37: plays: 'walk' does not play; what does: squat"));
+  CHECK(has(outcome.out, "pass_test.lua:38: play_ends: what plays ends as \"done\" or \"failed\""));
+  CHECK(has(outcome.out, "pass_test.lua:39: play_ends: nothing plays"));
+  CHECK(has(outcome.out, "pass_test.lua:40: play_ends: nothing decides here"));
+  CHECK(has(outcome.out, "pass_test.lua:41: the decisions do not declare the event 'robot.pas'"));
+  CHECK(has(outcome.out, "fetsh.json"));
+  CHECK(has(outcome.out, "pass_test.lua:43: no sensor 'seen.bal.x_m'"));
 }

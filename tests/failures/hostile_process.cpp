@@ -89,6 +89,10 @@ struct Harm {
     link.answer.reply_size = static_cast<std::uint32_t>(random.next() % 4 == 0 ? random.next() : random.next() % 200);
     for (std::size_t i = 0; i < 200; ++i)
       link.answer.replies[i] = std::byte(random.next() % 3 == 0 ? random.next() & 0xff : random.next() % 3);
+    // As decisions: one order and no message, or anything.
+    link.answer.decided_size = static_cast<std::uint32_t>(random.next() % 4 == 0 ? random.next() : random.next() % 64);
+    for (std::size_t i = 0; i < 64; ++i)
+      link.answer.decided[i] = std::byte(random.next() % 3 == 0 ? random.next() & 0xff : random.next() % 2);
     for (auto& numbers : link.answer.status) numbers.fill(static_cast<std::uint32_t>(random.next()));
     answer();
   }

@@ -53,13 +53,15 @@ std::size_t LiveProgram::heard(const std::string& text) const {
   return count;
 }
 
-pid_t LiveProgram::behavior_process(pid_t other) const {
+// One that has not begun its program yet may be of either kind, and counts as one of behaviors.
+pid_t LiveProgram::child(bool decides, pid_t other) const {
   for (; state_of(running_.pid()).lives(); sched_yield()) {
     for (const auto& entry : fs::directory_iterator("/proc")) {
       const pid_t child = std::atoi(entry.path().filename().c_str());
       if (child <= 1 || child == other) continue;
       const State state = state_of(child);
-      if (state.parent == running_.pid() && state.lives()) return child;
+      if (state.parent != running_.pid() || !state.lives()) continue;
+      if ((text_of(entry.path() / "cmdline").find("decision-process") != std::string::npos) == decides) return child;
     }
   }
   return -1;

@@ -28,7 +28,8 @@ class LiveProgram {
   std::size_t heard(const std::string& text) const;  // how often
 
   // Any thread. The process of the behaviors that is alive, other than `other`; waits for one. -1: the program ended.
-  pid_t behavior_process(pid_t other = -1) const;
+  pid_t behavior_process(pid_t other = -1) const { return child(false, other); }
+  pid_t decision_process(pid_t other = -1) const { return child(true, other); }
   void signal_behavior_process(int number) const {
     const pid_t pid = behavior_process();
     if (pid > 1) kill(pid, number);
@@ -41,6 +42,8 @@ class LiveProgram {
   Range recorded(const std::string& signal, double from_s, double to_s) const;
 
  private:
+  pid_t child(bool decides, pid_t other) const;
+
   std::filesystem::path folder_;
   program::Running running_;
   int exit_code_ = -1;

@@ -54,7 +54,7 @@ struct Supervised : Theatre {
                              .folders = {.project_file = scripts.root / "config/tulip/robot.json", .robot = "tulip"},
                              .messages = channel},
         robot.catalog, link, seen, log);
-    supervised = std::make_unique<SupervisedHost>(wanted, *host, *host, link, log);
+    supervised = std::make_unique<SupervisedHost>(wanted, *host, SupervisedHost::Players{host.get()}, link, log);
   }
 
   // In the order of lockstep: a behavior tick each 10 ms, and behind each fifth one the supervisor.
@@ -235,7 +235,8 @@ TEST_CASE("when nothing decides any more what plays goes on, stops, or another l
     Supervised robot(decisions("k.state 'a' { endless = true, enter = function(m) m:play('long') end }"), config);
     if (when_lost == WhenLost::play) {
       config.lost_list = {{.file = robot.scripts.root / "behaviors/tulip/listener.lua"}};
-      robot.supervised = std::make_unique<SupervisedHost>(config, *robot.host, *robot.host, robot.link, robot.log);
+      robot.supervised = std::make_unique<SupervisedHost>(
+          config, *robot.host, SupervisedHost::Players{robot.host.get()}, robot.link, robot.log);
     }
     robot.pass(20);
     CHECK(robot.plays() == "long.a");

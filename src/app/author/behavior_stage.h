@@ -17,10 +17,11 @@ std::filesystem::path only_robot(const std::filesystem::path& folder, const std:
 class RobotStages final : public TestStages {
  public:
   explicit RobotStages(std::filesystem::path robot) : robot_(std::move(robot)) {}  // "": by the behavior's folder
-  std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const std::string& robot,
-                                  const std::string& plant) override;
+  std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const Options& options) override;
 
  private:
+  std::filesystem::path robot_of(const std::filesystem::path& behavior, const Options& options) const;
+
   std::filesystem::path robot_;
 };
 

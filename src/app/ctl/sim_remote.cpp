@@ -33,7 +33,8 @@ SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assem
       instance_(facts_of(scenario, assembly), assembly.catalog(), parts_.control.safety().emergency_stop()),
       control_side_(instance_),
       record_side_(instance_, control_side_, {{"robot", scenario.robot}, {"kadans", version}}),
-      behavior_side_({instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), echo, log}),
+      behavior_side_({instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), echo, log,
+                      assembly.decision_questions()}),
       service_(places.ctl, instance_),
       live_(places.live, instance_, assembly, &pace_),
       ros2_(places.ros2, instance_, assembly, &pace_, -1) {

@@ -15,6 +15,7 @@
 #include "signal/number_text.h"
 #include "telemetry/plot/signal_plot.h"
 #include "telemetry/reading/record_export.h"
+#include "telemetry/reading/record_observations.h"
 
 namespace kadans {
 
@@ -61,6 +62,19 @@ int log_cat(const LogOptions& options) {
   if (!lines.unknown_topics().empty()) (void)choose_topics(outline_of(options.file), lines.unknown_topics());  // throws
   if (lines.lines() == 0) require_overlap(outline_of(options.file), span);
   tell_problem(lines.reader());
+  return exit_passed;
+}
+
+int log_observations(const LogOptions& options) {
+  const TimeSpan span = span_of(options);
+  if (!options.out.empty()) require_free(options);
+  std::vector<RecordedObservation> all = read_observations(options.file);
+  std::erase_if(all, [&](const RecordedObservation& one) { return !span.holds(one.came_ns); });
+  LineOutput output(options.out);
+  for (const std::string& line : observation_lines(all)) {
+    if (!output.put(line)) break;
+  }
+  output.finish();
   return exit_passed;
 }
 
@@ -172,6 +186,11 @@ void add_reading(CLI::App& log, LogOptions& options) {
       ->type_name("S")
       ->check(number_within(1e-6, 1e6));
   add_out(*csv, options, "Write into a file (default: stdout)", "FILE");
+
+  CLI::App* observations =
+      verb(log, options, "observations", "Print what the robot observed, as a sequence for perception to feed again");
+  add_span(*observations, options);
+  add_out(*observations, options, "Write into a file (default: stdout)", "FILE");
 }
 
 void add_making(CLI::App& log, LogOptions& options) {
@@ -201,7 +220,7 @@ void add_making(CLI::App& log, LogOptions& options) {
 }  // namespace
 
 void add_log(CLI::App& app, LogOptions& options) {
-  CLI::App* log = app.add_subcommand("log", "Examine a record: info, cat, csv, plot, diff, cut");
+  CLI::App* log = app.add_subcommand("log", "Examine a record: info, cat, csv, observations, plot, diff, cut");
   log->require_subcommand(1);
   add_reading(*log, options);
   add_making(*log, options);
@@ -215,9 +234,10 @@ int run_log(const CLI::App& app, const LogOptions& options) {
     const char* name;
     int (*run)(const LogOptions&);
   };
-  static constexpr std::array<Verb, 6> verbs{{{"info", log_info},
+  static constexpr std::array<Verb, 7> verbs{{{"info", log_info},
                                               {"cat", log_cat},
                                               {"csv", log_csv},
+                                              {"observations", log_observations},
                                               {"plot", log_plot},
                                               {"diff", log_diff},
                                               {"cut", log_cut}}};

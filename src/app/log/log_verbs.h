@@ -19,6 +19,7 @@ int log_csv(const LogOptions& options);
 int log_plot(const LogOptions& options);
 int log_diff(const LogOptions& options);
 int log_cut(const LogOptions& options);
+int log_observations(const LogOptions& options);
 
 // The span of --from and --to. Throws InputError when they do not make a span.
 TimeSpan span_of(const LogOptions& options);

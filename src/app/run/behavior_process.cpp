@@ -4,6 +4,7 @@
 
 #include "app/assembly.h"
 #include "app/terminal.h"
+#include "config/robot/project_root.h"
 #include "estimate/estimator.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/placement.h"
@@ -36,6 +37,22 @@ void settle(const BehaviorLink::Setup& setup) noexcept {
   if (setup.priority > 0) (void)take_priority(setup.priority);
 }
 
+ProcessHost::Settings process_settings(const RunOptions& options, const char* command) {
+  ProcessHost::Settings settings;
+  settings.program = "/proc/self/exe";
+  settings.arguments = {"kadans", command, options.robot};
+  if (options.seed) settings.arguments.insert(settings.arguments.end(), {"--seed", std::to_string(*options.seed)});
+  settings.time_stands = options.virtual_time;
+  if (options.virtual_time) {
+    settings.patience_ns = patience_on_virtual_time_ns;
+    settings.start_patience_ns = 6 * patience_on_virtual_time_ns;
+  }
+  if (options.behaviors_patience_s > 0) settings.patience_ns = std::llround(1e9 * options.behaviors_patience_s);
+  if (options.behaviors_deaths > 0) settings.restart.deaths_max = options.behaviors_deaths;
+  settings.setup = setup_of(options);
+  return settings;
+}
+
 }  // namespace
 
 ScenarioConfig live_scenario(const RunOptions& options) {
@@ -54,19 +71,19 @@ ScenarioConfig live_scenario(const RunOptions& options) {
 }
 
 std::unique_ptr<ProcessHost> start_behavior_process(const RunOptions& options, BehaviorLog& log) {
-  ProcessHost::Settings settings;
-  settings.program = "/proc/self/exe";
-  settings.arguments = {"kadans", "behavior-process", options.robot};
+  ProcessHost::Settings settings = process_settings(options, "behavior-process");
   if (!options.play.empty()) settings.arguments.insert(settings.arguments.end(), {"--play", options.play});
-  if (options.seed) settings.arguments.insert(settings.arguments.end(), {"--seed", std::to_string(*options.seed)});
-  settings.time_stands = options.virtual_time;
-  if (options.virtual_time) {
-    settings.patience_ns = patience_on_virtual_time_ns;
-    settings.start_patience_ns = 6 * patience_on_virtual_time_ns;
-  }
-  if (options.behaviors_patience_s > 0) settings.patience_ns = std::llround(1e9 * options.behaviors_patience_s);
-  if (options.behaviors_deaths > 0) settings.restart.deaths_max = options.behaviors_deaths;
-  settings.setup = setup_of(options);
+  return std::make_unique<ProcessHost>(std::move(settings), log);
+}
+
+// Nobody in real time waits for it: it has neither a priority nor locked memory.
+std::unique_ptr<ProcessHost> start_decision_process(const RunOptions& options, BehaviorLog& log,
+                                                    std::int64_t period_ns) {
+  ProcessHost::Settings settings = process_settings(options, "decision-process");
+  settings.answer_ns = period_ns / 2;
+  settings.setup.decides = 1;
+  settings.setup.priority = 0;
+  settings.setup.locks_memory = 0;
   return std::make_unique<ProcessHost>(std::move(settings), log);
 }
 
@@ -83,16 +100,26 @@ int run_behavior_process(const RunOptions& options) {
   scenario.on_wall_clock = link.setup.on_wall_clock != 0;
   const Robot robot = read_robot(scenario.robot, scenario.plugins);
   const std::unique_ptr<ControlSystem> system = make_control_system(robot);
+  system->catalog.seen = robot.config.supervisor.seen;
   ControlSets sets(system->catalog, std::move(system->objects));  // declares parameters too
   // The names of what the control engine measures, for conditions (m:on); the values stay in its own process.
   const auto measured = std::make_unique<Snapshot>();
   declare_signals(system->catalog.signals, robot.config.model, robot.config.estimate, *measured);
   SpokenLines lines(link);
   BehaviorLog log{&lines};
+  if (link.setup.decides != 0) {
+    Decisions decisions(decision_settings(robot.config.supervisor, project_root(scenario.file), folders_of(scenario),
+                                          scenario.seed, scenario.on_wall_clock),
+                        system->catalog, log);
+    ServedDecisions served(decisions, log, bytes);
+    settle(link.setup);
+    return BehaviorServer(link, bell, served, log, lines, system->catalog, sets).serve();
+  }
   const std::unique_ptr<ScriptHost> host =
       make_script_host(scenario, robot.config, system->catalog, scenario.seed, log, bytes);
+  ServedBehaviors served(*host, behaviors_description);
   settle(link.setup);
-  return BehaviorServer(link, bell, *host, log, lines, system->catalog, sets, behaviors_description).serve();
+  return BehaviorServer(link, bell, served, log, lines, system->catalog, sets).serve();
 }
 
 }  // namespace kadans

@@ -221,7 +221,7 @@ class WallClockRun {
         scenario_(live_scenario(options)),
         link_(std::make_unique<PlantExchange>()),
         process_(options.behaviors == "process" ? start_behavior_process(options, log_) : nullptr),
-        assembly_(scenario_, scenario_.seed, log_, link_.get(), process_.get()),
+        assembly_(scenario_, scenario_.seed, log_, link_.get(), outside()),
         parts_{assembly_.control(), assembly_.behaviors()},
         truth_(assembly_.truth() == nullptr ? nullptr
                                             : std::make_unique<TruthTask>(*assembly_.truth(), parts_.control)),
@@ -292,6 +292,7 @@ class WallClockRun {
                            assembly_.plant().link_counts(),
                            record_side_.recorder(),
                            process_.get(),
+                           assembly_.decision_process(),
                            left_at_s_,
                            start_ms,
                            ended,
@@ -342,6 +343,16 @@ class WallClockRun {
     for (const InputFile& file : inputs.files) {
       if (file.text) taken_->knows(file.path, *file.text);
     }
+  }
+
+  Assembly::Outside outside() {
+    Assembly::Outside outside{.behaviors = process_.get()};
+    if ((options_.decisions.empty() ? options_.behaviors : options_.decisions) == "process") {
+      outside.decisions = [this](BehaviorLog& log, std::int64_t period_ns) {
+        return start_decision_process(options_, log, period_ns);
+      };
+    }
+    return outside;
   }
 
   std::unique_ptr<JoystickTask> make_joystick() {
@@ -517,7 +528,7 @@ class WallClockRun {
   BehaviorLog said_{&instance_};  // supervisor
   std::optional<LogFile> log_file_;
   BehaviorSide behavior_side_{{instance_, process_ ? nullptr : &assembly_.host(), process_.get(), parts_.behaviors,
-                               parts_.control.exchange(), echo_, log_},
+                               parts_.control.exchange(), echo_, log_, assembly_.decision_questions()},
                               &leaving_};
   CtlService ctl_{place_of(options_), instance_};
   LiveService live_{options_.live, instance_, assembly_};

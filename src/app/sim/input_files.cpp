@@ -222,12 +222,14 @@ void add_robot(const Assembly& assembly, Gathering& files) {
     for (const fs::path& file : host->files()) files.add(file);
   }
   for (const PlayItem& item : assembly.supervising().lost_list) files.add(item.file);
-  if (const Supervisor* supervisor = assembly.supervisor();
-      supervisor != nullptr && supervisor->decisions() != nullptr) {
-    for (const fs::path& file : supervisor->decisions()->behavior().files()) files.add(file);
+  if (const Supervisor* supervisor = assembly.supervisor(); supervisor != nullptr && supervisor->decider() != nullptr) {
+    for (const fs::path& file : supervisor->decider()->files()) files.add(file);
     const PlayFolders folders = folders_of(assembly.scenario());  // what they may play is in
     add_scripts(folders.project_file, folders.robot, files);
     add_scripts(folders.project_file, "lib", files);
+  }
+  for (const ScenarioPerception& one : assembly.scenario().perception) {
+    if (!one.record.name.empty()) files.add(one.record.name);
   }
   for (const auto& other : assembly.others()) add_robot(*other, files);
 }

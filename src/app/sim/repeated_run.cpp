@@ -492,8 +492,8 @@ void RepeatedRun::part(const std::string& what) {
 // But for those of the decisions, which are not repeated.
 bool RepeatedRun::next_event(std::string& text) {
   const Supervisor* const supervisor = assembly_.supervisor();
-  const Decisions* const decisions = supervisor == nullptr ? nullptr : supervisor->decisions();
-  const std::string passed_over = decisions == nullptr ? "" : "{\"behavior\":\"" + decisions->behavior().name() + "\",";
+  const Decider* const decider = supervisor == nullptr ? nullptr : supervisor->decider();
+  const std::string passed_over = decider == nullptr ? "" : "{\"behavior\":\"" + decider->name() + "\",";
   for (McapMessage message; events_read_.next(message);) {
     text.assign(reinterpret_cast<const char*>(message.payload.data()), message.payload.size());
     if (passed_over.empty() || !text.starts_with(passed_over)) return true;

@@ -93,11 +93,12 @@ std::string run_report_text(const WallClockResult& result) {
                 whole(result.behaviors.commands().sent()), whole(result.engine.inbox().state().applied),
                 whole(refused(result)));
   all += text.data();
-  if (result.process != nullptr) {
-    const ProcessHost& process = *result.process;
-    all += row("behavior process", process.answer_cost(), "from the request to the answer");
-    std::snprintf(text.data(), text.size(), "  behavior process: died %llu times, replaced %llu times%s\n",
-                  whole(process.deaths()), whole(process.takeovers()), process.down() ? ", is down" : "");
+  for (const auto& [process, name] :
+       {std::pair(result.process, "behavior process"), std::pair(result.decision_process, "decision process")}) {
+    if (process == nullptr) continue;
+    all += row(name, process->answer_cost(), "from the request to the answer");
+    std::snprintf(text.data(), text.size(), "  %s: died %llu times, replaced %llu times%s\n", name,
+                  whole(process->deaths()), whole(process->takeovers()), process->down() ? ", is down" : "");
     all += text.data();
   }
   if (has_record(result)) {
@@ -136,13 +137,14 @@ std::string run_report_json(const WallClockResult& result) {
               {"refused", refused(result)}}},
             {"model_lost_periods", result.plant != nullptr ? result.plant->lost_periods() : 0},
             {"threads", threads}};
-  if (result.process != nullptr) {
-    const ProcessHost& process = *result.process;
-    json["behavior_process"] = {{"deaths", process.deaths()},
-                                {"takeovers", process.takeovers()},
-                                {"down", process.down()},
-                                {"answer_us", percentiles_of(process.answer_cost())},
-                                {"outage_us", percentiles_of(process.outage())}};
+  for (const auto& [process, name] :
+       {std::pair(result.process, "behavior_process"), std::pair(result.decision_process, "decision_process")}) {
+    if (process == nullptr) continue;
+    json[name] = {{"deaths", process->deaths()},
+                  {"takeovers", process->takeovers()},
+                  {"down", process->down()},
+                  {"answer_us", percentiles_of(process->answer_cost())},
+                  {"outage_us", percentiles_of(process->outage())}};
   }
   if (!result.link.empty()) json["link"] = link_json(result.link);
   if (has_record(result)) {

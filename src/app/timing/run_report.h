@@ -25,7 +25,8 @@ struct WallClockResult {
   const PlantTask* plant = nullptr;  // of a model, else nullptr
   std::vector<PlantCount> link{};    // the link's counts, of a plant that has a link
   const Recorder* recorder = nullptr;
-  const ProcessHost* process = nullptr;  // of the behaviors, if they have a process
+  const ProcessHost* process = nullptr;           // of the behaviors, if they have a process
+  const ProcessHost* decision_process = nullptr;  // of the decisions, likewise
   double duration_s = 0;
   double start_ms = 0;  // from the start of the process to the first control tick
   std::string ended;    // why it ended: "told to stop", "duration over", or what failed

@@ -264,26 +264,47 @@ void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   });
 }
 
-void perception_fields(Fields& f, ScenarioPerception& perception) {
+void perception_fields(Fields& f, ScenarioPerception& perception, Problems& problems) {
   f.string("entry", perception.entry.name, "the entry of the world model that it tells of", Need::required);
   perception.entry.place = f.place("entry");
-  f.string("object", perception.object.name, "the object of the world that is looked for", Need::required);
+  f.string("object", perception.object.name, "the object of the world that is looked for; else record");
   perception.object.place = f.place("object");
+  f.string("record", perception.record.name,
+           "a record whose observations of this entry come again, or a sequence of `kadans log observations`");
+  perception.record.place = f.place("record");
+  f.number("from_s", perception.from_s, {0, scenario_duration_max_s, "s"},
+           "time of the record at which the scenario begins");
   for (const SightRange& range : sight_ranges)
     f.number(range.name, perception.settings.*range.value, {range.min, range.max, range.unit}, range.doc);
   f.number("imagined", perception.imagined, {0, 1}, "share of the pictures that show it where it is not");
   f.boolean("hidden", perception.hidden, "other objects of the world may stand before it");
+  if (!f.reading()) return;
+  const bool recorded = f.has("record");
+  if (recorded == f.has("object"))
+    problems.add(f.place("entry"), "perception needs either an object of the world, or a record: " +
+                                       std::string(recorded ? "it has both" : "it has none of them"));
+  if (!recorded && f.has("from_s"))
+    problems.add(f.place("from_s"), "from_s: only perception from a record has a time there");
+  if (!recorded) return;
+  for (const SightRange& range : sight_ranges) {
+    if (f.has(range.name)) problems.add(f.place(range.name), std::string(range.name) + ": comes with the record");
+  }
+  for (const char* const key : {"imagined", "hidden"}) {
+    if (f.has(key)) problems.add(f.place(key), std::string(key) + ": comes with the record");
+  }
+  perception.record.name = resolve_file(perception.record.name, perception.record.place, "record", problems).string();
 }
 
 // What it knows, and what decides.
 void supervisor_part(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   f.object("supervisor", "what decides what is played, in place of that of the robot's configuration",
            [&](Fields& e) { supervisor_fields(e, scenario.supervisor, folders_of(scenario), problems); });
-  f.list("perception", {0, max_seen}, "simulated perception of entries of the world model", [&](Fields& e) {
-    ScenarioPerception perception;
-    perception_fields(e, perception);
-    if (e.reading()) scenario.perception.push_back(std::move(perception));
-  });
+  f.list("perception", {0, max_seen}, "perception of entries of the world model, simulated or from a record",
+         [&](Fields& e) {
+           ScenarioPerception perception;
+           perception_fields(e, perception, problems);
+           if (e.reading()) scenario.perception.push_back(std::move(perception));
+         });
 }
 
 void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig& scenario, Problems& problems) {

@@ -142,11 +142,13 @@ struct ScenarioSight {
   SightSettings settings;
 };
 
-// Perception of an entry of the world model that is simulated (simulated_perception.h). The numbers are quantities,
-// too.
+// Perception of an entry of the world model: simulated (simulated_perception.h), or as it was in a recorded run
+// (recorded_perception.h). The numbers of a simulated one are quantities, too.
 struct ScenarioPerception {
   PlacedName entry;   // of the robot's supervisor
-  PlacedName object;  // of the world
+  PlacedName object;  // of the world; "": it comes from a record
+  PlacedName record;  // a record, or a sequence of `kadans log observations`; "": it is simulated
+  double from_s = 0;  // time in the record at which the scenario begins
   SightSettings settings;
   double imagined = 0;  // share of the pictures that show it where it is not
   bool hidden = false;  // other objects of the world may stand before it

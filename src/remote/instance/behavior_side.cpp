@@ -84,6 +84,7 @@ void BehaviorSide::beside_tick(std::int64_t time_ns) {
   time_ns_ = time_ns;
   heed_stop();
   settle(time_ns);
+  settle_decisions(time_ns);
   for (const auto& port : p_.instance.ports()) {
     for (std::size_t left = orders_in_tick; left > 0; --left) {  // whoever asks again at once waits for the next tick
       std::unique_ptr<OrderCase> order = port->behaviors_.take();
@@ -95,6 +96,10 @@ void BehaviorSide::beside_tick(std::int64_t time_ns) {
 }
 
 void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns) {
+  if (concerns_decisions(order->order) && !order->order.text.empty()) {
+    order->answer.done = true;
+    return ask_decisions(std::move(order), from, time_ns);
+  }
   Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns, .asked_tick = p_.engine.ticks()};
   Answer& answer = pending.order->answer;
   try {
@@ -103,7 +108,62 @@ void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from,
   } catch (const std::exception& error) {
     answer.text = error.what();
   }
-  from.answer(std::move(pending.order));
+  this->answer(std::move(pending.order), from, time_ns);
+}
+
+// Those that name what decides, or nobody.
+bool BehaviorSide::concerns_decisions(const Order& order) const noexcept {
+  const bool kind = order.kind == Order::Kind::why || order.kind == Order::Kind::reload;
+  if (!kind || p_.decisions == nullptr || p_.decisions->name.empty()) return false;
+  return order.text.empty() || order.text == p_.decisions->name;
+}
+
+void BehaviorSide::answer(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns) {
+  const bool goes_on = order->answer.done || order->order.kind == Order::Kind::reload;
+  if (goes_on && concerns_decisions(order->order)) return ask_decisions(std::move(order), from, time_ns);
+  from.answer(std::move(order));
+}
+
+void BehaviorSide::ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns) {
+  const bool why = order->order.kind == Order::Kind::why;
+  auto question = std::make_unique<DecisionQuestion>();
+  question->number = ++decision_questions_;
+  question->question.kind = why ? BehaviorQuestion::Kind::why : BehaviorQuestion::Kind::reload;
+  if (p_.decisions->ask(std::move(question))) {
+    asked_decisions_.push_back({std::move(order), &from, time_ns, decision_questions_});
+    return;
+  }
+  order->answer.done = false;
+  order->answer.text = "too many questions wait for the decisions: ask again";
+  from.answer(std::move(order));
+}
+
+void BehaviorSide::settle_decisions(std::int64_t time_ns) {
+  if (p_.decisions == nullptr) return;
+  while (const auto replied = p_.decisions->reply()) {
+    for (AskedDecisions& asked : asked_decisions_) {
+      if (asked.number != replied->number) continue;
+      Answer& answer = asked.order->answer;
+      BehaviorReply& reply = replied->reply;
+      answer.done = answer.done && reply.error.empty();
+      if (asked.order->order.kind == Order::Kind::why && answer.done) {
+        for (BehaviorReasons& reasons : reply.reasons) answer.reasons.push_back(std::move(reasons));
+        answer.text = reasons_text(answer.reasons);
+      } else {
+        answer.text += (answer.text.empty() ? "" : "\n") + (reply.error.empty() ? reply.text : reply.error);
+      }
+      asked.from->answer(std::move(asked.order));
+    }
+    std::erase_if(asked_decisions_, [](const AskedDecisions& asked) { return asked.order == nullptr; });
+  }
+  std::erase_if(asked_decisions_, [&](AskedDecisions& asked) {
+    if (time_ns - asked.asked_ns <= control_answers_in_ns) return false;
+    asked.order->answer.done = false;
+    asked.order->answer.text +=
+        (asked.order->answer.text.empty() ? "" : "\n") + std::string("the decisions did not answer within a second");
+    asked.from->answer(std::move(asked.order));
+    return true;
+  });
 }
 
 // What played when the emergency stop came does not go on by itself when it is lifted.
@@ -218,7 +278,7 @@ void BehaviorSide::settle(std::int64_t time_ns) {
   if (ticked) lines_ = p_.echo.take();
   std::erase_if(pending_, [&](Pending& pending) {
     if (!settled(pending, *snapshot, time_ns)) return false;
-    pending.from->answer(std::move(pending.order));
+    answer(std::move(pending.order), *pending.from, time_ns);
     return true;
   });
 }

@@ -19,6 +19,7 @@
 #include "script/console/console.h"
 #include "script/host/script_host.h"
 #include "script/process/process_host.h"
+#include "supervisor/decide/decision_questions.h"
 
 namespace kadans {
 
@@ -59,8 +60,9 @@ class BehaviorSide final : public BesideTick {
     ProcessHost* process;  // ... or in this process; the other pointer is nullptr
     BehaviorEngine& engine;
     EngineExchange& exchange;
-    LineEcho& echo;    // a sink of the behaviors' log, which is `log`
-    BehaviorLog& log;  // changes are logged here
+    LineEcho& echo;                          // a sink of the behaviors' log, which is `log`
+    BehaviorLog& log;                        // changes are logged here
+    DecisionQuestions* decisions = nullptr;  // of what decides over the behaviors; nullptr: nothing does
   };
   static constexpr std::size_t consoles_max = 4;
   static constexpr std::int64_t led_again_ns = 1'000'000'000;  // moving set-points are logged once in this time
@@ -87,7 +89,19 @@ class BehaviorSide final : public BesideTick {
     bool failed = false;         // the behaviors' process has refused it; the answer's text says why
   };
 
+  // An order that the decisions have to answer, too; what the behaviors said is in its answer.
+  struct AskedDecisions {
+    std::unique_ptr<OrderCase> order;
+    OrderQueue* from;
+    std::int64_t asked_ns;
+    std::uint32_t number;
+  };
+
   void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
+  bool concerns_decisions(const Order& order) const noexcept;
+  void answer(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
+  void ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
+  void settle_decisions(std::int64_t time_ns);
   bool begin(Pending& pending);
   void settle(std::int64_t time_ns);
   void heed_stop();
@@ -118,6 +132,8 @@ class BehaviorSide final : public BesideTick {
   std::uint16_t lifts_ = 0;                // of the emergency stop, as of the last tick
   std::optional<std::uint64_t> why_tick_;  // in which a `why` was answered last
   std::vector<Pending> pending_;
+  std::vector<AskedDecisions> asked_decisions_;
+  std::uint32_t decision_questions_ = 0;  // so far
   ParameterHistory tuning_;
   std::map<std::uint64_t, std::unique_ptr<Console>> consoles_;  // by client
   std::vector<double> parameters_;

@@ -58,6 +58,7 @@ Quantities::Quantities(PlantVariant& variant, Catalog& catalog, bool further_rob
       add_value(std::string("sight.") + range.name, {range.min, range.max, range.unit}, variant.sight.*range.value);
   }
   for (ScenarioPerception& one : variant.perception) {
+    if (!one.record.name.empty()) continue;
     for (const SightRange& range : sight_ranges)
       add_value("perception." + one.entry.name + "." + range.name, {range.min, range.max, range.unit},
                 one.settings.*range.value);

@@ -75,6 +75,7 @@ class Behavior {
   enum class Reload : std::uint8_t { unchanged, taken, refused };
   Reload reload(const Snapshot& snapshot, CommandSender& commands, const std::filesystem::path& file = {},
                 SetMask elsewhere = 0) noexcept;
+  const std::string& complaint() const noexcept;  // why the last reload was refused
   std::vector<std::filesystem::path> files() const;
   // Behavior thread, between ticks: writes what a reload would carry over as bytes, for another process that continues
   // where this one ended. Returns "", or why it is impossible: vars hold something that is no plain data.

@@ -560,6 +560,8 @@ std::vector<std::filesystem::path> Behavior::files() const {
   return all;
 }
 
+const std::string& Behavior::complaint() const noexcept { return past_->complaint; }
+
 Behavior::Reload Behavior::refuse(std::int64_t time_ns, const std::string& why) noexcept {
   if (why == past_->complaint) return Reload::refused;
   past_->complaint = why;

@@ -92,6 +92,8 @@ void ChartRunner::keep(ByteWriter& bytes) const {
   bytes.put<std::uint8_t>(started_);
   bytes.put<std::uint8_t>(finished_);
   bytes.put<std::uint8_t>(filling_);
+  bytes.put<std::uint8_t>(finished_by_ != no_state);
+  if (finished_by_ != no_state) put_state(chart_.states[finished_by_], bytes);
   bytes.put(unhandled_);
   const auto told = [](const StateRun& run) { return run.active || run.entering || run.outcome != no_event; };
   bytes.put(static_cast<std::uint32_t>(std::ranges::count_if(run_, told)));
@@ -169,6 +171,7 @@ bool ChartRunner::restore(ByteReader& bytes) {
   started_ = bytes.take<std::uint8_t>() != 0;
   finished_ = bytes.take<std::uint8_t>() != 0;
   filling_ = bytes.take<std::uint8_t>() != 0;
+  if (bytes.take<std::uint8_t>() != 0) finished_by_ = take_state(chart_, bytes);
   unhandled_ = bytes.take<std::uint64_t>();
   std::vector<bool> listed(chart_.states.size(), false);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {

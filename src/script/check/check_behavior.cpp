@@ -95,8 +95,9 @@ class TestCalls {
     if (!tokens_[at + 1].is(",") || !tokens_[at + 2].is("{")) return;
     for (const std::size_t part : parts_of(tokens_, at + 3)) {
       const SourceToken& key = tokens_[part];
-      if (key.kind == Kind::name && tokens_[part + 1].is("=") && key.text != "robot" && key.text != "plant")
-        problem(key, "k.play has no option '" + key.text + "'; there are: robot, plant");
+      if (key.kind == Kind::name && tokens_[part + 1].is("=") && key.text != "robot" && key.text != "plant" &&
+          key.text != "scenario")
+        problem(key, "k.play has no option '" + key.text + "'; there are: robot, plant, scenario");
     }
   }
 

@@ -46,7 +46,7 @@ struct Take {
     value = known ? static_cast<T>(taken) : T{};
   }
   void operator()(ScriptEvent::Field::Type& type) { kind(type, ScriptEvent::Field::Type::text); }
-  void operator()(BehaviorQuestion::Kind& of) { kind(of, BehaviorQuestion::Kind::set_parameter); }
+  void operator()(BehaviorQuestion::Kind& of) { kind(of, BehaviorQuestion::Kind::reload); }
   template <typename T>
   void operator()(std::vector<T>& all) {
     for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) part(all.emplace_back());

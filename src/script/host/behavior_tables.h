@@ -33,6 +33,7 @@ struct BehaviorQuestion {
     why,            // BehaviorReply::reasons; `text` = name of a behavior, "": all that play
     describe,       // BehaviorReply::text = their charts for viewers, as JSON
     set_parameter,  // `text` = BEHAVIOR.NAME, `value`; BehaviorReply::before, chunk
+    reload,         // of decisions: their files are read again; BehaviorReply::text = what came of it
   };
   Kind kind = Kind::report;
   std::string text{};

@@ -17,8 +17,9 @@ struct PlayReport {
     std::array<char, state_max> state{};  // path of its innermost active state, the first of several
   };
 
-  std::uint32_t orders = 0;             // taken so far
-  std::uint32_t orders_refused = 0;     // of them
+  std::uint32_t given = 0;              // orders of the decisions so far, as the supervisor counts them
+  std::uint32_t orders = 0;             // of them, taken by the behaviors
+  std::uint32_t orders_refused = 0;     // of these
   std::array<char, why_max> refusal{};  // of the last one that was refused
   std::uint32_t taken_over = 0;         // how often something else was played, because nothing decided any more
   std::uint32_t phase = 0;              // as PlayStatus

@@ -353,6 +353,8 @@ BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot
       return {.reasons = why(question.text, snapshot)};
     case BehaviorQuestion::Kind::describe:
       return {.text = describe(this)};
+    case BehaviorQuestion::Kind::reload:
+      throw InputError({.message = "behaviors are reloaded by an order"});
     case BehaviorQuestion::Kind::set_parameter:
       break;
   }

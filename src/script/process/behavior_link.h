@@ -1,4 +1,5 @@
-// The memory that the runtime shares with the process in which behaviors play. Each such process gets a new one. When a
+// The memory that the runtime shares with the process in which behaviors play, or with that of the decisions over them
+// (supervisor/decide/decision_process.h), which leaves the commands empty. Each such process gets a new one. When a
 // process is killed in the middle of a write, the half-written memory is never read by another process.
 //
 // The two sides take turns. The runtime writes a request and rings the doorbell. The process ticks its behaviors,
@@ -21,6 +22,7 @@
 #include "kadans/signal/command.h"
 #include "kadans/signal/status.h"
 #include "script/behavior/behavior_status.h"
+#include "script/host/play_report.h"
 
 namespace kadans {
 
@@ -38,6 +40,7 @@ std::uint64_t hash_of_kept(const std::byte* bytes, std::size_t size) noexcept;
 struct BehaviorLink {
   static constexpr std::size_t behaviors_max = 32, name_bytes = 64, order_bytes = 8192, question_bytes = 4096;
   static constexpr std::size_t reply_bytes = std::size_t{512} << 10U;  // only pages that are written take memory
+  static constexpr std::size_t decided_bytes = std::size_t{64} << 10U;
   using Name = std::array<char, name_bytes>;
   using Numbers = std::array<std::uint32_t, 5>;
   using PlayNumbers = std::array<std::uint32_t, 7>;
@@ -51,6 +54,7 @@ struct BehaviorLink {
     std::int32_t cpu_to_leave = -1;
     std::uint32_t locks_memory = 0;
     std::uint32_t on_wall_clock = 0;            // ScenarioConfig::on_wall_clock
+    std::uint32_t decides = 0;                  // it runs the decisions, and plays no behaviors
     alignas(8) std::uint64_t memory_bytes = 0;  // memory limit beyond what it has when it begins to play; 0: no limit
     KeptState kept;                             // state from the process before; size 0: none
   };
@@ -79,6 +83,7 @@ struct BehaviorLink {
     std::array<std::byte, question_bytes> questions{};  // behavior_tables.h, each behind its number
     std::uint32_t parameter_count = 0;
     std::array<ParameterValue, parameters_max> parameters{};
+    PlayReport plays;  // to decisions: what plays now
     Snapshot snapshot;
   };
   struct Answer {
@@ -88,6 +93,9 @@ struct BehaviorLink {
     OfRegions<std::uint32_t> regions{};           // the active state of each region
     std::uint32_t kept_changed = 0;
     KeptState kept;
+    PlayReport plays;                // of behaviors: what plays now
+    std::uint32_t decided_size = 0;  // of decisions: what they ask for
+    std::array<std::byte, decided_bytes> decided{};
     // To each question, and to each order that was refused, behind its number.
     std::uint32_t reply_size = 0;
     std::array<std::byte, reply_bytes> replies{};

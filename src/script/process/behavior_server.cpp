@@ -57,8 +57,8 @@ void SpokenLines::tell_emitted(const EmittedEvent& event) {
   dropped_ += push() ? 0 : 1;
 }
 
-BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log,
-                               SpokenLines& lines, Catalog& catalog, ControlSets& sets, ScriptHost::Describe describe)
+BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ServedHost& host, BehaviorLog& log,
+                               SpokenLines& lines, Catalog& catalog, ControlSets& sets)
     : link_(link),
       bell_(bell),
       host_(host),
@@ -66,7 +66,6 @@ BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& h
       lines_(lines),
       catalog_(catalog),
       sets_(sets),
-      describe_(describe),
       commands_(link.commands) {
   link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
@@ -94,14 +93,17 @@ bool BehaviorServer::answer() {
   commands_.follow(link_.request.last_sequence, link_.request.room);
   take_parameters();
   replies_.clear();
+  host_.begin_tick(snapshot_);
   take_orders();
-  host_.tick(snapshot_, commands_);
+  plays_ = link_.request.plays;
+  host_.tick(snapshot_, plays_, commands_);
   if (!host_.lost().empty()) {
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", "cannot go on: " + host_.lost());
     return false;
   }
   answer_questions();
   tell_status();
+  tell_plays();
   keep(snapshot_.time_ns);
   return true;
 }
@@ -144,7 +146,7 @@ void BehaviorServer::answer_questions() {
     BehaviorQuestion question;
     if (!take_question(bytes, question)) break;
     try {
-      put(number, host_.reply(question, snapshot_, describe_));
+      put(number, host_.reply(question, snapshot_));
     } catch (const InputError& error) {
       put(number, {.error = error.what()});
     }
@@ -175,6 +177,13 @@ void BehaviorServer::tell_status() {
                               number(status.state), number(status.reloads)};
     for (std::size_t r = 0; r < status.region_paths.size(); ++r) link_.answer.regions[i][r] = number(status.regions[r]);
   }
+}
+
+void BehaviorServer::tell_plays() noexcept {
+  host_.report(link_.answer.plays);
+  const std::span<const std::byte> decided = host_.decided();
+  link_.answer.decided_size = static_cast<std::uint32_t>(std::min(decided.size(), BehaviorLink::decided_bytes));
+  std::ranges::copy(decided.first(link_.answer.decided_size), link_.answer.decided.begin());
 }
 
 // Most ticks change nothing of it.

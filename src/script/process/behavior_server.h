@@ -9,7 +9,7 @@
 #include "engine/transaction.h"
 #include "kadans/control/control_sets.h"
 #include "realtime/machine/shared_memory.h"
-#include "script/host/script_host.h"
+#include "served_host.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -38,8 +38,8 @@ class SpokenLines final : public LineSink {
 class BehaviorServer {
  public:
   // `log` and `catalog` are those of the host, `sets` those of the catalog; `lines` is a sink of the log.
-  BehaviorServer(BehaviorLink& link, Doorbell& bell, ScriptHost& host, BehaviorLog& log, SpokenLines& lines,
-                 Catalog& catalog, ControlSets& sets, ScriptHost::Describe describe);
+  BehaviorServer(BehaviorLink& link, Doorbell& bell, ServedHost& host, BehaviorLog& log, SpokenLines& lines,
+                 Catalog& catalog, ControlSets& sets);
 
   // Serves until the runtime closes the doorbell. Returns the exit code of the process: 0, or 1 when the host cannot
   // continue from the kept state.
@@ -51,19 +51,20 @@ class BehaviorServer {
   void take_orders();
   void answer_questions();
   void put(std::uint32_t number, const BehaviorReply& reply);
+  void tell_plays() noexcept;
   void tell_status();
   void keep(std::int64_t time_ns);
 
   BehaviorLink& link_;
   Doorbell& bell_;
-  ScriptHost& host_;
+  ServedHost& host_;
   BehaviorLog& log_;
   SpokenLines& lines_;
   Catalog& catalog_;
   ControlSets& sets_;
-  ScriptHost::Describe describe_;
   CommandSender commands_;
   Snapshot snapshot_;
+  PlayReport plays_;
   ByteWriter kept_, replies_;
   std::vector<std::byte> kept_last_;
   std::string unkept_;  // the last logged reason why the state cannot be kept

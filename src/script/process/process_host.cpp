@@ -178,6 +178,20 @@ bool ChildAnswer::take_kept(BehaviorLink& link, std::optional<std::vector<std::b
   return true;
 }
 
+void ChildAnswer::take_plays(BehaviorLink& link, PlayReport& plays) noexcept {
+  plays.playing = copy_of(link.answer.plays.playing);
+  plays.count = std::min(once(link.answer.plays.count), std::uint32_t{PlayReport::behaviors_max});
+  for (PlayReport::Playing& one : plays.playing) one.name.back() = one.state.back() = '\0';
+}
+
+bool ChildAnswer::take_decided(BehaviorLink& link, std::vector<std::byte>& decided) {
+  const std::uint32_t size = once(link.answer.decided_size);
+  if (size > BehaviorLink::decided_bytes) return false;
+  copy(std::span(link.answer.decided).first(size));
+  decided.assign(bytes_.begin(), bytes_.end());
+  return true;
+}
+
 bool ChildAnswer::take_replies(BehaviorLink& link, std::map<std::uint32_t, BehaviorReply>& replies) {
   const std::uint32_t size = once(link.answer.reply_size);
   if (size > BehaviorLink::reply_bytes) return false;
@@ -259,8 +273,8 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
     }
   }
   fingerprint_ = fingerprint_of(catalog);
-  const auto refuse = [](const std::string& why) {
-    throw InputError({.message = "the behaviors' process did not start: " + why});
+  const auto refuse = [this](const std::string& why) {
+    throw InputError({.message = process_name() + " did not start: " + why});
   };
   while (!ChildAnswer::is_ready(child_->link)) {
     const std::int64_t left_ns = child_->started_wall_ns + settings_.start_patience_ns - clock_.now_ns();
@@ -271,7 +285,7 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
   const auto names = ChildAnswer::names(child_->link);
   if (!names) refuse("it tells no names");
   if (ChildAnswer::fingerprint(child_->link) != fingerprint_) refuse("the robot's files changed meanwhile");
-  play_.declare(catalog.signals);
+  if (!decides()) play_.declare(catalog.signals);
   for (std::size_t i = 0; i < names->size(); ++i) {
     BehaviorStatus& status = behaviors_.emplace_back();
     status.region_paths = ChildAnswer::regions(child_->link, i);
@@ -282,12 +296,20 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
   phase_ = Phase::playing;
 }
 
+// Nothing plays any more when the process stays down, and what played did not end well.
+void ProcessHost::report(PlayReport& plays) const noexcept {
+  plays.phase = down() ? 0 : play_.phase.load(std::memory_order_relaxed);
+  plays.not_done = play_.not_done.load(std::memory_order_relaxed) + (down() ? 1 : 0);
+  plays.count = down() ? 0 : plays_.count;
+  plays.playing = plays_.playing;
+}
+
 std::uint32_t ProcessHost::send(const PlayOrder& order) {
   ByteWriter bytes;
   bytes.put(sent_ + 1);
   put_order(order, bytes);
   if (bytes.size() > BehaviorLink::order_bytes) throw InputError({.message = "the order is too long"});
-  if (phase_ == Phase::down) throw InputError({.message = "the behaviors' process is down"});
+  if (phase_ == Phase::down) throw InputError({.message = process_name() + " is down"});
   const bool event = order.kind == PlayOrder::Kind::emit;
   if (event) {
     if (paused()) throw InputError({.message = "the behaviors are paused; the event would be old when they go on"});
@@ -308,7 +330,7 @@ std::uint32_t ProcessHost::ask(const PlayOrder& order) {
 std::uint32_t ProcessHost::ask(const BehaviorQuestion& question) {
   const bool report = question.kind == BehaviorQuestion::Kind::report;
   if (phase_ == Phase::down) {
-    if (!report) throw InputError({.message = "the behaviors' process is down"});
+    if (!report) throw InputError({.message = process_name() + " is down"});
     asked_for_[++sent_] = last_report();
     return sent_;
   }
@@ -418,6 +440,7 @@ void ProcessHost::ask(const Snapshot& snapshot, const CommandSender& commands) n
   request.order_size = put(orders_, request.order);
   request.question_size = put(questions_, request.questions);
   put_parameters(request);
+  if (decides()) request.plays = shown_;
   request.snapshot = snapshot;
   asked_for_ns_ = snapshot.time_ns;
   asked_wall_ns_ = clock_.now_ns();
@@ -450,7 +473,9 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
   // nobody wants behaviors to stop; its motions go by the transaction that has their number.
   if (commands.last_sequence() == asked_sequence_ || !stopping_) answer_.send_on(commands, asked_for_ns_);
   ChildAnswer::take_status(link, play_, behaviors_);
-  if (!take_replies()) return false;
+  ChildAnswer::take_plays(link, plays_);
+  if (!answer_.take_decided(link, decided_) || !take_replies()) return false;
+  ++answers_;
   order_deaths_ = 0;
   policy_.answered();
   if (died_ns_ < 0) return true;
@@ -458,7 +483,7 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
   outage_.add(now_ns_ - died_ns_);
   died_ns_ = -1;
   safe_->forget();
-  say(Severity::info, "the behaviors' process goes on as " + std::to_string(child_->process.pid()));
+  say(Severity::info, process_name() + " goes on as " + std::to_string(child_->process.pid()));
   return true;
 }
 
@@ -493,28 +518,29 @@ void ProcessHost::bury(const std::string& why, bool alive) noexcept {
     if (play_.phase.load(std::memory_order_relaxed) != 0) safe_->failed(now_ns_, ~ObjectMask{0});
   }
   give_up_order();
-  fail(questions_, questions_.asked, "the behaviors' process died of it, or at the same time: ask again");
+  fail(questions_, questions_.asked, process_name() + " died of it, or at the same time: ask again");
   const std::optional<std::int64_t> due_ns = policy_.died(now_ns_);
   if (!kept_) return stay_down(how + ", and its state could not be kept");
   if (!due_ns) return stay_down(how + ", " + std::to_string(policy_.in_a_row()) + " times in a row");
   phase_ = Phase::waiting;
   start_due_ns_ = *due_ns;
-  say(Severity::warning, "the behaviors' process died: " + how + "; the robot holds until the next one goes on");
+  say(Severity::warning, process_name() + " died: " + how +
+                             (decides() ? "; behaviors go on" : "; the robot holds until the next one goes on"));
 }
 
 // The next process gets it too, but not for ever.
 void ProcessHost::give_up_order() noexcept {
   constexpr std::uint32_t deaths_max = 3;
   if (!asked_ || orders_.asked == 0 || ++order_deaths_ < deaths_max) return;
-  fail(orders_, orders_.asked, "the behaviors' process died of it three times");
+  fail(orders_, orders_.asked, process_name() + " died of it three times");
   order_deaths_ = 0;
-  say(Severity::error, "an order was dropped: the behaviors' process died of it three times");
+  say(Severity::error, "an order was dropped: " + process_name() + " died of it three times");
 }
 
 void ProcessHost::stay_down(const std::string& why) noexcept {
   child_.reset();
   phase_ = Phase::down;
-  const std::string how = "the behaviors' process stays down: " + why;
+  const std::string how = process_name() + " stays down: " + why;
   fail(orders_, orders_.sent.size(), how);
   fail(questions_, questions_.sent.size(), how);
   say(Severity::error, how);

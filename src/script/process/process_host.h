@@ -1,6 +1,6 @@
-// Plays behaviors in a process of their own: the runtime's side. Whatever happens to that process (it is killed,
-// crashes, runs out of memory, hangs, writes rubbish), the behavior engine ticks on with its high levels and its
-// heartbeat, so the control loop and the control objects hold the robot.
+// Plays behaviors, or runs decisions, in a process of their own: the runtime's side. Whatever happens to that process
+// (it is killed, crashes, runs out of memory, hangs, writes rubbish), the behavior engine ticks on with its high levels
+// and its heartbeat, so the control loop and the control objects hold the robot.
 //
 // Each tick asks the process for a tick (behavior_link.h) and waits for the answer. On the wall clock it waits for a
 // part of the period; a later answer counts in the tick in which it comes. On virtual time, which stands still
@@ -14,7 +14,8 @@
 // does not answer within patience_ns, or breaks the rules of the link, is killed first. When it dies too often in a
 // row, or when its state cannot be kept, it stays down: an error is logged, and the robot stays in its posture.
 //
-// Behavior thread, except for the constructor and attach(), which are called before the threads start.
+// Behavior thread, or the supervisor's for decisions, except for the constructor and attach(), which are called before
+// the threads start.
 #pragma once
 
 #include <algorithm>
@@ -38,6 +39,7 @@
 #include "script/chart/event_queue.h"
 #include "script/host/behavior_tables.h"
 #include "script/host/play_list.h"
+#include "script/host/play_report.h"
 #include "script/host/safe_posture.h"
 
 namespace kadans {
@@ -71,6 +73,9 @@ class ChildAnswer {
   // The replies by their numbers; there may be some that nobody asked for.
   [[nodiscard]] bool take_replies(BehaviorLink& link, std::map<std::uint32_t, BehaviorReply>& replies);
   static void take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept;
+  // What plays now, all but what PlayStatus has.
+  static void take_plays(BehaviorLink& link, PlayReport& plays) noexcept;
+  [[nodiscard]] bool take_decided(BehaviorLink& link, std::vector<std::byte>& decided);
 
  private:
   bool tell_line(std::span<const std::byte> line, BehaviorLog& log, std::int64_t time_ns);
@@ -124,7 +129,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
     std::int64_t patience_ns = 300'000'000;  // limit for an answer
     std::int64_t start_patience_ns = 10'000'000'000;  // limit for the start of a process
     RestartPolicy::Settings restart{};
-    BehaviorLink::Setup setup{};
+    BehaviorLink::Setup setup{};  // says whether it decides
   };
   // Starts the process. Throws std::system_error. `log` must outlive the host.
   ProcessHost(Settings settings, BehaviorLog& log);
@@ -132,7 +137,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
 
   // Waits until the process has read its files, and declares the signals of its behaviors. Throws InputError when the
   // process could not read them (it has written the reason to standard error) or read other files than this process.
-  // `catalog` must outlive the host.
+  // `catalog` must outlive the host. Of decisions there is no safe posture.
   void attach(Catalog& catalog, const SafePosture::Settings& safe);
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
@@ -148,6 +153,15 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   void forget(std::uint32_t number) { asked_for_.erase(number); }
   // As a report told them last, each with what is wrong with the process.
   BehaviorReply last_report() const;
+
+  // Of behaviors, after a tick: what plays now; the counts of orders are the caller's.
+  void report(PlayReport& plays) const noexcept;
+  // Of decisions, before a tick: what plays now. After it: what they ask for, when answers() has grown.
+  void show(const PlayReport& plays) noexcept { shown_ = plays; }
+  std::span<const std::byte> decided() const noexcept { return decided_; }
+  std::uint64_t answers() const noexcept { return answers_; }
+  // What they ask for breaks the rules: the process is killed and replaced.
+  void end_for_rubbish() noexcept { bury("it wrote rubbish", true); }
 
   bool down() const noexcept { return phase_ == Phase::down; }
   std::uint64_t deaths() const noexcept { return policy_.deaths(); }
@@ -186,6 +200,8 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   void give_up_order() noexcept;
   void stay_down(const std::string& why) noexcept;
   void say(BehaviorLog::Severity severity, const std::string& text) noexcept;
+  bool decides() const noexcept { return settings_.setup.decides != 0; }
+  std::string process_name() const { return decides() ? "the decisions' process" : "the behaviors' process"; }
 
   Settings settings_;
   BehaviorLog& log_;
@@ -197,6 +213,9 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   ChildAnswer answer_;
   std::optional<std::vector<std::byte>> kept_{std::in_place};  // empty: no answer yet; nullopt: cannot be kept
   PlayStatus play_;
+  PlayReport plays_, shown_;
+  std::vector<std::byte> decided_;
+  std::uint64_t answers_ = 0;
   std::deque<BehaviorStatus> behaviors_;
   Queue orders_, questions_;
   std::uint32_t sent_ = 0;

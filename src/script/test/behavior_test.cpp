@@ -66,11 +66,12 @@ void keep_message(Testing& testing, const std::exception& error) {
   std::snprintf(testing.message.data(), testing.message.size(), "%s", error.what());
 }
 
-bool make_stage(Testing& testing, const char* file, const char* robot, const char* plant) noexcept {
+bool make_stage(Testing& testing, const char* file, const char* robot, const char* plant,
+                const char* scenario) noexcept {
   try {
     const std::filesystem::path beside = testing.file.parent_path() / file;
     const auto path = std::filesystem::exists(beside) ? beside : testing.root / file;
-    testing.played.push_back({testing.stages.make(path, robot, plant), {}, LUA_NOREF});
+    testing.played.push_back({testing.stages.make(path, {robot, plant, scenario}), {}, LUA_NOREF});
     return true;
   } catch (const std::exception& error) {
     keep_message(testing, error);
@@ -78,12 +79,13 @@ bool make_stage(Testing& testing, const char* file, const char* robot, const cha
   }
 }
 
-// play(file, robot, plant) -> number.
+// play(file, robot, plant, scenario) -> number.
 int play(lua_State* state) {
   Testing& testing = testing_of(state);
   const char* file = luaL_checkstring(state, 1);
   if (testing.played.size() >= stages_max) return luaL_error(state, "a test plays 8 behaviors at most");
-  if (!make_stage(testing, file, luaL_checkstring(state, 2), luaL_checkstring(state, 3))) return raise(state, testing);
+  if (!make_stage(testing, file, luaL_checkstring(state, 2), luaL_checkstring(state, 3), luaL_checkstring(state, 4)))
+    return raise(state, testing);
   Played& played = testing.played.back();
   played.snapshot = played.tables.open(state, played.stage->catalog());
   lua_pushinteger(state, static_cast<lua_Integer>(testing.played.size() - 1));
@@ -150,8 +152,9 @@ int is_in(lua_State* state) {
   return 2;
 }
 
-int push_result(lua_State* state, Testing& testing, const TestStage& stage) {
-  testing.text = "return " + stage.result();
+// [-0 +1] What the text gives.
+int push_value(lua_State* state, Testing& testing, const std::string& text) {
+  testing.text = "return " + text;
   if (luaL_loadbuffer(state, testing.text.data(), testing.text.size(), "=result") != 0) return lua_error(state);
   lua_call(state, 0, 1);
   return 1;
@@ -168,7 +171,9 @@ int read(lua_State* state) {
     return 1;
   }
   if (std::strcmp(key, "active") == 0) return push_active(state, testing, *played->stage), 1;
-  if (std::strcmp(key, "result") == 0) return push_result(state, testing, *played->stage);
+  if (std::strcmp(key, "result") == 0) return push_value(state, testing, played->stage->result());
+  if (std::strcmp(key, "orders") == 0) return push_value(state, testing, played->stage->orders());
+  if (std::strcmp(key, "messages") == 0) return push_value(state, testing, played->stage->messages());
   const Snapshot& snapshot = played->stage->snapshot();
   played->tables.refill(snapshot, snapshot.time_ns);
   lua_rawgeti(state, LUA_REGISTRYINDEX, played->snapshot);
@@ -201,6 +206,15 @@ int emit(lua_State* state, Testing& testing, Played& played) {
   return 1;
 }
 
+// change(number, "ends" or "plays", name, value) -> true, or why not.
+int change_played(lua_State* state, Testing& testing, Played& played, bool ends) {
+  const char* name = luaL_checkstring(state, 3);
+  const char* value = luaL_checkstring(state, 4);
+  testing.text = ends ? played.stage->end_play(name) : played.stage->set_playing(name, value);
+  testing.text.empty() ? lua_pushboolean(state, 1) : lua_pushlstring(state, testing.text.data(), testing.text.size());
+  return 1;
+}
+
 // change(number, what, name, value) -> whether it was known.
 int change(lua_State* state) {
   Played* played = played_in(state);
@@ -208,6 +222,8 @@ int change(lua_State* state) {
   const char* what = luaL_checkstring(state, 2);
   const char* name = luaL_checkstring(state, 3);
   if (std::strcmp(what, "event") == 0) return emit(state, testing_of(state), *played);
+  const bool ends = std::strcmp(what, "ends") == 0;
+  if (ends || std::strcmp(what, "plays") == 0) return change_played(state, testing_of(state), *played, ends);
   lua_pushboolean(state, change_stage(*played->stage, what, name, luaL_checknumber(state, 4)) ? 1 : 0);
   return 1;
 }

@@ -6,6 +6,11 @@
 //   run:advance(2.0)                       virtual seconds
 //   expect(run.state).to_equal "squat"
 //   expect(run.active).to_equal { "squat" }    all innermost active states
+//
+// A k.decisions is played likewise, but nothing plays what it asks for: the test says how that ends.
+//
+//   expect(run.orders[1].list).to_equal "walk_to"
+//   run:play_ends "failed"
 #pragma once
 
 #include <filesystem>
@@ -45,15 +50,26 @@ class TestStage {
   // Sets a value that the behavior sees from now on: "base.pitch_rad", "joints.l_knee.position_rad",
   // "feet.left.contact", "sensors.front_m", "safety.level" (its number).
   virtual bool set_sensor(const std::string& name, double value) = 0;
+  // Of decisions: what they asked for, and the messages that they sent, as lists that Lua can read; "": it is none.
+  virtual std::string orders() const { return ""; }
+  virtual std::string messages() const { return ""; }
+  // Of decisions: what plays has ended, or is in that state. These return "", or why not.
+  virtual std::string end_play(const std::string& /*outcome*/) { return "play_ends: nothing decides here"; }
+  virtual std::string set_playing(const std::string& /*behavior*/, const std::string& /*state*/) {
+    return "plays: nothing decides here";
+  }
 };
 
 class TestStages {
  public:
   virtual ~TestStages() = default;
-  // `robot` is the file of a configuration; "": the one for the behavior's folder. `plant` is a plant type; "": joints
-  // that nothing loads. Throws InputError.
-  virtual std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const std::string& robot,
-                                          const std::string& plant) = 0;
+  struct Options {
+    std::string robot;     // the file of a configuration; "": the one of the scenario, else of the behavior's folder
+    std::string plant;     // a plant type; "": joints that nothing loads
+    std::string scenario;  // a scenario's file, for its robot and its world model; "": none
+  };
+  // Throws InputError.
+  virtual std::unique_ptr<TestStage> make(const std::filesystem::path& behavior, const Options& options) = 0;
 };
 
 struct TestOutcome {

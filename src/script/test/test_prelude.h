@@ -167,17 +167,29 @@ function methods.set_sensor(run, name, value)
   end
 end
 
+-- Of decisions: what they played has ended, with "done" unless another outcome is given.
+function methods.play_ends(run, outcome)
+  local why = change(run.id, "ends", outcome or "done", "")
+  if why ~= true then error(why, 2) end
+end
+-- Of decisions: a behavior that plays is in this state.
+function methods.plays(run, behavior, state)
+  if type(behavior) ~= "string" or type(state) ~= "string" then error("plays needs a behavior and its state", 2) end
+  local why = change(run.id, "plays", behavior, state)
+  if why ~= true then error(why, 2) end
+end
+
 local function test_play(file, options)
   if type(file) ~= "string" then error("k.play needs the file of a behavior", 2) end
   if options ~= nil and type(options) ~= "table" then error("k.play: options are a table, { robot = FILE }", 2) end
   options = options or {}
   for key, value in pairs(options) do
-    if key ~= "robot" and key ~= "plant" then
-      error("k.play has no option '" .. tostring(key) .. "'; there are: robot, plant", 2)
+    if key ~= "robot" and key ~= "plant" and key ~= "scenario" then
+      error("k.play has no option '" .. tostring(key) .. "'; there are: robot, plant, scenario", 2)
     end
     if type(value) ~= "string" then error("k.play: " .. key .. " must be a text, not a " .. type(value), 2) end
   end
-  local id = play(file, options.robot or "", options.plant or "")
+  local id = play(file, options.robot or "", options.plant or "", options.scenario or "")
   return setmetatable({ id = id }, { __index = function(_, key) return methods[key] or read(id, key) end })
 end
 return describe, it, before_each, expect, test_play

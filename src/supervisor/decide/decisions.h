@@ -1,7 +1,7 @@
 // A k.decisions that runs: a chart as behaviors are, one level up. It sees what behaviors see, the world model and what
 // plays; what it asks for is orders to what plays. It has no control objects, and sends no commands.
 //
-// Supervisor thread.
+// Supervisor thread, or that of a process of its own.
 #pragma once
 
 #include <cstdint>
@@ -9,43 +9,48 @@
 #include <string>
 #include <vector>
 
+#include "decider.h"
 #include "engine/behavior_log.h"
 #include "engine/transaction.h"
 #include "kadans/control/catalog.h"
 #include "script/behavior/behavior.h"
-#include "script/host/play_report.h"
 
 namespace kadans {
 
-class Decisions {
+class Decisions final : public Decider {
  public:
   // Loads the file. Throws InputError, also when it is no k.decisions.
   Decisions(Behavior::Settings settings, const Catalog& catalog, BehaviorLog& log);
 
-  // `snapshot` with the world model as it is now. An error that ends it is logged.
-  void tick(const Snapshot& snapshot, const PlayReport& report) noexcept;
+  void declare_signals(SignalTable& signals, std::vector<SignalState>& states) override;
+  const std::string& name() const noexcept override { return behavior_->name(); }
+  std::vector<std::filesystem::path> files() const override { return behavior_->files(); }
+  void hear(PlayedEvent event) noexcept override;
+  // Always true. An error that ends it is logged.
+  bool tick(const Snapshot& snapshot, const PlayReport& report) noexcept override;
+  bool failed() const noexcept override { return behavior_->failed(); }
+  void reload(const Snapshot& snapshot) noexcept override { (void)read_again(snapshot); }
+  void ask(std::unique_ptr<DecisionQuestion> question, const Snapshot& snapshot) noexcept override;
 
-  // What the last tick asked for, in order: for what plays, and for other robots.
-  std::vector<PlayOrder>& orders() noexcept { return orders_; }
-  std::vector<PlayedEvent>& messages() noexcept { return messages_; }
-  // Orders that went on their way, by their number so far: the end of what they play is an event.
-  void sent(std::uint32_t orders) noexcept { sent_ = orders; }
-  // An order could not go on its way.
-  void refuse(const std::string& why) noexcept;
-  // An event of another robot. "", or why it is refused: nobody declares it, or its data is another.
-  std::string hear(PlayedEvent event);
+  // Between two ticks. Throws InputError.
+  BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot);
+  // "", or why the event is refused: nobody declares it, or its data is another.
+  std::string refusal(PlayedEvent event);
 
-  // Reads the files again; the running version goes on when the new one is wrong. After an error it begins anew.
-  void reload(const Snapshot& snapshot) noexcept;
+  // For another process that goes on: its state as bytes. Returns "", or why it cannot be kept.
+  std::string keep(ByteWriter& bytes);
+  // Before the first tick: goes on from bytes of keep(). Returns "", or why not.
+  std::string go_on(ByteReader& bytes, const Snapshot& snapshot) noexcept;
 
-  bool failed() const noexcept { return behavior_->failed(); }
   Behavior& behavior() noexcept { return *behavior_; }
   const Behavior& behavior() const noexcept { return *behavior_; }
 
  private:
   std::unique_ptr<Behavior> load() const;
+  BehaviorReply read_again(const Snapshot& snapshot) noexcept;
   void hear(const PlayReport& report) noexcept;
   void tell(const char* event, const std::string& why = "") noexcept;
+  void take_decided(const PlayReport& report) noexcept;
 
   Behavior::Settings settings_;
   const Catalog& catalog_;
@@ -53,10 +58,8 @@ class Decisions {
   CommandQueue nowhere_;  // decisions send no commands
   CommandSender silence_{nowhere_};
   std::unique_ptr<Behavior> behavior_;
-  std::vector<PlayOrder> orders_;
-  std::vector<PlayedEvent> messages_;
-  std::uint32_t sent_ = 0, refused_ = 0, not_done_ = 0, taken_over_ = 0;  // as the report had them
-  bool asked_ = false;  // something was played whose end was not told yet
+  std::uint32_t refused_ = 0, not_done_ = 0, taken_over_ = 0;  // as the report had them
+  bool asked_ = false;                                         // something was played whose end was not told yet
 };
 
 }  // namespace kadans

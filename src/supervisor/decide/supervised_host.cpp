@@ -8,9 +8,9 @@ namespace kadans {
 
 using Severity = BehaviorLog::Severity;
 
-SupervisedHost::SupervisedHost(const SupervisorConfig& config, BehaviorHost& played, ScriptHost& host,
+SupervisedHost::SupervisedHost(const SupervisorConfig& config, BehaviorHost& played, const Players& players,
                                SupervisorLink& link, BehaviorLog& log)
-    : config_(config), played_(played), host_(host), link_(link), log_(log) {}
+    : config_(config), played_(played), players_(players), link_(link), log_(log) {}
 
 void SupervisedHost::say(std::int64_t time_ns, Severity severity, const std::string& text) noexcept {
   log_.message(time_ns, severity, "supervisor", text);
@@ -29,25 +29,61 @@ void SupervisedHost::before_tick(const Snapshot& snapshot) noexcept {
 
 void SupervisedHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
   played_.tick(snapshot, commands);
-  host_.report(report_);
+  take_replies(snapshot.time_ns);
+  if (players_.host != nullptr) {
+    players_.host->report(report_);
+  } else {
+    players_.process->report(report_);
+  }
   link_.report.publish(report_);
 }
 
-bool SupervisedHost::carry_out(const PlayOrder& order, std::int64_t time_ns) noexcept {
+// What decides hears of an order when it was carried out: the process of behaviors says so later.
+void SupervisedHost::carry_out(const PlayOrder& order, std::int64_t time_ns, bool of_decisions) noexcept {
   try {
-    host_.order(order);
-    return true;
+    if (players_.process != nullptr) {
+      asked_.push_back({players_.process->ask(order), of_decisions});
+      return;
+    }
+    players_.host->order(order);
+    report_.orders += of_decisions ? 1 : 0;
   } catch (const std::exception& error) {
-    put_text(report_.refusal, error.what());
-    say(time_ns, Severity::warning, std::string("an order of the decisions was refused: ") + error.what());
-    return false;
+    refuse(error.what(), time_ns, of_decisions);
+  }
+}
+
+void SupervisedHost::refuse(const char* why, std::int64_t time_ns, bool of_decisions) noexcept {
+  say(time_ns, Severity::warning,
+      std::string(of_decisions ? "an order of the decisions was refused: " : "the answer to their loss was refused: ") +
+          why);
+  if (!of_decisions) return;
+  ++report_.orders;
+  ++report_.orders_refused;
+  put_text(report_.refusal, why);
+}
+
+void SupervisedHost::take_replies(std::int64_t time_ns) noexcept {
+  while (!asked_.empty()) {
+    const std::optional<BehaviorReply> reply = players_.process->reply(asked_.front().number);
+    if (!reply) return;
+    const bool of_decisions = asked_.front().of_decisions;
+    asked_.pop_front();
+    if (!reply->error.empty()) {
+      refuse(reply->error.c_str(), time_ns, of_decisions);
+    } else {
+      report_.orders += of_decisions ? 1 : 0;
+    }
   }
 }
 
 void SupervisedHost::take_orders(std::int64_t time_ns, bool leaving) noexcept {
   while (const auto order = link_.take()) {
+    if (!leaving) {
+      carry_out(*order, time_ns, true);
+      continue;
+    }
     ++report_.orders;
-    if (leaving || !carry_out(*order, time_ns)) ++report_.orders_refused;
+    ++report_.orders_refused;
   }
 }
 
@@ -72,7 +108,7 @@ void SupervisedHost::answer_loss(std::int64_t time_ns) noexcept {
   ++report_.taken_over;
   PlayOrder order{.kind = PlayOrder::Kind::stop};
   if (config_.when_lost == When::play) order = {.kind = PlayOrder::Kind::replace, .list = config_.lost_list};
-  (void)carry_out(order, time_ns);
+  carry_out(order, time_ns, false);
 }
 
 }  // namespace kadans

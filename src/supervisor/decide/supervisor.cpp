@@ -11,24 +11,26 @@
 namespace kadans {
 namespace {
 
-std::unique_ptr<Decisions> make_decisions(const Supervisor::Settings& settings, const Catalog& catalog,
-                                          BehaviorLog& log) {
-  if (settings.config.decisions.empty()) return nullptr;
-  const PlayItem& item = settings.config.decisions.front();
-  return std::make_unique<Decisions>(
-      Behavior::Settings{.root = settings.root,
-                         .file = item.file.is_absolute() ? item.file : settings.root / item.file,
-                         .seed = settings.seed,
-                         .limits = settings.limits,
-                         .arguments = item.arguments,
-                         .source = item.source,
-                         .folders = settings.folders},
-      catalog, log);
-}
+constexpr const char* no_room = "too many orders wait for the behaviors";
 
 }  // namespace
 
-Supervisor::Supervisor(const Settings& settings, const Catalog& catalog, SupervisorLink& link, SeenStorage& seen,
+Behavior::Settings decision_settings(const SupervisorConfig& config, const std::filesystem::path& root,
+                                     const PlayFolders& folders, std::uint64_t seed, bool on_wall_clock) {
+  const PlayItem& item = config.decisions.front();
+  Behavior::Settings settings{.root = root,
+                              .file = item.file.is_absolute() ? item.file : root / item.file,
+                              .seed = seed,
+                              .arguments = item.arguments,
+                              .source = item.source,
+                              .folders = folders};
+  if (!on_wall_clock) return settings;
+  settings.limits.tick_wall_ns = std::llround(0.5e9 / config.rate_Hz);
+  settings.limits.load_wall_ns = 20 * settings.limits.tick_wall_ns;
+  return settings;
+}
+
+Supervisor::Supervisor(const Settings& settings, Catalog& catalog, SupervisorLink& link, SeenStorage& seen,
                        BehaviorLog& log)
     : period_ns_(std::llround(1e9 / settings.config.rate_Hz)),
       link_(link),
@@ -37,8 +39,19 @@ Supervisor::Supervisor(const Settings& settings, const Catalog& catalog, Supervi
       world_(settings.config.seen),
       messages_(settings.config.messages, settings.boot),
       message_channel_(settings.messages),
-      perception_channel_(settings.perception),
-      decisions_(make_decisions(settings, catalog, log)) {
+      perception_channel_(settings.perception) {
+  if (!settings.config.decisions.empty()) {
+    const Behavior::Settings decides =
+        decision_settings(settings.config, settings.root, settings.folders, settings.seed, settings.on_wall_clock);
+    if (settings.start) {
+      process_ = std::make_unique<DecisionProcess>(decides, catalog, log, settings.start, period_ns_);
+      decider_ = process_.get();
+    } else {
+      decisions_ = std::make_unique<Decisions>(decides, catalog, log);
+      decider_ = decisions_.get();
+    }
+  }
+  if (decider_ != nullptr) link_.questions.name = decider_->name();
   seen_.publish(world_.entries());
 }
 
@@ -53,15 +66,13 @@ void Supervisor::declare_signals(SignalTable& signals, std::vector<SignalState>&
   signals.add({"supervisor.heard", "", "Messages of other robots that the decisions got."}, &status_.heard);
   signals.add({"supervisor.unheard", "", "Messages and datagrams of perception that were refused."}, &status_.unheard);
   signals.add({"supervisor.failed", "", "Whether an error ended the decisions."}, &status_.failed);
-  if (!decisions_) return;
-  const Behavior& behavior = decisions_->behavior();
-  add_signal_states(behavior.chart(), behavior.status().declare_numbered(signals, behavior.name()), signals, states);
+  if (decider_ != nullptr) decider_->declare_signals(signals, states);
 }
 
 void Supervisor::watch() {
-  if (!decisions_) return;
+  if (decider_ == nullptr) return;
   watch_ = std::make_unique<FileWatch>();
-  for (const std::filesystem::path& file : decisions_->behavior().files()) (void)watch_->add(file.parent_path());
+  for (const std::filesystem::path& file : decider_->files()) (void)watch_->add(file.parent_path());
 }
 
 void Supervisor::observe(const Observation& observation) noexcept {
@@ -99,15 +110,21 @@ void Supervisor::take_messages(std::int64_t time_ns) {
     std::string why;
     const RobotMessages::Answer answer = messages_.decode(datagram, came_ns, event, why);
     if (answer == RobotMessages::Answer::own) continue;
-    if (answer == RobotMessages::Answer::taken) why = decisions_->hear(event);
-    const bool heard = answer == RobotMessages::Answer::taken && why.empty();
-    (heard ? status_.heard : status_.unheard).fetch_add(1, std::memory_order_relaxed);
-    if (!why.empty()) warn_once("message " + event.who, "a message was refused: " + why);
+    if (answer == RobotMessages::Answer::taken) {
+      decider_->hear(std::move(event));
+    } else {
+      tell_heard({event.who, why});
+    }
   }
 }
 
+void Supervisor::tell_heard(const Decider::Heard& heard) {
+  (heard.why.empty() ? status_.heard : status_.unheard).fetch_add(1, std::memory_order_relaxed);
+  if (!heard.why.empty()) warn_once("message " + heard.who, "a message was refused: " + heard.why);
+}
+
 void Supervisor::send_messages() {
-  for (const PlayedEvent& event : decisions_->messages()) {
+  for (const PlayedEvent& event : decider_->decided().messages) {
     std::string why = "this robot has no name among others: supervisor.messages in its configuration";
     const bool named = message_channel_ != nullptr;
     const std::string bytes = named ? messages_.encode(event, snapshot_.time_ns, why) : "";
@@ -129,55 +146,68 @@ void Supervisor::take_observations(std::int64_t time_ns) noexcept {
 
 // Whatever goes wrong in it, nobody waits for it: the heartbeat says so, and the behaviors' side does the rest.
 void Supervisor::tick(std::int64_t time_ns) noexcept {
+  bool decides = ended_;
   try {
-    if (!ended_) step(time_ns);
+    if (!ended_) decides = step(time_ns);
   } catch (const std::exception& error) {
     ended_ = true;
     log_.message(time_ns, BehaviorLog::Severity::error, "supervisor", std::string("ended: ") + error.what());
   }
-  const std::uint32_t ticks = status_.ticks.fetch_add(1, std::memory_order_relaxed) + 1;
-  const bool failed = ended_ || (decisions_ && decisions_->failed());
+  status_.ticks.fetch_add(1, std::memory_order_relaxed);
+  beats_ += decides ? 1 : 0;
+  const bool failed = ended_ || (decider_ != nullptr && decider_->failed());
   status_.failed.store(failed ? 1 : 0, std::memory_order_relaxed);
-  link_.heartbeat.publish({ticks, failed ? 1U : 0U});
+  link_.heartbeat.publish({beats_, failed ? 1U : 0U});
 }
 
-void Supervisor::step(std::int64_t time_ns) {
+// False: nobody decided, who should have.
+bool Supervisor::step(std::int64_t time_ns) {
   for (PastPose pose; link_.poses.try_pop(pose);) past_.add(pose);
   if (perception_channel_ != nullptr) take_perception(time_ns);
   take_observations(time_ns);
-  if (past_.size() == 0 || link_.leaving.load(std::memory_order_relaxed)) return;  // not begun, or about to end
+  if (past_.size() == 0 || link_.leaving.load(std::memory_order_relaxed)) return true;  // not begun, or about to end
   const auto shown = link_.snapshot.read();
   copy_used(*shown, snapshot_);
-  decide();
+  return decide();
 }
 
-void Supervisor::decide() {
-  if (!decisions_) return;
+bool Supervisor::decide() {
+  if (decider_ == nullptr) return true;
   show_seen(world_.entries(), snapshot_.status.odometry, snapshot_.time_ns, snapshot_.seen);
   reload_saved();
   if (message_channel_ != nullptr) take_messages(snapshot_.time_ns);
-  const auto report = link_.report.read();
-  decisions_->tick(snapshot_, *report);
+  while (auto asked = link_.questions.take()) decider_->ask(std::move(asked), snapshot_);
+  {
+    const auto report = link_.report.read();
+    report_ = *report;
+  }
+  report_.given = status_.orders.load(std::memory_order_relaxed);
+  report_.orders += lost_;
+  report_.orders_refused += lost_;
+  if (std::exchange(lost_now_, false)) put_text(report_.refusal, no_room);
+  const bool decides = decider_->tick(snapshot_, report_);
+  for (const Decider::Heard& heard : decider_->decided().heard) tell_heard(heard);
+  decider_->decided().heard.clear();
+  for (auto& replied : decider_->decided().replies) link_.questions.answer(std::move(replied));
+  decider_->decided().replies.clear();
   send_orders();
   send_messages();
+  return decides;
 }
 
 void Supervisor::send_orders() {
-  for (PlayOrder& order : decisions_->orders()) {
-    if (link_.give(std::move(order))) {
-      ++sent_;
-    } else {
-      decisions_->refuse("too many orders wait for the behaviors");
-      log_.message(snapshot_.time_ns, BehaviorLog::Severity::warning, "supervisor",
-                   "an order of the decisions was lost: too many wait for the behaviors");
-    }
+  for (PlayOrder& order : decider_->decided().orders) {
+    status_.orders.fetch_add(1, std::memory_order_relaxed);
+    if (link_.give(std::move(order))) continue;
+    ++lost_;
+    lost_now_ = true;
+    log_.message(snapshot_.time_ns, BehaviorLog::Severity::warning, "supervisor",
+                 std::string("an order of the decisions was lost: ") + no_room);
   }
-  decisions_->sent(sent_);
-  status_.orders.store(sent_, std::memory_order_relaxed);
 }
 
 void Supervisor::reload_saved() {
-  if (watch_ != nullptr && watch_->poll()) decisions_->reload(snapshot_);
+  if (watch_ != nullptr && watch_->poll()) decider_->reload(snapshot_);
 }
 
 }  // namespace kadans

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "config/robot/supervisor_config.h"
-#include "decisions.h"
+#include "decision_process.h"
 #include "engine/behavior_log.h"
 #include "engine/supervising.h"
 #include "engine/tick/control_engine.h"
@@ -37,6 +37,10 @@
 
 namespace kadans {
 
+// How decisions are loaded, here or in a process of their own.
+Behavior::Settings decision_settings(const SupervisorConfig& config, const std::filesystem::path& root,
+                                     const PlayFolders& folders, std::uint64_t seed, bool on_wall_clock);
+
 class Supervisor final : public Supervising, public ObservationSink {
  public:
   struct Settings {
@@ -44,19 +48,19 @@ class Supervisor final : public Supervising, public ObservationSink {
     std::filesystem::path root;  // of the project
     PlayFolders folders{};
     std::uint64_t seed = 1;
-    ScriptLimits limits{};
+    bool on_wall_clock = false;
     // How messages go between robots, and where what is seen comes in; nullptr: nowhere.
     MessageChannel* messages = nullptr;
     MessageChannel* perception = nullptr;
-    std::uint32_t boot = 1;  // of the messages: another number for each start
+    std::uint32_t boot = 1;          // of the messages: another number for each start
+    DecisionProcess::Start start{};  // of a process in which the decisions run; none: they run here
   };
   static constexpr std::size_t observations_max = 256;  // that wait for a tick
   static constexpr std::size_t datagrams_max = 64;      // of each kind that are read in a tick
 
   // Before the loop. Keeps references, and publishes the empty world model. Throws InputError with what is wrong in the
   // file of the decisions.
-  Supervisor(const Settings& settings, const Catalog& catalog, SupervisorLink& link, SeenStorage& seen,
-             BehaviorLog& log);
+  Supervisor(const Settings& settings, Catalog& catalog, SupervisorLink& link, SeenStorage& seen, BehaviorLog& log);
 
   // Before the loop: supervisor.*, and those of the decisions as of a behavior, whose states it adds.
   void declare_signals(SignalTable& signals, std::vector<SignalState>& states);
@@ -69,7 +73,9 @@ class Supervisor final : public Supervising, public ObservationSink {
   void observe(const Observation& observation) noexcept override;
 
   const WorldModel& world() const noexcept { return world_; }
-  const Decisions* decisions() const noexcept { return decisions_.get(); }
+  const Decider* decider() const noexcept { return decider_; }              // nullptr: nothing decides
+  const Decisions* decisions() const noexcept { return decisions_.get(); }  // that run here
+  const ProcessHost* process() const noexcept { return process_ ? &process_->process() : nullptr; }
 
  private:
   struct Status {  // for the record: relaxed atomics as in BehaviorStatus
@@ -79,11 +85,12 @@ class Supervisor final : public Supervising, public ObservationSink {
 
   void take_perception(std::int64_t time_ns);
   void take_messages(std::int64_t time_ns);
+  void tell_heard(const Decider::Heard& heard);
   void send_messages();
   void warn_once(std::string_view about, const std::string& text);
   void take_observations(std::int64_t time_ns) noexcept;
-  void step(std::int64_t time_ns);
-  void decide();
+  bool step(std::int64_t time_ns);
+  bool decide();
   void send_orders();
   void reload_saved();
 
@@ -98,12 +105,17 @@ class Supervisor final : public Supervising, public ObservationSink {
   std::vector<Observation> perceived_;
   std::set<std::string, std::less<>> warned_;  // what is told only once
   std::unique_ptr<Decisions> decisions_;
+  std::unique_ptr<DecisionProcess> process_;
+  Decider* decider_ = nullptr;  // one of the two
   std::unique_ptr<FileWatch> watch_;
   std::array<Observation, observations_max> waiting_{};
   std::size_t waiting_count_ = 0;
   Snapshot snapshot_;  // with the world model as it is now
-  std::uint32_t sent_ = 0;
-  bool ended_ = false;  // by an exception
+  PlayReport report_;
+  std::uint32_t lost_ = 0;  // orders that found no place on their way to the behaviors
+  bool lost_now_ = false;
+  std::uint32_t beats_ = 0;  // ticks in which somebody decided
+  bool ended_ = false;       // by an exception
   Status status_;
 };
 

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "config/scenario/play_item.h"
+#include "decision_questions.h"
 #include "kadans/exchange/latest.h"
 #include "kadans/exchange/ring.h"
 #include "kadans/signal/status.h"
@@ -30,6 +31,8 @@ class SupervisorLink {
   SupervisorLink& operator=(const SupervisorLink&) = delete;
 
   std::atomic<bool> leaving{false};  // written by any thread: the run ends, and nothing is decided any more
+  DecisionQuestions questions;       // of people, both ways
+
   // Written by the behavior thread, read by the supervisor.
   Latest<Snapshot> snapshot;
   Latest<PlayReport> report;

@@ -1,0 +1,166 @@
+#include "decision_process.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "config/robot/supervisor_config.h"
+#include "config/scenario/event_text.h"
+#include "kadans/signal/input_error.h"
+#include "signal/utf8.h"
+
+namespace kadans {
+namespace {
+
+using Severity = BehaviorLog::Severity;
+
+bool is_event(const PlayedEvent& event) { return is_event_name(event.name) && out_of_bounds(event.data).empty(); }
+
+// As bytes: whether an error ended them, then the orders, then the messages.
+void put_decided(bool failed, const Decider::Decided& decided, ByteWriter& bytes) {
+  bytes.put<std::uint8_t>(failed);
+  bytes.put(static_cast<std::uint32_t>(decided.orders.size()));
+  for (const PlayOrder& order : decided.orders) put_order(order, bytes);
+  bytes.put(static_cast<std::uint32_t>(decided.messages.size()));
+  for (const PlayedEvent& message : decided.messages) put_event(message, bytes);
+}
+
+}  // namespace
+
+DecisionProcess::DecisionProcess(const Behavior::Settings& settings, Catalog& catalog, BehaviorLog& log,
+                                 const Start& start, std::int64_t period_ns)
+    : root_(std::filesystem::absolute(settings.root).lexically_normal()),
+      catalog_(catalog),
+      read_(std::make_unique<Decisions>(settings, catalog, log)),
+      name_(read_->name()),
+      files_(read_->files()),
+      process_(start(log, period_ns)) {}
+
+void DecisionProcess::declare_signals(SignalTable& signals, std::vector<SignalState>& states) {
+  process_->attach(catalog_, {});
+  add_signal_states(read_->behavior().chart(), name_, signals, states);
+  read_.reset();
+}
+
+void DecisionProcess::hear(PlayedEvent event) noexcept {
+  const std::string who = event.who;
+  try {
+    asked_.push_back({process_->ask(PlayOrder{.kind = PlayOrder::Kind::emit, .event = std::move(event)}), who});
+  } catch (const std::exception& error) {
+    decided_.heard.push_back({who, error.what()});
+  }
+}
+
+bool DecisionProcess::tick(const Snapshot& snapshot, const PlayReport& report) noexcept {
+  decided_.orders.clear();
+  decided_.messages.clear();
+  process_->show(report);
+  process_->tick(snapshot, silence_);
+  take_replies();
+  if (std::exchange(answers_, process_->answers()) == process_->answers()) return false;
+  try {
+    if (take_decided()) return true;
+  } catch (const std::exception&) {  // no memory for what it says
+  }
+  decided_.orders.clear();
+  decided_.messages.clear();
+  process_->end_for_rubbish();
+  return false;
+}
+
+// Nothing of it is believed: kinds, counts, and files within the project, which are then read as any others.
+bool DecisionProcess::take_decided() {
+  ByteReader bytes(process_->decided());
+  failed_ = bytes.take<std::uint8_t>() != 0;
+  const auto orders = bytes.take<std::uint32_t>();
+  if (orders > orders_max) return false;
+  for (std::uint32_t i = 0; i < orders && bytes.ok(); ++i) {
+    decided_.orders.push_back(take_order(bytes));
+    for (PlayItem& item : decided_.orders.back().list) item.source = "m:play";
+    if (!may_play(decided_.orders.back())) return false;
+  }
+  const auto messages = bytes.take<std::uint32_t>();
+  if (messages > messages_max) return false;
+  for (std::uint32_t i = 0; i < messages && bytes.ok(); ++i) {
+    decided_.messages.push_back(take_event(bytes));
+    const PlayedEvent& message = decided_.messages.back();
+    if (!is_event(message) || !message.name.starts_with(message_event_prefix)) return false;
+  }
+  return bytes.ok() && bytes.left() == 0;
+}
+
+bool DecisionProcess::may_play(const PlayOrder& order) const {
+  using Kind = PlayOrder::Kind;
+  if (order.kind > Kind::emit || order.kind == Kind::reload) return false;
+  if (order.kind == Kind::emit && (!is_event(order.event) || !order.list.empty())) return false;
+  if (order.behavior.name.size() > EventBounds::name_bytes ||
+      find_invalid_utf8(order.behavior.name) != std::string_view::npos)
+    return false;
+  return std::ranges::all_of(order.list, [&](const PlayItem& item) {
+    if (find_invalid_utf8(item.file.native()) != std::string_view::npos || !out_of_bounds(item.arguments).empty())
+      return false;
+    const std::filesystem::path below = (root_ / item.file).lexically_normal().lexically_relative(root_);
+    return !below.empty() && *below.begin() != "..";
+  });
+}
+
+void DecisionProcess::take_replies() {
+  std::erase_if(asked_, [this](const Asked& asked) {
+    const std::optional<BehaviorReply> reply = process_->reply(asked.number);
+    if (reply) decided_.heard.push_back({asked.who, reply->error});
+    return reply.has_value();
+  });
+  std::erase_if(questions_, [this](auto& asked) {
+    std::optional<BehaviorReply> reply = process_->reply(asked.first);
+    if (!reply) return false;
+    asked.second->reply = std::move(*reply);
+    decided_.replies.push_back(std::move(asked.second));
+    return true;
+  });
+}
+
+void DecisionProcess::reload(const Snapshot& /*snapshot*/) noexcept {
+  try {
+    process_->forget(process_->ask(BehaviorQuestion{.kind = BehaviorQuestion::Kind::reload}));
+  } catch (const std::exception&) {  // it is down, and has said so
+  }
+}
+
+void DecisionProcess::ask(std::unique_ptr<DecisionQuestion> question, const Snapshot& /*snapshot*/) noexcept {
+  try {
+    const std::uint32_t number = process_->ask(question->question);
+    questions_.emplace_back(number, std::move(question));
+  } catch (const std::exception& error) {
+    question->reply = {.error = error.what()};
+    decided_.replies.push_back(std::move(question));
+  }
+}
+
+void ServedDecisions::order(const PlayOrder& order) {
+  if (order.kind != PlayOrder::Kind::emit) throw InputError({.message = "decisions take events alone"});
+  if (const std::string why = decisions_.refusal(order.event); !why.empty()) throw InputError({.message = why});
+}
+
+void ServedDecisions::begin_tick(const Snapshot& snapshot) noexcept {
+  if (kept_.empty()) return;
+  ByteReader bytes(kept_);
+  lost_ = decisions_.go_on(bytes, snapshot);
+  kept_ = {};
+}
+
+void ServedDecisions::tick(const Snapshot& snapshot, const PlayReport& plays, CommandSender& /*commands*/) noexcept {
+  if (!lost_.empty()) return;
+  (void)decisions_.tick(snapshot, plays);
+  bytes_.clear();
+  put_decided(decisions_.failed(), decisions_.decided(), bytes_);
+  if (bytes_.size() <= BehaviorLink::decided_bytes) return;
+  bytes_.clear();
+  put_decided(decisions_.failed(), {}, bytes_);
+  log_.message(snapshot.time_ns, Severity::error, decisions_.name(),
+               "what it asked for in a tick was lost: it is more than " +
+                   std::to_string(BehaviorLink::decided_bytes / 1024) + " kB");
+}
+
+std::string ServedDecisions::keep(ByteWriter& bytes, std::int64_t /*time_ns*/) { return decisions_.keep(bytes); }
+
+}  // namespace kadans
