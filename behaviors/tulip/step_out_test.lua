@@ -13,7 +13,8 @@ describe("step_out", function()
   end
 
   it("stands with its left foot ahead, its soles flat", function()
-    run:advance(0.5)
+    run = k.play("step_out.lua", { plant = "bullet" })
+    run:advance(1)
     expect(run.state).to_equal "stand"
     local j = run.joints
     expect(j.l_hip_pitch.position_rad < j.r_hip_pitch.position_rad - 0.15).to_equal(true)

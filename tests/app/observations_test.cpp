@@ -123,10 +123,10 @@ TEST_CASE("Perception from a record is refused with its place: no such file, ent
     write(recorded() / "config/scenarios/wrong.json",
           R"({ "based_on": "config/scenarios/fetch.json", "name": "wrong", "duration_s": 1, "checks": [],
   "perception": [)" +
-              perception + "] })");
+              perception + "] }");
     return run("sim config/scenarios/wrong.json --no-record", recorded()).err;
   };
-  CHECK(has(refused(R"({ "entry": "ball", "record": "nowhere.mcap" })"), "wrong.json:2:"));
+  CHECK(has(refused(R"({ "entry": "ball", "record": "nowhere.mcap" })"), "wrong.json:2:47: record: there is no file"));
   CHECK(has(refused(R"({ "entry": "ball" })"), "needs either an object of the world, or a record: it has none"));
   CHECK(has(refused(R"({ "entry": "ball", "object": "ball", "record": "fetch.mcap" })"), "it has both"));
   CHECK(has(refused(R"({ "entry": "ball", "record": "fetch.mcap", "missed": 0.5 })"), "missed: comes with the record"));

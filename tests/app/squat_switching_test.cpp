@@ -42,7 +42,8 @@ std::filesystem::path robot_with_three_objects() {
                                            {"*_hip_yaw.damping_Nms_per_rad", 2},
                                            {"*_shoulder_pitch.stiffness_Nm_per_rad", 40},
                                            {"*_shoulder_pitch.damping_Nms_per_rad", 1}}}});
-  for (const char* name : {"balanced", "upright", "walking"}) robot["control"]["sets"].erase(name);
+  const Json posture = robot["control"]["sets"]["posture"];
+  robot["control"]["sets"] = {{"posture", posture}};
   for (const char* name : {"computed", "impedance"}) robot["control"]["sets"][name] = {{"objects", {name}}};
   program::write(file, robot.dump(2));
   return project / "config/scenarios/squat.json";

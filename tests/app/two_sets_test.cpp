@@ -21,7 +21,7 @@ constexpr const char* objects = R"("objects": [
         }
       },
       {
-        "name": "arms", "type": "joint_pid", "joints": ["*_shoulder_pitch"],
+        "name": "shoulders", "type": "joint_pid", "joints": ["*_shoulder_pitch"],
         "parameters": { "*.kp_Nm_per_rad": 40, "*.kd_Nms_per_rad": 1, "*.ki_Nm_per_rads": 20, "*.integral_max_Nm": 8 }
       },)";
 
@@ -32,8 +32,8 @@ return k.behavior 'bends' { controls = 'legs', initial = 'down',
   k.final 'over' { outcome = 'done' } })";
 
 constexpr const char* waves = R"(local k = require 'kadans'
-return k.behavior 'waves' { controls = 'arms', initial = 'up',
-  k.state 'up' { run = function(m) m.arms:move({ r_shoulder_pitch = -1 }, { time_s = 1 }):wait() end,
+return k.behavior 'waves' { controls = 'shoulders', initial = 'up',
+  k.state 'up' { run = function(m) m.shoulders:move({ r_shoulder_pitch = -1 }, { time_s = 1 }):wait() end,
     { on = 'run.done', to = 'over' } },
   k.final 'over' { outcome = 'done' } })";
 
@@ -84,8 +84,9 @@ std::filesystem::path project(const std::string& name) {
   const auto folder = program::project_copy(name);
   const auto robot = folder / "config/tulip/robot.json";
   REQUIRE(program::edit(robot, "\"objects\": [", objects));
-  REQUIRE(program::edit(robot, "\"sets\": {",
-                        "\"sets\": { \"legs\": { \"objects\": [\"legs\"] }, \"arms\": { \"objects\": [\"arms\"] },"));
+  REQUIRE(program::edit(
+      robot, "\"sets\": {",
+      "\"sets\": { \"legs\": { \"objects\": [\"legs\"] }, \"shoulders\": { \"objects\": [\"shoulders\"] },"));
   program::write(folder / "behaviors/tulip/bends.lua", bends);
   program::write(folder / "behaviors/tulip/waves.lua", waves);
   program::write(folder / "behaviors/tulip/both.lua", bends_and_waves);
@@ -106,7 +107,7 @@ TEST_CASE("Behaviors that would play at once on joints of both are refused befor
       program::run("sim config/scenarios/squat.json --play \"squat | waves\" --no-record", folder);
   CHECK(outcome.exit_code == 2);
   CHECK(program::has(outcome.err,
-                     "behaviors that play at the same time: control sets 'posture' and 'arms' both drive "
+                     "behaviors that play at the same time: control sets 'posture' and 'shoulders' both drive "
                      "joint 'l_shoulder_pitch'"));
 }
 

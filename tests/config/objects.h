@@ -12,6 +12,7 @@
 #include "control/balance/stance.h"
 #include "control/made_objects.h"
 #include "control/walk/dcm_walk.h"
+#include "control/walk/stance_leg.h"
 
 namespace kadans {
 
@@ -27,11 +28,13 @@ struct ControlObjects {
       for (const TextEntry& option : object.options) options[option.key] = option.text;
       const ObjectSetup setup{config.model, object.joints, options};
       const std::string& type = object.type.name;
-      owners.push_back(type == "joint_pid"  ? make_joint_pid(setup)
-                       : type == "stance"   ? make_stance(setup)
-                       : type == "dcm_step" ? make_dcm_step(setup)
-                       : type == "dcm_walk" ? make_dcm_walk(setup)
-                                            : make_dcm_balance(setup));
+      owners.push_back(type == "joint_pid"         ? make_joint_pid(setup)
+                       : type == "stance"          ? make_stance(setup)
+                       : type == "dcm_step"        ? make_dcm_step(setup)
+                       : type == "dcm_walk"        ? make_dcm_walk(setup)
+                       : type == "stance_leg"      ? make_stance_leg(setup)
+                       : type == "joint_impedance" ? make_joint_impedance(setup)
+                                                   : make_dcm_balance(setup));
       const auto first = static_cast<ParameterId>(catalog.parameters.size());
       Declaration declaration(object.name, 0, catalog.parameters, catalog.setpoints, catalog.signals);
       owners.back()->declare(declaration);

@@ -12,7 +12,8 @@
 namespace kadans::tulip_config_test {
 namespace {
 
-const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance", "dcm_step", "dcm_walk"};
+const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance",         "dcm_step",
+                                     "dcm_walk",  "stance_leg",  "joint_impedance"};
 const std::string robot_file = KADANS_SOURCE_DIR "/config/tulip/robot.json";
 
 RobotConfig tulip() { return read_robot_config(robot_file, types); }
@@ -41,7 +42,7 @@ TEST_CASE("TULip's configuration drives its twelve motors and leaves the ankle r
   const RobotConfig config = tulip();
   CHECK(config.name == "tulip");
   CHECK(config.model.joints.size() == 14);
-  REQUIRE(config.objects.size() == 5);
+  REQUIRE(config.objects.size() == 12);  // the last seven are those of walk_cycle
   CHECK(config.objects[0].joints.size() == 12);
   CHECK(config.objects[1].type.name == "dcm_balance");
   CHECK(config.objects[1].joints.size() == 8);

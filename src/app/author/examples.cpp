@@ -145,6 +145,7 @@ constexpr Examples all_examples[] = {
     {"log info", "  kadans log info squat.mcap --json\n"},
     {"log cat", "  kadans log cat squat.mcap --topic transitions --topic log --from 2 --to 4\n"},
     {"log csv", "  kadans log csv squat.mcap 'joint.*knee.*' --every 0.01 -o knees.csv\n"},
+    {"log observations", "  kadans log observations fetch.mcap -o ball.csv\n"},
     {"log plot",
      "  kadans log plot squat.mcap plant.base.height_m\n"
      "  kadans log plot squat.mcap plant.base.height_m 'joint.*_knee.effort_Nm' -o squat.svg\n"},
