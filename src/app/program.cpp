@@ -9,8 +9,8 @@
 #include "app/run/real_time_start.h"
 #include "command_line.h"
 #include "kadans/plant/plant_type.h"
+#include "kadans/signal/nearest_name.h"
 #include "option_checks.h"
-#include "signal/nearest_name.h"
 #include "terminal.h"
 #include "version.h"
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -1,6 +1,6 @@
 #include "option_link.h"
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 

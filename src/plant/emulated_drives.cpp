@@ -5,7 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

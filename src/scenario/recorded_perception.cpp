@@ -5,7 +5,7 @@
 
 #include "config/json/problems.h"
 #include "kadans/signal/input_error.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "telemetry/reading/record_observations.h"
 
 namespace kadans {

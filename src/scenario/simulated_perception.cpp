@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "config/json/problems.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -1,5 +1,5 @@
 
-#include "nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 #include <algorithm>
 #include <cctype>

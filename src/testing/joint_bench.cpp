@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/motion/setpoint_motions.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans::testing {
 namespace {

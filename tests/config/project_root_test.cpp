@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans::project_root_test {
 namespace {

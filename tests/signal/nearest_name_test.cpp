@@ -1,4 +1,4 @@
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 #include <string>
 #include <vector>

@@ -12,8 +12,8 @@
 #include "app/terminal.h"
 #include "drive_bench.h"
 #include "jog.h"
+#include "kadans/signal/nearest_name.h"
 #include "keys.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "commission_steps.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "app/terminal.h"
 #include "debugged_run.h"
+#include "kadans/signal/nearest_name.h"
 #include "realtime/machine/child_process.h"
-#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

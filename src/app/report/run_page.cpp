@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "app/live/record_pictures.h"
+#include "kadans/signal/nearest_name.h"
 #include "signal/durable_file.h"
-#include "signal/nearest_name.h"
 #include "version.h"
 
 namespace kadans {

@@ -9,7 +9,7 @@
 #include "config/json/json_layout.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

@@ -8,7 +8,7 @@
 
 #include "app/commands.h"
 #include "app/option_checks.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "sweep_subjects.h"
 
 namespace kadans {

@@ -5,7 +5,7 @@
 
 #include "config/json/json_value.h"
 #include "config/scenario/scenario_config.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "config/json/fields.h"
 #include "config/json/json_edit.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/nearest_name.h"
 #include "kadans/signal/random.h"
 #include "signal/content_hash.h"
-#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 #include "signal/shell_word.h"
 

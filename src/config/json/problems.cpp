@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

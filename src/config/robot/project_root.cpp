@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

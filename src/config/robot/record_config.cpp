@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

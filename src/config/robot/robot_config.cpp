@@ -6,10 +6,10 @@
 #include "config/scenario/event_text.h"
 #include "config/scenario/play_item.h"
 #include "kadans/model/urdf.h"
+#include "kadans/signal/nearest_name.h"
 #include "mesh_hull.h"
 #include "project_root.h"
 #include "robot_reader.h"
-#include "signal/nearest_name.h"
 #include "signal/shell_word.h"
 
 namespace kadans {

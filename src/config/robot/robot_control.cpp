@@ -4,9 +4,9 @@
 #include <stdexcept>
 
 #include "kadans/control/set_partition.h"
+#include "kadans/signal/nearest_name.h"
 #include "robot_config.h"
 #include "robot_reader.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

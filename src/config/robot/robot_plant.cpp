@@ -4,10 +4,10 @@
 
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/nearest_name.h"
 #include "mesh_hull.h"
 #include "project_root.h"
 #include "robot_reader.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 

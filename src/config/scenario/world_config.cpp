@@ -6,7 +6,7 @@
 #include <initializer_list>
 
 #include "kadans/model/kinematics.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -6,6 +6,8 @@
 #include <functional>
 #include <string_view>
 
+#include "kadans/signal/nearest_name.h"
+
 namespace kadans::football {
 
 const char* const usage =
@@ -41,10 +43,10 @@ namespace {
 
 using Command = Options::Command;
 
-constexpr std::array<std::string_view, 4> commands{"match", "matches", "merge", "serve"};
+const std::array<std::string, 4> commands{"match", "matches", "merge", "serve"};
 
 struct Option {
-  std::string_view name, wants;  // "": it has no value
+  std::string name, wants;  // "": it has no value
   std::vector<Command> commands;
   std::function<std::string(Options&, const std::string&)> take;
 };
@@ -102,46 +104,22 @@ const std::vector<Option>& all_options() {
   return all;
 }
 
-std::size_t edits(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t before = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, before + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      before = above;
-    }
-  }
-  return row[b.size()];
-}
-
-// ", did you mean 'match'?", or "" where nothing is near.
-template <typename Names>
-std::string nearest(std::string_view given, const Names& names) {
-  const auto best = std::ranges::min_element(names, {}, [&](std::string_view name) { return edits(given, name); });
-  return edits(given, *best) > 2 ? "" : ", did you mean '" + std::string(*best) + "'?";
-}
-
 std::string take_option(const std::string& word, Command command, int argc, char** argv, int& i, Options& options) {
   const std::size_t sign = word.find('=');
   const std::string name = word == "-v" ? "--verbose" : word.substr(0, sign);
-  const auto found = std::ranges::find(all_options(), std::string_view(name), &Option::name);
+  const auto found = std::ranges::find(all_options(), name, &Option::name);
   if (found == all_options().end()) {
-    std::vector<std::string_view> names;
-    for (const Option& option : all_options()) names.push_back(option.name);
-    return "unknown option '" + name + "'" + nearest(name, names);
+    return "unknown option '" + name + "'" + did_you_mean(name, names_of(all_options()));
   }
   if (std::ranges::find(found->commands, command) == found->commands.end())
-    return name + " is not for '" + std::string(commands.at(static_cast<std::size_t>(command))) + "'";
+    return name + " is not for '" + commands.at(static_cast<std::size_t>(command)) + "'";
   if (name == "--live") return found->take(options, sign == std::string::npos ? "8765" : word.substr(sign + 1));
   if (found->wants.empty()) {
     if (sign != std::string::npos) return name + " has no value";
     return found->take(options, "");
   }
   if (sign != std::string::npos) return found->take(options, word.substr(sign + 1));
-  if (i + 1 >= argc) return name + " needs " + std::string(found->wants);
+  if (i + 1 >= argc) return name + " needs " + found->wants;
   return found->take(options, argv[++i]);
 }
 
@@ -160,7 +138,8 @@ std::string wrong_files(const Options& options) {
 std::string read_options(int argc, char** argv, Options& options) {
   if (argc < 2) return "what shall it do? 'match', 'matches', 'merge' or 'serve'";
   const auto found = std::ranges::find(commands, std::string_view(argv[1]));
-  if (found == commands.end()) return "unknown command '" + std::string(argv[1]) + "'" + nearest(argv[1], commands);
+  if (found == commands.end())
+    return "unknown command '" + std::string(argv[1]) + "'" + did_you_mean(argv[1], commands);
   options.command = static_cast<Command>(found - commands.begin());
   for (int i = 2; i < argc; ++i) {
     const std::string word = argv[i];

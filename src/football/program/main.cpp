@@ -37,12 +37,6 @@ int refuse_usage(const std::string& why) {
   return exit_usage;
 }
 
-std::string command_of(const Options& options, std::uint64_t seed) {
-  std::string command = "kadans-football match " + options.files[0] + " --seed " + std::to_string(seed);
-  for (const std::string& setting : options.set) command += " --set " + setting;
-  return command;
-}
-
 // Goes on to the end. Returns what was said.
 std::string play_out(PlayedMatch& played, const Options& options) {
   std::string said;
@@ -60,7 +54,8 @@ int play(const Options& options) {
   const MatchConfig match = read_match(options.files[0], options.set);
   const std::uint64_t seed = options.seed.value_or(match.seed);
   PlayedMatch played(match, seed);
-  if (!options.record.empty()) played.record(options.record, options.signals, command_of(options, seed));
+  if (!options.record.empty())
+    played.record(options.record, options.signals, command_of({options.files[0], options.set}, seed));
   if (options.live) played.show(static_cast<std::uint16_t>(*options.live));
   stop_when_told();
   const std::clock_t began = std::clock();

@@ -39,12 +39,6 @@ std::vector<Case> cases_of(const ManyMatches& plan, std::size_t variants) {
   return cases;
 }
 
-std::string command_of(const MatchVariant& variant, std::uint64_t seed) {
-  std::string command = "kadans-football match " + variant.file + " --seed " + std::to_string(seed);
-  for (const std::string& setting : variant.settings) command += " --set " + setting;
-  return command;
-}
-
 // FNV-1a, of bytes whose order counts.
 std::uint64_t hash_on(std::uint64_t hash, std::string_view bytes) {
   for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1'099'511'628'211ULL;
@@ -203,6 +197,12 @@ std::string MatchVariant::name() const {
   std::string text = file;
   for (const std::string& setting : settings) text += " " + setting;
   return text;
+}
+
+std::string command_of(const MatchVariant& variant, std::uint64_t seed) {
+  std::string command = "kadans-football match " + variant.file + " --seed " + std::to_string(seed);
+  for (const std::string& setting : variant.settings) command += " --set " + setting;
+  return command;
 }
 
 std::vector<MatchVariant> variants_of(const ManyMatches& plan) {

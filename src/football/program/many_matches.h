@@ -31,6 +31,9 @@ struct MatchVariant {
   std::string name() const;  // "config/matches/a.json network.lost=0.3"
 };
 
+// "kadans-football match FILE --seed N --set ...": what plays it by itself.
+std::string command_of(const MatchVariant& variant, std::uint64_t seed);
+
 struct VariantResults {
   MatchVariant variant;
   std::vector<MatchResult> results;  // by seed

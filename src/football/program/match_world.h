@@ -1,5 +1,5 @@
 // What a match is played in: a simulation on virtual time (here), or a world that is served in real time to robots in
-// processes of their own (served_world.h).
+// processes of their own (served_match.h).
 #pragma once
 
 #include <cstdint>

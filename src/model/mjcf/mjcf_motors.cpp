@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

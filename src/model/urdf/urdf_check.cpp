@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "urdf_description.h"
 
 namespace kadans {

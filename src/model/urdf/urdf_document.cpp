@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "kadans/signal/nearest_name.h"
 #include "model/xml_scan.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

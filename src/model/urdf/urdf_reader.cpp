@@ -11,7 +11,7 @@
 #include "kadans/model/inertia.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/capacity.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "urdf_description.h"
 #include "urdf_document.h"
 

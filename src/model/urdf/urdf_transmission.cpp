@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "urdf_description.h"
 #include "urdf_document.h"
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "kadans/signal/nearest_name.h"
 #include "servo_bus.h"
-#include "signal/nearest_name.h"
 
 namespace kadans::dynamixel {
 namespace {

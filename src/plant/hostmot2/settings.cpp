@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans::hostmot2 {
 namespace {

@@ -14,8 +14,8 @@
 #include "config/json/fields.h"
 #include "config/scenario/event_text.h"
 #include "engine/refusal_text.h"
+#include "kadans/signal/nearest_name.h"
 #include "run_description.h"
-#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

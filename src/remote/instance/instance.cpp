@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "config/json/problems.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "kadans/model/inertia.h"
+#include "kadans/signal/nearest_name.h"
 #include "kadans/signal/random.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {

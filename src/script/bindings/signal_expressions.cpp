@@ -4,11 +4,11 @@
 #include <array>
 #include <cctype>
 
+#include "kadans/signal/nearest_name.h"
 #include "script/check/source_lexer.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
-#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

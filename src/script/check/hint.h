@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "kadans/signal/nearest_name.h"
 #include "script/lua/lua_core.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/nearest_name.h"
 #include "script/bindings/bindings.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
-#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

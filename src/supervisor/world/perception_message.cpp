@@ -5,7 +5,7 @@
 
 #include "config/json/json_value.h"
 #include "kadans/signal/input_error.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {

@@ -14,7 +14,7 @@
 #include "config/json/foreign_json.h"
 #include "input_reader.h"
 #include "kadans/signal/input_error.h"
-#include "signal/nearest_name.h"
+#include "kadans/signal/nearest_name.h"
 #include "signal/number_text.h"
 #include "telemetry/mcap/mcap_writer.h"
 

@@ -9,8 +9,8 @@
 
 #include "config/json/foreign_json.h"
 #include "config/json/problems.h"
+#include "kadans/signal/nearest_name.h"
 #include "kadans/signal/state_hash.h"
-#include "signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
+#include "kadans/signal/nearest_name.h"
 #include "run_inputs.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {
