@@ -30,8 +30,6 @@ Posture posture_of(const Vec3& up) noexcept {
 
 namespace {
 
-Vec3 sum(const Vec3& a, const Vec3& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
 // Turns a and b by the angle in their plane, from a towards b.
 [[gnu::always_inline]] inline void turn_pair(Vec3& a, Vec3& b, double cosine, double sine) noexcept {
   const double a0 = a[0], a1 = a[1], a2 = a[2];

@@ -26,6 +26,10 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+inline Vec3 sum(const Vec3& a, const Vec3& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Vec3 difference(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Vec3 scaled(double by, const Vec3& v) noexcept { return {by * v[0], by * v[1], by * v[2]}; }
+
 // Between two times from outside, which may have any value: the difference wraps around and does not overflow.
 inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   return 1e-9 * static_cast<double>(

@@ -12,14 +12,6 @@ std::array<std::size_t, 2> two_feet(const ObjectSetup& setup) {
   return {required_link(setup, "left_foot", "a foot's link"), required_link(setup, "right_foot", "a foot's link")};
 }
 
-namespace {
-
-Vec3 sum(const Vec3& a, const Vec3& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Vec3 difference(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec3 scaled(double by, const Vec3& v) noexcept { return {by * v[0], by * v[1], by * v[2]}; }
-
-}  // namespace
-
 void MovingBody::update(const ControlInput& input, const Quat& upright) noexcept {
   const std::size_t count = model_->joints.size();
   std::array<double, max_joints> position_rad{};

@@ -38,10 +38,9 @@ class MovingBody {
   const Kinematics& kinematics() const noexcept { return kinematics_; }
   const Vec3& com_m() const noexcept { return com_m_; }
   const Vec3& com_velocity_m_s() const noexcept { return com_velocity_m_s_; }
-  const Vec3& velocity_m_s(std::size_t link) const noexcept {
-    return links_[link].linear_m_s;
-  }                                                                         // of its frame's origin
-  Vec3 velocity_m_s(std::size_t link, const Vec3& point_m) const noexcept;  // of a point of it, from the base's origin
+  // Of a link's frame, and of a point of a link, which is given from the base's origin.
+  const Vec3& velocity_m_s(std::size_t link) const noexcept { return links_[link].linear_m_s; }
+  Vec3 velocity_m_s(std::size_t link, const Vec3& point_m) const noexcept;
 
  private:
   struct Velocity {

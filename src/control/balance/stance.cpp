@@ -97,15 +97,7 @@ void Stance::declare_pressure(Declaration& d) {
 
 void Stance::declare_trunk(Declaration& d) {
   Config& c = config_;
-  d.parameter({"pitch_rad", "rad", -1, 1, c.pitch_rad, "How far the trunk leans forward."}, &c.pitch_rad);
-  d.parameter({"upright_Nm_per_rad", "Nm/rad", 0, 2000, c.upright_Nm_per_rad, "Turns the trunk back, forward."},
-              &c.upright_Nm_per_rad);
-  d.parameter({"upright_Nms_per_rad", "Nms/rad", 0, 200, c.upright_Nms_per_rad, "Damps the trunk, forward."},
-              &c.upright_Nms_per_rad);
-  d.parameter({"level_Nm_per_rad", "Nm/rad", 0, 2000, c.level_Nm_per_rad, "Turns the trunk back, to the side."},
-              &c.level_Nm_per_rad);
-  d.parameter({"level_Nms_per_rad", "Nms/rad", 0, 200, c.level_Nms_per_rad, "Damps the trunk, to the side."},
-              &c.level_Nms_per_rad);
+  c.trunk.declare(d, TrunkRighting::Leans::forward_only, {2000, 200});
   d.parameter({"height_m", "m", 0, 2, c.height_m, "Of the centre of mass over the feet's frames."}, &c.height_m);
   d.parameter({"height_N_per_m", "N/m", 0, 20000, c.height_N_per_m, "Lifts it there."}, &c.height_N_per_m);
   d.parameter({"height_Ns_per_m", "Ns/m", 0, 2000, c.height_Ns_per_m, "Damps it."}, &c.height_Ns_per_m);
@@ -144,13 +136,6 @@ void Stance::start(const ControlInput&) noexcept {
   for (Part& part : parts_) part.effort_Nm = 0;
 }
 
-std::array<double, 2> Stance::righting_Nm(const BaseStatus& base) const noexcept {
-  const Config& c = config_;
-  return {
-      -c.level_Nm_per_rad * base.roll_rad - c.level_Nms_per_rad * base.angular_velocity_rad_s[0],
-      -c.upright_Nm_per_rad * (base.pitch_rad - c.pitch_rad) - c.upright_Nms_per_rad * base.angular_velocity_rad_s[1]};
-}
-
 void Stance::find_pressure(const BaseStatus& base) noexcept {
   const Config& c = config_;
   State& s = state_;
@@ -159,7 +144,7 @@ void Stance::find_pressure(const BaseStatus& base) noexcept {
   const Vec3& left = standing_.kinematics().link(standing_.feet()[0]).position_m;
   const Vec3& right = standing_.kinematics().link(standing_.feet()[1]).position_m;
   const double apart_m = std::max(left[1] - right[1], narrowest_m), ahead_m = left[0] - right[0];
-  const std::array<double, 2> righting = righting_Nm(base);
+  const std::array<double, 2> righting = c.trunk.moment_Nm(base);
 
   const double reach_m = apart_m / 2 + c.side_m;
   const Answer side = answer(s.dcm_y_m, c.offset_y_m, c.pull_y, {-reach_m, reach_m}, -righting[0]);

@@ -42,6 +42,7 @@
 #include "kadans/control/control_object.h"
 #include "kadans/model/kinematics.h"
 #include "kadans/model/robot_model.h"
+#include "trunk_righting.h"
 
 namespace kadans {
 
@@ -84,9 +85,7 @@ class Stance final : public ControlObject {
     double sole_m = 0.06;                // how far the sole is below a foot's frame
     double flat_m_per_rad = 0;           // shift of the pressure on a foot that tips
     double grip = 0.45;                  // largest F_x / F_z and F_y / F_z
-    double pitch_rad = 0;                // of the trunk
-    double upright_Nm_per_rad = 0, upright_Nms_per_rad = 0;
-    double level_Nm_per_rad = 0, level_Nms_per_rad = 0;
+    TrunkRighting trunk;
     double turn_max_Nm = 40;
     double height_m = 0.55, height_N_per_m = 0, height_Ns_per_m = 0;
     double lift_N_per_m = 0, lift_max = 0.6;
@@ -129,7 +128,6 @@ class Stance final : public ControlObject {
   Answer answer(double dcm_m, double rest_m, double pull, const std::array<double, 2>& sole_m,
                 double righting_Nm) const noexcept;
   // The moments about x and y that would right the trunk if the soles were long enough.
-  std::array<double, 2> righting_Nm(const BaseStatus& base) const noexcept;
   void find_pressure(const BaseStatus& base) noexcept;
   void find_force() noexcept;
   void load(std::size_t side, double share) noexcept;

@@ -117,16 +117,7 @@ void SupportForces::declare(Declaration& d) {
               &c.offset_x_m);
   d.parameter({"offset_y_m", "m", -0.5, 0.5, c.offset_y_m, "The same, to the left."}, &c.offset_y_m);
   d.parameter({"pull", "", 0, 10, c.pull, "Shift of the pressure per error."}, &c.pull);
-  d.parameter({"pitch_rad", "rad", -1, 1, c.pitch_rad, "How far the trunk leans forward."}, &c.pitch_rad);
-  d.parameter({"roll_rad", "rad", -1, 1, c.roll_rad, "How far the trunk leans to the right."}, &c.roll_rad);
-  d.parameter({"upright_Nm_per_rad", "Nm/rad", 0, 5000, c.upright_Nm_per_rad, "Turns the trunk back, forward."},
-              &c.upright_Nm_per_rad);
-  d.parameter({"upright_Nms_per_rad", "Nms/rad", 0, 500, c.upright_Nms_per_rad, "Damps the trunk, forward."},
-              &c.upright_Nms_per_rad);
-  d.parameter({"level_Nm_per_rad", "Nm/rad", 0, 5000, c.level_Nm_per_rad, "Turns the trunk back, to the side."},
-              &c.level_Nm_per_rad);
-  d.parameter({"level_Nms_per_rad", "Nms/rad", 0, 500, c.level_Nms_per_rad, "Damps the trunk, to the side."},
-              &c.level_Nms_per_rad);
+  c.trunk.declare(d, TrunkRighting::Leans::anyhow, {5000, 500});
   d.parameter({"turn_Nms_per_rad", "Nms/rad", 0, 500, c.turn_Nms_per_rad, "Damps turning about the vertical."},
               &c.turn_Nms_per_rad);
   d.parameter({"height_m", "m", 0, 2, c.height_m, "Of the centre of mass over the feet."}, &c.height_m);
@@ -208,10 +199,8 @@ void SupportForces::find_force(const BaseStatus& base) noexcept {
   const double most_N = c.grip * s.force_N[2];
   s.force_N[0] = std::clamp(weight_N_ * (com_m_[0] - s.cop_x_m) / com_m_[2], -most_N, most_N);
   s.force_N[1] = std::clamp(weight_N_ * (com_m_[1] - s.cop_y_m) / com_m_[2], -most_N, most_N);
-  const Vec3& rate_rad_s = base.angular_velocity_rad_s;
-  s.moment_Nm = {-c.level_Nm_per_rad * (base.roll_rad - c.roll_rad) - c.level_Nms_per_rad * rate_rad_s[0],
-                 -c.upright_Nm_per_rad * (base.pitch_rad - c.pitch_rad) - c.upright_Nms_per_rad * rate_rad_s[1],
-                 -c.turn_Nms_per_rad * rate_rad_s[2]};
+  const auto [roll_Nm, pitch_Nm] = c.trunk.moment_Nm(base);
+  s.moment_Nm = {roll_Nm, pitch_Nm, -c.turn_Nms_per_rad * base.angular_velocity_rad_s[2]};
 }
 
 void SupportForces::load_legs() noexcept {

@@ -36,6 +36,7 @@
 #include "dcm_measure.h"
 #include "kadans/control/control_object.h"
 #include "stance.h"
+#include "trunk_righting.h"
 
 namespace kadans {
 
@@ -54,9 +55,7 @@ class SupportForces final : public ControlObject {
     double share = 0;                       // 0..1
     double offset_x_m = 0, offset_y_m = 0;  // rest: where xi shall be, from the middle between the feet
     double pull = 1.5;
-    double pitch_rad = 0, roll_rad = 0;  // of the trunk
-    double upright_Nm_per_rad = 0, upright_Nms_per_rad = 0;
-    double level_Nm_per_rad = 0, level_Nms_per_rad = 0;
+    TrunkRighting trunk;
     double turn_Nms_per_rad = 0;
     double height_m = 0, height_N_per_m = 0, height_Ns_per_m = 0;
     double lift_max = 0.5;  // of the weight

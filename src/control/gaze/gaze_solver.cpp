@@ -18,8 +18,6 @@ constexpr double approach_per_s = 20;        // of a position limit, at the end
 constexpr double braking = 0.7;              // share of acceleration_max that stops a joint before it
 constexpr double eyes_singular = 0.5;  // volume of what the eyes can do, below which the damping rises; ahead it is 1.4
 
-Vec3 minus(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
 bool moves(const RobotModel& model, std::size_t joint, std::size_t link) {
   for (std::size_t at = link; at > 0; at = model.joints[at - 1].parent) {
     if (at - 1 == joint) return true;
@@ -79,7 +77,7 @@ void GazeSolver::see(const Target& target) noexcept {
   jacobian_.setZero();
   for (std::size_t eye = 0; eye < 2; ++eye) {
     const Pose& pose = kinematics_.link(eyes_[eye]);
-    const Bearing bearing(rotate_inverse(pose.orientation, minus(target.point_m, pose.position_m)));
+    const Bearing bearing(rotate_inverse(pose.orientation, difference(target.point_m, pose.position_m)));
     const auto row = static_cast<Eigen::Index>(2 * eye);
     const auto write = [&](auto&& column, const Vec3& v, double sign) {
       column[row] = sign * bearing.pitch_rate(v);
@@ -93,7 +91,7 @@ void GazeSolver::see(const Target& target) noexcept {
       if (!joints_[i].moves[eye]) continue;
       const Pose& at = kinematics_.link(joints_[i].joint + 1);
       const Vec3 axis = rotate(at.orientation, model_->joints[joints_[i].joint].axis);
-      const Vec3 moved = cross(minus(target.point_m, at.position_m), axis);  // of the target, as the eye sees it
+      const Vec3 moved = cross(difference(target.point_m, at.position_m), axis);  // of the target, as the eye sees it
       write(jacobian_.col(static_cast<Eigen::Index>(i)), rotate_inverse(pose.orientation, moved), -1);
     }
   }

@@ -31,16 +31,7 @@ void StanceLeg::declare(Declaration& d) {
   d.parameter({"rise_s", "s", 0, 1, c.rise_s, "Time in which its torques rise after the start."}, &c.rise_s);
   d.parameter({"pressure_x_m", "m", -0.5, 0.5, c.pressure_x_m, "Centre of pressure, forward of the foot's frame."},
               &c.pressure_x_m);
-  d.parameter({"pitch_rad", "rad", -1, 1, c.pitch_rad, "How far the trunk leans forward."}, &c.pitch_rad);
-  d.parameter({"roll_rad", "rad", -1, 1, c.roll_rad, "How far the trunk leans to the right."}, &c.roll_rad);
-  d.parameter({"upright_Nm_per_rad", "Nm/rad", 0, 2000, c.upright_Nm_per_rad, "Turns the trunk back, forward."},
-              &c.upright_Nm_per_rad);
-  d.parameter({"upright_Nms_per_rad", "Nms/rad", 0, 200, c.upright_Nms_per_rad, "Damps the trunk, forward."},
-              &c.upright_Nms_per_rad);
-  d.parameter({"level_Nm_per_rad", "Nm/rad", 0, 2000, c.level_Nm_per_rad, "Turns the trunk back, to the side."},
-              &c.level_Nm_per_rad);
-  d.parameter({"level_Nms_per_rad", "Nms/rad", 0, 200, c.level_Nms_per_rad, "Damps the trunk, to the side."},
-              &c.level_Nms_per_rad);
+  c.trunk.declare(d, TrunkRighting::Leans::anyhow, {2000, 200});
   d.parameter({"grip", "", 0, 2, c.grip, "Most of the force along the ground, per weight."}, &c.grip);
   d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below the foot's frame."}, &c.sole_m);
   declare_signals(d);
@@ -83,9 +74,9 @@ bool StanceLeg::measure(const ControlInput& input) noexcept {
 void StanceLeg::load(const BaseStatus& base) noexcept {
   const Config& c = config_;
   State& s = state_;
-  const Vec3& rate_rad_s = base.angular_velocity_rad_s;
-  s.turn_x_Nm = -c.level_Nm_per_rad * (base.roll_rad - c.roll_rad) - c.level_Nms_per_rad * rate_rad_s[0];
-  s.turn_y_Nm = -c.upright_Nm_per_rad * (base.pitch_rad - c.pitch_rad) - c.upright_Nms_per_rad * rate_rad_s[1];
+  const auto [roll_Nm, pitch_Nm] = c.trunk.moment_Nm(base);
+  s.turn_x_Nm = roll_Nm;
+  s.turn_y_Nm = pitch_Nm;
   const double height_m = s.com_m[2] + c.sole_m, most_N = c.grip * weight_N_;
   s.force_N[0] = std::clamp((weight_N_ * (s.com_m[0] - c.pressure_x_m) - s.turn_y_Nm) / height_m, -most_N, most_N);
   s.force_N[1] = std::clamp((weight_N_ * s.com_m[1] + s.turn_x_Nm) / height_m, -most_N, most_N);

@@ -28,6 +28,7 @@
 #include "control/balance/balance_joint.h"
 #include "control/balance/dcm_measure.h"
 #include "control/balance/stance.h"
+#include "control/balance/trunk_righting.h"
 #include "kadans/control/control_object.h"
 #include "kadans/model/kinematics.h"
 
@@ -38,9 +39,7 @@ class StanceLeg final : public ControlObject {
   struct Config {
     double rise_s = 0.03;
     double pressure_x_m = 0;  // p, forward of the foot's frame
-    double pitch_rad = 0, roll_rad = 0;
-    double upright_Nm_per_rad = 0, upright_Nms_per_rad = 0;
-    double level_Nm_per_rad = 0, level_Nms_per_rad = 0;
+    TrunkRighting trunk;
     double grip = 0.45;
     double sole_m = 0.06;  // how far the sole is below the foot's frame
   };
