@@ -9,10 +9,10 @@
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
 #include "kadans/plant/emulated_drives.h"
+#include "kadans/signal/nearest_name.h"
 #include "plant/imu/emulator/imu_world.h"
 #include "plant/imu/imu_plant.h"
 #include "scenario/disturb/planned_faults.h"
-#include "signal/nearest_name.h"
 
 namespace kadans {
 namespace {
@@ -488,9 +488,14 @@ void Assembly::make_joystick_player() {
 
 void Assembly::make_sight() {
   if (!variant_.sees) return;
-  const auto& objects = variant_.plant.world.objects;
-  const auto ball = std::ranges::find(objects, scenario_.sight.ball.name, &WorldObject::name);
-  sight_ = std::make_unique<SimulatedSight>(variant_.sight, static_cast<std::size_t>(ball - objects.begin()), seed_);
+  sight_ = std::make_unique<SimulatedSight>(variant_.sight, object(scenario_.sight.ball.name), seed_);
+}
+
+std::size_t Assembly::object(std::string_view name) const {
+  const auto& objects = world_settings().objects;
+  const auto found = std::ranges::find(objects, name, &WorldObject::name);
+  if (found == objects.end()) throw std::invalid_argument("the world has no object '" + std::string(name) + "'");
+  return static_cast<std::size_t>(found - objects.begin());
 }
 
 BehaviorHost& Assembly::played() noexcept {

@@ -104,6 +104,7 @@ class Assembly {
   RunParts parts() { return parts_in(*lockstep_); }
   const ScenarioConfig& scenario() const noexcept { return scenario_; }
   const WorldSettings& world_settings() const noexcept { return variant_.plant.world; }  // of this run
+  std::size_t object(std::string_view name) const;  // of that world; throws std::invalid_argument where there is none
   const std::vector<std::unique_ptr<Assembly>>& others() const noexcept { return others_; }
   ControlEngine& control() noexcept { return *control_; }
   ControlSets& sets() noexcept { return *sets_; }

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -151,6 +152,19 @@ void check_damaged(const fs::path& record) {
     CHECK(outcome.exit_code <= 2);
     CHECK_MESSAGE(has(outcome.out + outcome.err, "damaged.mcap"), (outcome.out + outcome.err));
   }
+}
+
+std::vector<std::vector<double>> rows_of_table(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::vector<std::vector<double>> rows;
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    auto& row = rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+  }
+  return rows;
 }
 
 std::string last_line(const std::string& text) {

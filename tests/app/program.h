@@ -66,6 +66,9 @@ std::vector<std::filesystem::path> flights_in(const std::filesystem::path& folde
 // Replays copies of a record, each damaged in another place: the program says something of it, and ends properly.
 void check_damaged(const std::filesystem::path& record);
 
+// The numbers of a table as `log csv` prints it, without its head: a row for each line.
+std::vector<std::vector<double>> rows_of_table(const std::string& csv);
+
 // The last line that is not empty, without its end.
 std::string last_line(const std::string& text);
 

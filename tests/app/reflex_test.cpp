@@ -1,7 +1,6 @@
 // Switches of the legs on the simulated robot, by reflexes and by states: when they come, and what they do to torques.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -34,14 +33,7 @@ Rows rows_of(const std::string& record, const std::filesystem::path& project) {
               " foot.l_ankle_roll_link.contact foot.r_ankle_roll_link.contact engine.control_sets "
               "'actuation.*_hip_roll.effort_Nm' 'actuation.*_hip_pitch.effort_Nm' 'actuation.*_knee.effort_Nm'",
           project);
-  std::istringstream lines(csv.out);
-  Rows rows;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("time_s")) continue;
-    std::istringstream cells(line);
-    auto& row = rows.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
-  }
+  Rows rows = rows_of_table(csv.out);
   REQUIRE(!rows.empty());
   REQUIRE(rows.front().size() == 4 + 6);
   return rows;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -80,9 +79,7 @@ Squat squat(const std::filesystem::path& project, double period_s, int balanced)
       run("log csv switched.mcap engine.control_sets plant.base.tilt_rad 'control.posture.*.error_rad' "
           "'joint.*.velocity_rad_s'",
           project);
-  std::istringstream lines(csv.out);
-  std::string line;
-  std::getline(lines, line);
+  const std::string line = csv.out.substr(0, csv.out.find('\n'));
   const auto named = [&line](const std::string& part) {
     std::size_t count = 0;
     for (std::size_t at = line.find(part); at != std::string::npos; at = line.find(part, at + 1)) ++count;
@@ -93,10 +90,7 @@ Squat squat(const std::filesystem::path& project, double period_s, int balanced)
   REQUIRE(velocities == 14);
   Squat found;
   double squares = 0, rows = 0, sets_before = 0;
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    std::vector<double> row;
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+  for (const std::vector<double>& row : rows_of_table(csv.out)) {
     found.switches += row[1] != sets_before ? 1 : 0;
     sets_before = row[1];
     if (row[0] < 0.5) continue;
@@ -176,15 +170,9 @@ Turns turn(const std::filesystem::path& project, double period_s, int second) {
   REQUIRE_MESSAGE(sim.exit_code == 0, sim.out);
   const Outcome csv =
       run("log csv turns.mcap engine.control_sets 'joint.*.position_rad' 'joint.*.velocity_rad_s'", project);
-  std::istringstream lines(csv.out);
-  std::string line;
-  std::getline(lines, line);
   Turns found;
   double squares[2]{}, rows = 0, sets = 0;
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    std::vector<double> row;
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+  for (const std::vector<double>& row : rows_of_table(csv.out)) {
     REQUIRE(row.size() == 6);
     found.switches += row[1] != std::exchange(sets, row[1]) ? 1 : 0;
     if (row[0] < 1.5) continue;
@@ -237,15 +225,9 @@ TEST_CASE("TULip hangs as calmly while its control sets take turns fifty times a
   const Outcome sim = run("sim config/scenarios/turns.json --seed 1 --record turns.mcap", project);
   CHECK_MESSAGE(sim.exit_code == 0, sim.out);
   const Outcome csv = run("log csv turns.mcap engine.control_sets 'joint.*.velocity_rad_s'", project);
-  std::istringstream lines(csv.out);
-  std::string line;
-  std::getline(lines, line);
   int switches = 0;
   double sets = 0, fastest_rad_s = 0;
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    std::vector<double> row;
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+  for (const std::vector<double>& row : rows_of_table(csv.out)) {
     switches += row[1] != std::exchange(sets, row[1]) ? 1 : 0;
     for (std::size_t i = 2; row[0] > 1 && i < row.size(); ++i)
       fastest_rad_s = std::max(fastest_rad_s, std::abs(row[i]));

@@ -1,7 +1,6 @@
 // TULip walks in a limit cycle: its legs change their control objects at each landing, in the tick of the contact.
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,14 +28,7 @@ Rows walked(const std::filesystem::path& project) {
       run("log csv cycle.mcap foot.l_ankle_roll_link.contact foot.r_ankle_roll_link.contact engine.control_sets "
           "'actuation.*_hip_*.effort_Nm' 'actuation.*_knee.effort_Nm' 'actuation.*_ankle_pitch.effort_Nm'",
           project);
-  std::istringstream lines(csv.out);
-  Rows rows;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("time_s")) continue;
-    std::istringstream cells(line);
-    auto& row = rows.emplace_back();
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
-  }
+  Rows rows = rows_of_table(csv.out);
   REQUIRE(rows.size() == 6000);
   REQUIRE(rows.front().size() == torques_from + 10);
   return rows;

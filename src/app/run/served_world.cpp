@@ -34,12 +34,7 @@ ServedWorld::ServedWorld(const ScenarioConfig& scenario, std::uint64_t seed)
     add(parts.others[i], *assembly_->others()[i], scenario.robots[i]);
 }
 
-std::size_t ServedWorld::object(std::string_view name) const {
-  const auto& objects = assembly_->world_settings().objects;
-  const auto found = std::ranges::find(objects, name, &WorldObject::name);
-  if (found == objects.end()) throw std::invalid_argument("the world has no object '" + std::string(name) + "'");
-  return static_cast<std::size_t>(found - objects.begin());
-}
+std::size_t ServedWorld::object(std::string_view name) const { return assembly_->object(name); }
 
 void ServedWorld::step(std::int64_t dt_ns) {
   const double time_s = 1e-9 * static_cast<double>(time_ns_), dt_s = 1e-9 * static_cast<double>(dt_ns);

@@ -178,12 +178,7 @@ std::vector<SaidLine> Simulation::take_lines() { return std::exchange(stepped_->
 
 World& Simulation::world() noexcept { return stepped_->all.world; }
 
-std::size_t Simulation::object(std::string_view name) const {
-  const auto& objects = stepped_->assembly.world_settings().objects;
-  const auto found = std::ranges::find(objects, name, &WorldObject::name);
-  if (found == objects.end()) throw std::invalid_argument("the world has no object '" + std::string(name) + "'");
-  return static_cast<std::size_t>(found - objects.begin());
-}
+std::size_t Simulation::object(std::string_view name) const { return stepped_->assembly.object(name); }
 
 std::size_t Simulation::robots() const noexcept { return 1 + stepped_->assembly.others().size(); }
 
