@@ -1,5 +1,6 @@
 #include "control/walk/dcm_walk.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -92,6 +93,25 @@ TEST_CASE("DcmWalk lets the stance leg bear the robot, and lifts the other") {
   CHECK(bench.computed.joints[b + knee].effort_Nm > 1);                // bends
   CHECK(bench.computed.joints[b + hip_pitch].effort_Nm < 0);           // forward and up
   CHECK(std::abs(bench.computed.joints[a + hip_roll].effort_Nm) > 3);  // the weight beside the hip
+}
+
+TEST_CASE("DcmWalk levels the sole of the swinging foot by what hip and knee are, and shortens a leg that lags") {
+  const auto targets_rad = [](LegJoint joint, double by_rad) {
+    Bench bench;
+    bench.lead("forward_m_s", 0.5);
+    bench.lead("go", 1);
+    while (bench.walk.plan().state().phase != Phase::steps) bench.ticks(1);
+    bench.ticks(250);
+    const bool left = bench.walk.plan().state().stance == 1;
+    bench.joints.joints[(left ? 0 : 5) + joint].position_rad += by_rad;
+    bench.ticks(1);
+    const std::string side = left ? "l_" : "r_";
+    return std::array{bench.signal(side + "knee.target_rad"), bench.signal(side + "ankle_pitch.target_rad")};
+  };
+  const auto as_it_is = targets_rad(hip_pitch, 0);
+  CHECK(targets_rad(hip_pitch, 0.1)[1] == doctest::Approx(as_it_is[1] - 0.1));
+  CHECK(targets_rad(knee, -0.1)[1] == doctest::Approx(as_it_is[1] + 0.1));
+  CHECK(targets_rad(hip_pitch, -0.3)[0] < as_it_is[0] - 0.002);  // nearer to its foothold, it may be longer
 }
 
 TEST_CASE("DcmWalk lands without a step in torque") {

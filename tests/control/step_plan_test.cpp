@@ -93,7 +93,7 @@ TEST_CASE("StepPlan puts the foot to where xi will be, a little further, and wit
   CHECK(bench.state().foothold.x_m == 0.1);
 }
 
-TEST_CASE("StepPlan takes the foot along a path that ends in the foothold, and lands when it bears") {
+TEST_CASE("StepPlan takes the foot along a path that ends in the foothold, and lands when it bears for touch_s") {
   Bench bench;
   bench.xi(0.06 + bench.config.front_m + 0.01, 0);
   bench.ticks(2);
@@ -106,6 +106,13 @@ TEST_CASE("StepPlan takes the foot along a path that ends in the foothold, and l
   CHECK(bench.plan.other_foot(bench.config)[1] == doctest::Approx(bench.state().foothold.y_m));
   CHECK(bench.state().phase == Phase::swings);
   bench.sight.force_N = {100, 40};
+  bench.ticks(2);
+  bench.sight.force_N = {140, 0};
+  bench.ticks(1);
+  CHECK(bench.state().phase == Phase::swings);
+  bench.sight.force_N = {100, 40};
+  bench.ticks(2);
+  CHECK(bench.state().phase == Phase::swings);
   bench.ticks(1);
   CHECK(bench.state().phase == Phase::bears);
 }

@@ -24,6 +24,7 @@ struct Pendulum {
   bool lands = false;  // the swing foot is on the ground in this tick
   double sunk_m = 0;
   double beside_m = 0;  // of the pressure, to the left of the foot's middle
+  double in_air_N = 0;  // that the sensors of the swing foot tell in the air
 
   explicit Pendulum(double forward_m_s = 0, double left_m_s = 0) {
     wanted.velocity = {.forward_m_s = forward_m_s, .left_m_s = left_m_s};
@@ -39,7 +40,7 @@ struct Pendulum {
       over.dcm_x_m = over.com_m[0] + velocity_m_s.x_m / rate_per_s;
       over.dcm_y_m = over.com_m[1] + velocity_m_s.y_m / rate_per_s;
       const bool bears = state().phase != Phase::steps || i == state().stance || lands;
-      seen.force_N[i] = bears ? (lands ? 20 : 70) : 0;
+      seen.force_N[i] = bears ? (lands ? 20 : 70) : in_air_N;
     }
     seen.cop_x_m[state().stance] = state().in_sole_x_m;
     seen.cop_y_m[state().stance] = beside_m;
@@ -151,6 +152,24 @@ TEST_CASE("WalkPlan walks at the velocity that is meant, in any direction") {
     CHECK((robot.com.y_m - before.y_m) / 8 == doctest::Approx(left_m_s).epsilon(0.15).scale(0.1));
     CHECK(8.0 / (robot.state().steps - steps) == doctest::Approx(robot.config.step_s).epsilon(0.1));
   }
+}
+
+TEST_CASE("WalkPlan takes no single reading of force for a landing, but one that lasts touch_s") {
+  Pendulum robot(0.4);
+  for (int i = 0; i < 4; ++i) robot.next_step();
+  while (robot.state().time_s < 0.8 * robot.state().step_s) robot.tick();
+  const std::uint32_t steps = robot.state().steps;
+  for (int i = 0; i < 10; ++i) {  // every second reading
+    robot.in_air_N = i % 2 == 0 ? 40 : 0;
+    robot.tick();
+  }
+  CHECK(robot.state().steps == steps);
+  robot.in_air_N = 40;
+  for (double held_s = 0; held_s < robot.config.touch_s - dt_s / 2; held_s += dt_s) {
+    REQUIRE(robot.state().steps == steps);
+    robot.tick();
+  }
+  CHECK(robot.state().steps == steps + 1);
 }
 
 TEST_CASE("WalkPlan answers a push to the side by a wider step that comes earlier, and goes on") {

@@ -43,10 +43,14 @@ LegInverse::LegInverse(const RobotModel& model, const std::vector<JointAxis>& ax
 }
 
 LegInverse::Angles LegInverse::angles(const Vec3& ankle_m, double yaw_rad) const noexcept {
+  return angles(ankle_m, yaw_rad, longest_m_);
+}
+
+LegInverse::Angles LegInverse::angles(const Vec3& ankle_m, double yaw_rad, double longest_m) const noexcept {
   const double x_m = std::cos(yaw_rad) * ankle_m[0] + std::sin(yaw_rad) * ankle_m[1];
   const double y_m = std::cos(yaw_rad) * ankle_m[1] - std::sin(yaw_rad) * ankle_m[0];
   const double down_m = std::hypot(y_m, ankle_m[2]);
-  const double reach_m = std::clamp(std::hypot(x_m, down_m), shortest_m_, longest_m_);
+  const double reach_m = std::clamp(std::min(std::hypot(x_m, down_m), longest_m), shortest_m_, longest_m_);
   const double cosine = (reach_m * reach_m - thigh_m_ * thigh_m_ - shank_m_ * shank_m_) / (2 * thigh_m_ * shank_m_);
   const double bend_rad = std::acos(std::clamp(cosine, -1.0, 1.0));
   const double fore_rad = std::atan2(shank_m_ * std::sin(bend_rad), thigh_m_ + shank_m_ * std::cos(bend_rad));
@@ -150,6 +154,7 @@ void DcmStep::declare_plan(Declaration& d) {
               &c.pressure_gain);
   d.parameter({"goal_x_m", "m", -0.2, 0.2, 0, "Where xi comes to rest, forward of the feet's middle."}, &c.goal_x_m);
   d.parameter({"touch_N", "N", 1, 200, 15, "Force of a foot that has landed."}, &c.touch_N);
+  d.parameter({"touch_s", "s", 0, 0.1, c.touch_s, "How long it must bear that."}, &c.touch_s);
   d.parameter({"trust_per_s", "1/s", 0, 1000, 15, "Rate at which xi follows what is measured, once it has stepped."},
               &c.trust_per_s);
 }

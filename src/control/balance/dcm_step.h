@@ -57,6 +57,8 @@ class LegInverse {
   // The angles that put the ankle at ankle_m, from the hip in the base frame, with the hip turned by yaw_rad and the
   // foot parallel to the base. A place that is too far or too near is moved into reach, along the line from the hip.
   Angles angles(const Vec3& ankle_m, double yaw_rad) const noexcept;
+  // Points the leg there, but makes it no longer than that from hip to ankle.
+  Angles angles(const Vec3& ankle_m, double yaw_rad, double longest_m) const noexcept;
 
   const Vec3& hip_m() const noexcept { return hip_m_; }  // in the base frame
   double thigh_m() const noexcept { return thigh_m_; }

@@ -63,6 +63,7 @@ void StepPlan::begin_swing(const Sight& sight, std::size_t swing) noexcept {
     s.stance = 1 - swing;
   }
   ++s.steps;
+  s.touchdown = {};
   see_feet(sight);
   s.foothold = {s.from_m[0], s.from_m[1]};
   enter(Phase::swings);
@@ -88,12 +89,13 @@ void StepPlan::stand(const Config& c, const Sight& sight) noexcept {
     begin_swing(sight, front);
 }
 
-void StepPlan::swing(const Config& c, const Sight& sight) noexcept {
+void StepPlan::swing(const Config& c, const Sight& sight, double dt_s) noexcept {
   State& s = state_;
   s.in_sole = {std::clamp((1 + c.pressure_gain) * s.dcm.x_m, -c.sole.heel_m, c.sole.toe_m), 0};
   s.right_share = s.stance == 1 ? 1 : 0;
   choose_foothold(c, sight.rate_per_s);
-  const bool down = s.time_s > earliest_share * c.swing_s && sight.force_N[1 - s.stance] > c.touch_N;
+  s.touchdown.look(sight.force_N[1 - s.stance], c.touch_N, dt_s);
+  const bool down = s.time_s > earliest_share * c.swing_s && s.touchdown.landed(c.touch_s);
   if (down || s.time_s > c.swing_s + late_s) land(sight);
 }
 
@@ -128,7 +130,7 @@ void StepPlan::advance(const Config& c, const Sight& sight, double dt_s) noexcep
   if (state_.phase == Phase::stands) {
     stand(c, sight);
   } else if (state_.phase == Phase::swings) {
-    swing(c, sight);
+    swing(c, sight, dt_s);
   } else {
     bear(c, sight, dt_s);
   }

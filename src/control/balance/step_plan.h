@@ -51,6 +51,15 @@ double beyond_soles(const Sole& sole, const GroundPoint& left, const GroundPoint
 // xi after time_s, with a constant centre of pressure.
 GroundPoint run_away(const GroundPoint& dcm, const GroundPoint& pressure, double rate_per_s, double time_s) noexcept;
 
+// Whether a foot that swings has landed: it bears more than touch_N for touch_s. One reading alone may be noise: the
+// sum of four sensors with 2 N of it each passes 15 N in the air once in some minutes.
+struct Touchdown {
+  double held_s = 0;
+
+  void look(double force_N, double touch_N, double dt_s) noexcept { held_s = force_N > touch_N ? held_s + dt_s : 0; }
+  bool landed(double touch_s) const noexcept { return held_s > 0 && held_s > touch_s - 1e-9; }
+};
+
 // Of a swing, over the share of its time that has passed (0..1): its way, from 0 to 1 with rest at both ends, and its
 // height, 0..1.
 double swing_way(double share) noexcept;
@@ -76,7 +85,8 @@ class StepPlan {
     double reach_m = 0.40;       // longest step
     double pressure_gain = 1.0;  // (p - xi) / (xi - goal)
     double goal_x_m = 0.0;       // where xi shall rest, forward of the middle between the feet
-    double touch_N = 15;         // a foot that bears this has landed
+    double touch_N = 15;         // a foot that bears this ..
+    double touch_s = 0.003;      // .. for so long has landed
     double trust_per_s = 15;     // after the first step: observer gain for the measured xi
   };
   struct Sight {
@@ -88,7 +98,8 @@ class StepPlan {
     Phase phase = Phase::stands;
     std::size_t stance = 0;  // 0 left, 1 right
     double time_s = 0;       // in the phase
-    Vec3 from_m{};           // where the other foot lifted off, or landed
+    Touchdown touchdown;     // of the other foot
+    Vec3 from_m{};           // where it lifted off, or landed
     GroundPoint foothold;
     GroundPoint dcm;           // over the stance foot
     double dcm_rate_m_s = 0;   // forward
@@ -117,7 +128,7 @@ class StepPlan {
   void begin_swing(const Sight& sight, std::size_t swing) noexcept;
   void choose_foothold(const Config& config, double rate_per_s) noexcept;
   void stand(const Config& config, const Sight& sight) noexcept;
-  void swing(const Config& config, const Sight& sight) noexcept;
+  void swing(const Config& config, const Sight& sight, double dt_s) noexcept;
   void land(const Sight& sight) noexcept;
   void bear(const Config& config, const Sight& sight, double dt_s) noexcept;
 

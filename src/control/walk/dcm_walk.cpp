@@ -29,6 +29,8 @@ enum Channel : std::uint32_t {
   channels
 };
 
+double length_m(const Vec3& way_m) noexcept { return std::hypot(way_m[0], way_m[1], way_m[2]); }
+
 }  // namespace
 
 DcmWalk::Leg DcmWalk::leg(const ObjectSetup& setup, std::size_t foot) const {
@@ -70,6 +72,11 @@ void DcmWalk::declare(Declaration& d) {
   d.parameter({"slope_max", "", 0, 1, c.slope_max, "The largest slope that it believes in."}, &c.slope_max);
   d.parameter({"shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load."}, &c.shift_s);
   d.parameter({"ankle_smooth_s", "s", 0, 0.1, c.ankle_smooth_s, "Low pass of the ankles' torques."}, &c.ankle_smooth_s);
+  d.parameter({"by_now", "", 0, 1, c.by_now, "How far the swinging leg's length and sole follow where it is by now."},
+              &c.by_now);
+  d.parameter(
+      {"ankle_by_load", "", 0, 1, c.ankle_by_load, "How far an ankle's torque follows the load that its foot bears."},
+      &c.ankle_by_load);
   d.parameter({"fade_s", "s", 0, 0.1, c.fade_s, "In which the torques of a leg's part pass into the next one's."},
               &c.fade_s);
   d.parameter({"stand_s", "s", 0, 10, c.stand_s, "After the last step, before it counts as standing."}, &c.stand_s);
@@ -109,6 +116,7 @@ void DcmWalk::declare_plan(Declaration& d) {
   d.parameter({"trim_per_s", "1/s", 0, 10, c.trim_per_s, "How fast the meant speed is corrected."}, &c.trim_per_s);
   d.parameter({"trim_max_m_s", "m/s", 0, 1, c.trim_max_m_s, "Largest such correction."}, &c.trim_max_m_s);
   d.parameter({"touch_N", "N", 1, 200, c.touch_N, "Force of a foot that has landed."}, &c.touch_N);
+  d.parameter({"touch_s", "s", 0, 0.1, c.touch_s, "How long it must bear that."}, &c.touch_s);
   d.parameter({"early_share", "", 0, 1, c.early_share, "Of a swing, before which no landing counts."}, &c.early_share);
   d.parameter({"sway_gain", "", 0, 20, c.sway_gain, "Shift of the load per error of xi, before the first step."},
               &c.sway_gain);
@@ -381,7 +389,9 @@ DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_
                   {over.foot_m[0] + in_sole_x_m, over.foot_m[1], over.foot_m[2] - config_.sole_m});
   Efforts effort_Nm{};
   for (std::size_t j = 0; j < leg_joints; ++j) effort_Nm[j] = leg.load.bearings()[leg.bearing[j]].effort_Nm;
-  const double ground_N = std::max(input.status.feet[i].force_N, 0.0);  // more would turn the foot about its edge
+  const double ground_N = std::max(input.status.feet[i].force_N, 0.0);
+  // A foot that bears less than it was asked to would turn about its toes by the torque that was meant for all of it.
+  if (force_N > ground_N) effort_Nm[ankle_pitch] *= 1 - config_.ankle_by_load * (1 - ground_N / force_N);
   effort_Nm[ankle_pitch] = std::clamp(effort_Nm[ankle_pitch], -ground_N * sole_back_m, ground_N * sole_front_m);
   return effort_Nm;
 }
@@ -412,9 +422,19 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
       slope_.x_m * s.feet.at_m[0] - slope_.y_m * s.feet.at_m[1];
   const Vec3 way_m{over.foot_m[0] + s.feet.at_m[0] - swing_hip_m[0], over.foot_m[1] + s.feet.at_m[1] - swing_hip_m[1],
                    over.foot_m[2] + s.feet.at_m[2] - swing_hip_m[2] - risen_m};
-  LegInverse::Angles swing_rad = swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m),
-                                                      plan_.other_yaw_rad(plan_config_) - over_feet_.yaw_rad());
-  swing_rad[ankle_pitch] -= input.status.base.pitch_rad + slope_.x_m;
+  const double yaw_rad = plan_.other_yaw_rad(plan_config_) - over_feet_.yaw_rad();
+  const BaseStatus& base = input.status.base;
+  // Not longer than is right where the foot is by now: on a long step it lags, and would touch the ground on its way.
+  // The sole is level with the ground by what hip and knee are, not by what they shall be. A kick is aimed without
+  // both.
+  const double by_now = s.kick.kicks() ? 0 : c.by_now;
+  const Vec3 is_m = difference(over_feet_.over(b).foot_m, swing_hip_m), by_now_m{is_m[0], is_m[1], way_m[2]};
+  const double longest_m = swing.inverse.longest_m() + by_now * (length_m(by_now_m) - swing.inverse.longest_m());
+  LegInverse::Angles swing_rad = swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m), yaw_rad, longest_m);
+  const auto& joints = input.joints.joints;
+  const double lag_rad = joints[swing.inverse.axis(hip_pitch).joint].position_rad - swing_rad[hip_pitch] +
+                         joints[swing.inverse.axis(knee).joint].position_rad - swing_rad[knee];
+  swing_rad[ankle_pitch] -= by_now * lag_rad + base.pitch_rad + slope_.x_m;
   swing.aim(swing_rad, s.kick.kicks() ? kick_rate_max_rad_s : walk_rate_max_rad_s, input.dt_s);
   const Efforts swing_Nm = swing.spring(c.gains, 1, input);
   turn(swing_Nm, input);

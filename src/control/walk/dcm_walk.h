@@ -5,11 +5,13 @@
 //
 // clang-format off
 //   stance leg  Bears the robot: a force from the centre of pressure through the centre of mass, as torques of each joint
-//               (LegLoad). The force keeps the centre of mass at its height over the foot. The hip also holds the torso, by the attitude that is measured, and takes the swing leg's
-//               reaction (SIMBICON, Yin et al. 2007). The ankle places the centre of pressure; its roll is passive. The
-//               yaw turns the base to the heading.
+//               (LegLoad). The force keeps the centre of mass at its height over the foot. The hip also holds the torso, by
+//               the attitude that is measured, and takes the swing leg's reaction (SIMBICON, Yin et al. 2007). The
+//               ankle places the centre of pressure, as far as the foot bears; its roll is passive. The yaw turns the
+//               base to the heading.
 //   swing leg   Inverse kinematics of where the foot shall be over the ground, through the measured stance leg and
-//               attitude; PD on its joints, and the leg's own weight.
+//               attitude; PD on its joints, and the leg's own weight. The leg lags on a long step: its length is
+//               right for where the foot is by now, and the sole level by what hip and knee are.
 //   a landing   moves the load from one leg to the other in shift_s.
 //   both bear   After the last step: the load is shared so that xi comes to rest in the middle.
 // clang-format on
@@ -55,8 +57,10 @@ class DcmWalk final : public ControlObject {
     double slope_max = 0.12;
     double shift_s = 0.05;  // in which a leg that landed takes the load
     double ankle_smooth_s = 0.003;
-    double fade_s = 0.006;  // in which the torques of a leg's part pass into those of the next one
-    double stand_s = 0.6;   // after the last step, before it lets go
+    double by_now = 1;  // 1: the swinging leg's length and sole are right for where it is; 0: for where it shall be
+    double ankle_by_load = 1;  // 1: a foot that bears half of what it shall has half the torque in its ankle
+    double fade_s = 0.006;     // in which the torques of a leg's part pass into those of the next one
+    double stand_s = 0.6;      // after the last step, before it lets go
     LegGains gains{.kp_Nm_per_rad = {80, 250, 250, 250, 120}, .kd_Nms_per_rad = {4, 4, 4, 4, 2}};
   };
 

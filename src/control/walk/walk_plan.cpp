@@ -19,6 +19,13 @@ constexpr double still_m = 0.03;
 
 double side_of(std::size_t foot) noexcept { return foot == 0 ? 1 : -1; }  // of left: +y
 
+// Where a parabola through three equidistant values is lowest, in their distance from the middle one, which is the
+// least.
+double lowest(double before, double middle, double after) noexcept {
+  const double bend = before - 2 * middle + after;
+  return bend > 0 ? 0.5 * (before - after) / bend : 0;
+}
+
 double toward(double from, double to, double most) noexcept { return from + std::clamp(to - from, -most, most); }
 
 }  // namespace
@@ -135,27 +142,29 @@ void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
   const double apart_s = (latest_s - earliest_s) / (times_tried - 1), wait_s = earliest_s - s.time_s;
   GroundPoint ran{(s.dcm.x_m - from_x_m) * std::exp(w_x * wait_s), (s.dcm.y_m - from_y_m) * std::exp(w_y * wait_s)};
   const GroundPoint grows{std::exp(w_x * apart_s), std::exp(w_y * apart_s)};
-  double least = 1e9, best_s = wanted_s;
-  GroundPoint best;
+  const double p = c.place_weight;
+  const auto place = [&](const GroundPoint& dcm) {
+    return GroundPoint{
+        std::clamp((dcm.x_m - s.meant.offset.x_m + p * s.meant.step.x_m) / (1 + p), -c.reach_m, c.reach_m),
+        sign * std::clamp(sign * (dcm.y_m - s.meant.offset.y_m + p * s.meant.step.y_m) / (1 + p), c.apart_min_m,
+                          c.apart_max_m)};
+  };
+  std::array<double, times_tried> cost{};
+  int best = 0;
   for (int i = 0; i < times_tried; ++i, ran = {ran.x_m * grows.x_m, ran.y_m * grows.y_m}) {
-    const double t_s = earliest_s + i * apart_s, x_m = from_x_m + ran.x_m, y_m = from_y_m + ran.y_m;
-    const double p = c.place_weight, all = 1 + p;
-    const GroundPoint at{std::clamp((x_m - s.meant.offset.x_m + p * s.meant.step.x_m) / all, -c.reach_m, c.reach_m),
-                         sign * std::clamp(sign * (y_m - s.meant.offset.y_m + p * s.meant.step.y_m) / all,
-                                           c.apart_min_m, c.apart_max_m)};
+    const GroundPoint dcm{from_x_m + ran.x_m, from_y_m + ran.y_m}, at = place(dcm);
     const auto square = [](double v) { return v * v; };
-    const double cost = square(x_m - at.x_m - s.meant.offset.x_m) + square(y_m - at.y_m - s.meant.offset.y_m) +
-                        p * (square(at.x_m - s.meant.step.x_m) + square(at.y_m - s.meant.step.y_m)) +
-                        c.time_weight * square(t_s - wanted_s);
-    if (cost < least) {
-      least = cost;
-      best = at;
-      best_s = t_s;
-    }
+    cost[i] = square(dcm.x_m - at.x_m - s.meant.offset.x_m) + square(dcm.y_m - at.y_m - s.meant.offset.y_m) +
+              p * (square(at.x_m - s.meant.step.x_m) + square(at.y_m - s.meant.step.y_m)) +
+              c.time_weight * square(earliest_s + i * apart_s - wanted_s);
+    if (cost[i] < cost[best]) best = i;
   }
   if (s.time_s < c.place_share * s.step_s) {  // then the foot comes straight down
-    s.feet.foothold = best;
-    s.step_s = best_s;
+    const double beyond = best == 0 || best == times_tried - 1 ? 0 : lowest(cost[best - 1], cost[best], cost[best + 1]);
+    s.step_s = earliest_s + (best + beyond) * apart_s;
+    const double left_s = s.step_s - s.time_s;
+    s.feet.foothold = place({from_x_m + (s.dcm.x_m - from_x_m) * std::exp(w_x * left_s),
+                             from_y_m + (s.dcm.y_m - from_y_m) * std::exp(w_y * left_s)});
   }
   // The pressure goes beyond xi where xi is ahead of what was meant.
   const double begun_x_m = s.kick.kicks() ? s.meant.begun_x_m : s.meant.offset.x_m;
@@ -196,6 +205,7 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   step_time_s_ = s.time_s;
   s.stance = 1 - s.stance;
   s.in_sole_y_m = 0;
+  s.touchdown = {};
   trim(c, sight);
   s.dcm = {s.dcm.x_m - way.x_m, s.dcm.y_m - way.y_m};
   leave(sight);
@@ -253,7 +263,8 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
   choose(c, sight);
   lead_foot(c);
   const double early_s = s.kick.kicks() ? c.kick.strike_s + 0.5 * c.kick.after_s : c.early_share * s.step_s;
-  const bool touches = s.time_s > early_s && sight.force_N[1 - s.stance] > c.touch_N;
+  s.touchdown.look(sight.force_N[1 - s.stance], c.touch_N, dt_s);
+  const bool touches = s.time_s > early_s && s.touchdown.landed(c.touch_s);
   if (!touches && s.time_s < s.step_s + late_s) return false;
   land(c, wanted, sight);
   return true;

@@ -51,7 +51,8 @@ class WalkPlan {
     double shift_x_m = 0.0;   // where the pressure is meant to be, before the foot's frame
     double trim_per_s = 0.3;  // how fast the meant speed is corrected by the measured one
     double trim_max_m_s = 0.1;
-    double touch_N = 15;          // a foot that bears this has landed
+    double touch_N = 15;          // a foot that bears this ..
+    double touch_s = 0.003;       // .. for so long has landed
     double early_share = 0.6;     // of a swing, before which no landing counts
     double sway_gain = 1.0;       // shift of the load per error of xi, before the first step
     double sway_s = 0.4;          // longest such time
@@ -95,6 +96,7 @@ class WalkPlan {
     double time_s = 0;  // in the phase
     double step_s = 0;  // when the foot is meant to land
     Feet feet;
+    Touchdown touchdown;  // of the other foot
     Meant meant;
     GroundPoint dcm;  // over the stance foot
     double in_sole_x_m = 0;
