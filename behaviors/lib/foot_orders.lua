@@ -13,6 +13,11 @@ return {
     x_m = { "m", min = -30, max = 30 }, y_m = { "m", min = -30, max = 30 },
     beyond_m = { "m", min = 0, max = 4, optional = true, doc = "how far beyond the place it would roll" },
   },
+  ["foot.dribble"] = {
+    "go to the ball, around it, and dribble it toward a place, by short kicks, without standing",
+    x_m = { "m", min = -30, max = 30 }, y_m = { "m", min = -30, max = 30 },
+    most_m_s = { "m/s", min = 0.1, max = 0.5, optional = true },
+  },
   ["foot.turn"] = { "turn on the spot", rad_s = { "rad/s", min = -0.8, max = 0.8 } },
   ["foot.dive"] = { "throw itself to a side before the ball, and get up", left = { "", min = 0, max = 1, doc = "1: left, 0: right" } },
   ["foot.stand"] = { "stand where it is" },

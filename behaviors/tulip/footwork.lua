@@ -3,6 +3,7 @@
 -- until the next one; without one for a while the robot comes to stand. When it falls, or threw itself to a side, it gets up.
 local k = require "kadans"
 local ball = require "ball"
+local dribble = require "dribbling"
 local floor = require "floor"
 local orders = require "foot_orders"
 local walk = require "walking"
@@ -52,6 +53,22 @@ local function clear(m, s)
   m:clear_faults()
 end
 
+-- The ball is followed anew for each order: what was seen before it may be of another place.
+local function dribbles(m, s, order)
+  local v = m.vars
+  if not v.dribbled then dribble.begin(m, v.kept) end
+  v.dribbled, v.armed = v.dribbled or {}, false
+  local b = dribble.watch(m, s, v.dribbled, P.roll_m_s2)
+  if not b then return end
+  local rad = math.atan2(order.place.y_m - b.y_m, order.place.x_m - b.x_m)
+  dribble.along(m, b, { x_m = b.x_m, y_m = b.y_m, rad = rad }, order.data.most_m_s or P.most_m_s, 1)
+end
+
+local function end_dribble(m)
+  if m.vars.dribbled then dribble.finish(m, m.vars.kept) end
+  m.vars.dribbled = false
+end
+
 local function obey(m, s)
   clear(m, s)
   local order = m.vars.order
@@ -60,7 +77,10 @@ local function obey(m, s)
   local kicks = walk.kicks(m)
   if m.vars.armed and not kicks then m.vars.kicked_s = s.time_s end
   m.vars.armed = kicks
-  if not order or s.time_s - order.heard_s > P.patience_s or order.what == "foot.stand" then
+  local heard = order and s.time_s - order.heard_s <= P.patience_s
+  if heard and order.what == "foot.dribble" then return dribbles(m, s, order) end
+  end_dribble(m)
+  if not heard or order.what == "foot.stand" then
     if kicks then walk.keep(m) end
     walk.stop(m)
   elseif s.time_s - m.vars.kicked_s < P.after_s then
@@ -85,6 +105,7 @@ local function dives(side)
 end
 
 local function let_go(m)
+  end_dribble(m)
   walk.keep(m)
   walk.stop(m)
   m.vars.known, m.vars.order, m.vars.armed = {}, nil, false
@@ -92,7 +113,7 @@ end
 
 return k.behavior "footwork" {
   controls = "walking",
-  vars     = { known = {}, side = 1, armed = false, kicked_s = -10, sound_s = 0 },
+  vars     = { known = {}, kept = {}, dribbled = false, side = 1, armed = false, kicked_s = -10, sound_s = 0 },
   initial  = "set_out",
   always   = { { on = "foot.*", action = hear } },
 

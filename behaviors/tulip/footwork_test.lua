@@ -23,6 +23,22 @@ describe("footwork", function()
     expect(function() run:emit("foot.turn", {}) end).to_raise "rad_s"
   end)
 
+  it("dribbles a ball that it sees, until it shall do something else", function()
+    run:set_sensor("seen.ball.confidence", 1)
+    run:set_sensor("seen.ball.age_s", 0.1)
+    run:set_sensor("seen.ball.x_m", 0.35)
+    run:set_sensor("seen.ball.y_m", 0.09)
+    run:emit("foot.dribble", { x_m = 4, y_m = 0 })
+    run:advance(0.5)
+    expect(run.state).to_equal "obeys"
+    run:emit("foot.stand")
+    run:advance(0.5)
+    run:emit("foot.dribble", { x_m = 4, y_m = 0 })
+    run:advance(0.1)
+    expect(run.error).to_equal ""
+    expect(function() run:emit("foot.dribble", { x_m = 4, y_m = 0, most_m_s = 2 }) end).to_raise "most_m_s"
+  end)
+
   it("throws itself to the side that it is told, and gets up", function()
     run:emit("foot.dive", { left = 0 })
     run:advance(0.1)

@@ -9,6 +9,7 @@ local P = k.params {
   left_m_s    = { 0, min = -0.2, max = 0.2, unit = "m/s", doc = "velocity to the left" },
   turn_rad_s  = { 0, min = -1, max = 1, unit = "rad/s", doc = "turning to the left" },
   for_s       = { 1e5, min = 0, max = 1e5, unit = "s", doc = "how long it walks" },
+  brake_m_s2  = { 1.5, min = 0.01, max = 10, unit = "m/s2", doc = "how fast it gets slower, to stand within two steps" },
 }
 
 local function lies(s) return floor.lies(s.base) end
@@ -16,6 +17,7 @@ local function stands(_, m) return m.vars.stands end
 
 return k.behavior "walk" {
   controls = "walking",
+  vars     = { speeds_up_m_s2 = 0, stands = false },
   initial  = "set_out",
 
   k.state "set_out" {
@@ -32,7 +34,12 @@ return k.behavior "walk" {
     { when = lies, to = "fallen", why = "lies" },
   },
   k.state "stop" {
-    enter = walk.stop,
+    enter = function(m)
+      m.vars.speeds_up_m_s2 = m.walk:parameter("speed_max_m_s2")
+      m.walk:set_parameter("speed_max_m_s2", P.brake_m_s2)
+      walk.stop(m)
+    end,
+    exit = function(m) m.walk:set_parameter("speed_max_m_s2", m.vars.speeds_up_m_s2) end,
     during = function(m) m.vars.stands = walk.stands(m) end,
     { when = stands, to = "stands" },
     { when = lies, to = "fallen", why = "lies" },
