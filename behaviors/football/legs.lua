@@ -48,10 +48,11 @@ function legs.lies(m)
   return state ~= nil and (state:find("fallen", 1, true) or state:find("dive", 1, true)) ~= nil
 end
 
--- The same, no nearer to the ball than the rules want of a team that does not kick.
+-- The same, no nearer to the ball than the rules want of a team that does not kick. It may take them 45 s to do it:
+-- meanwhile it looks around.
 function legs.keep_away(m, s, pose, place, ball)
   local way = field.clear_of(pose, place, ball, s.seen.me.circle_m + 0.35)
-  legs.go(m, s, pose, way, ball)
+  legs.watch(m, s, pose, way, ball)
 end
 
 -- The ball to a place of the field, so that it would roll beyond_m farther.

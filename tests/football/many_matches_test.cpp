@@ -37,7 +37,7 @@ MatchResult result_of(std::uint64_t seed, unsigned home, unsigned away, std::uin
   result.simulated_s = 120;
   result.robots.resize(2);
   result.robots[0] = {.id = {Side::home, 1}, .name = "home_1", .falls = falls, .messages = 30};
-  result.robots[1] = {.id = {Side::away, 1}, .name = "away_1", .messages = 10, .still_max_s = still_s};
+  result.robots[1] = {.id = {Side::away, 1}, .name = "away_1", .messages = 10, .still_max_s = still_s, .frozen_max_s = still_s - 1};
   result.robots[1].off_median_m = 0.1;
   return result;
 }
@@ -65,6 +65,8 @@ TEST_CASE("A summary counts who wins, falls by robot and minute, and who stands 
   CHECK(s.falls_per_minute.mean == doctest::Approx(0.25));
   CHECK(s.still_below_limit.hits == 3);
   CHECK(s.still_max_s.greatest == 25);
+  CHECK(s.frozen_below_limit.hits == 3);
+  CHECK(s.frozen_max_s.greatest == 24);
   CHECK(s.messages.mean == 30);
   CHECK(s.off_m.median == doctest::Approx(0.1));
   CHECK(s.within_budget.hits == 3);

@@ -167,7 +167,10 @@ std::string world_model() {
           "number": { "what": "its number" }, "keeper": { "what": "the keeper's number, 0 none" }, "players": { "what": "robots of the team" },
           "length_m": { "unit": "m" , "what": "of the field" }, "width_m": { "unit": "m", "what": "of the field" },
           "goal_m": { "unit": "m", "what": "width of the goals" }, "circle_m": { "unit": "m", "what": "radius of the centre circle" },
-          "mark_m": { "unit": "m", "what": "from a penalty mark to its goal line" } } })";
+          "mark_m": { "unit": "m", "what": "from a penalty mark to its goal line" } } },
+      "radio": { "what": "when to tell its mates something", "fields": {
+          "say": { "what": "how often a message was worth its price so far" },
+          "left": { "what": "messages that it may still send" } } })";
   for (std::size_t i = 1; i <= robots_told; ++i) {
     text +=
         ",\n      \"robot_" + std::to_string(i) +

@@ -91,6 +91,7 @@ std::string json_of(const VariantResults& all) {
                                                          {"away_won", &s.away_won},
                                                          {"with_goals", &s.with_goals},
                                                          {"still_below_20_s", &s.still_below_limit},
+                                                         {"frozen_below_20_s", &s.frozen_below_limit},
                                                          {"within_budget", &s.within_budget}};
   for (const auto& [name, share] : shares) text += ",\n    \"" + std::string(name) + "\": " + json_of(*share);
   const std::pair<const char*, const SampleStatistics*> values[] = {{"goals", &s.goals},
@@ -98,6 +99,7 @@ std::string json_of(const VariantResults& all) {
                                                                     {"away_goals", &s.away_goals},
                                                                     {"falls_per_robot_and_minute", &s.falls_per_minute},
                                                                     {"still_max_s", &s.still_max_s},
+                                                                    {"frozen_max_s", &s.frozen_max_s},
                                                                     {"off_m", &s.off_m},
                                                                     {"off_rad", &s.off_rad},
                                                                     {"messages_of_a_team", &s.messages}};
@@ -120,12 +122,17 @@ MatchSummary summary_of(const VariantResults& all) {
   const auto still_s = [](const MatchResult& r) {
     return worst(r, [](const PlayedRobot& p) { return p.still_max_s; });
   };
+  const auto frozen_s = [](const MatchResult& r) {
+    return worst(r, [](const PlayedRobot& p) { return p.frozen_max_s; });
+  };
   s.still_below_limit = share_of(all, [&](const MatchResult& r) { return still_s(r) <= still_limit_s; });
+  s.frozen_below_limit = share_of(all, [&](const MatchResult& r) { return frozen_s(r) <= still_limit_s; });
   s.goals = statistics_of(all, "goals", [](const MatchResult& r) { return double{0} + r.score[0] + r.score[1]; });
   s.home_goals = statistics_of(all, "home", [](const MatchResult& r) { return static_cast<double>(r.score[0]); });
   s.away_goals = statistics_of(all, "away", [](const MatchResult& r) { return static_cast<double>(r.score[1]); });
   s.falls_per_minute = statistics_of(all, "falls", falls_per_minute);
   s.still_max_s = statistics_of(all, "still", still_s);
+  s.frozen_max_s = statistics_of(all, "frozen", frozen_s);
   s.off_m = statistics_of(
       all, "off_m", [](const MatchResult& r) { return worst(r, [](const PlayedRobot& p) { return p.off_median_m; }); });
   s.off_rad = statistics_of(all, "off_rad", [](const MatchResult& r) {
@@ -157,7 +164,9 @@ std::string summary_text(const std::vector<VariantResults>& all) {
       text += line_of("goals a match", s.goals, "");
       text += line_of("falls a robot and minute", s.falls_per_minute, "");
       text += line_of("nobody still for 20 s of play", s.still_below_limit);
+      text += line_of("nobody frozen for 20 s of play", s.frozen_below_limit);
       text += line_of("longest stand in play", s.still_max_s, "s");
+      text += line_of("longest time frozen", s.frozen_max_s, "s");
       text += line_of("off in the median, worst robot", s.off_m, "m");
       text += line_of("turned off, worst robot", s.off_rad, "deg", 180 / std::numbers::pi);
       text += line_of("messages of the team that says more", s.messages, "");
