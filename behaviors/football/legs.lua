@@ -26,7 +26,7 @@ end
 -- To a place of the field, to face `toward` there; other robots are walked around. What is behind it, it turns to first,
 -- on the spot, which is quicker than while it walks.
 function legs.go(m, s, pose, place, toward, most_m_s)
-  local near = field.around(pose, place, field.robots(s, pose))
+  local near = field.past_posts(s.seen.me, pose, place) or field.around(pose, place, field.robots(s, pose))
   local at = field.to_robot(pose, near)
   local heading_rad = field.angle(math.atan2(toward.y_m - place.y_m, toward.x_m - place.x_m) - pose.heading_rad)
   local turn_rad = field.distance(pose, near) > far_m and math.atan2(at.y_m, at.x_m) or heading_rad

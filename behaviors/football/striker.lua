@@ -22,6 +22,14 @@ local function goes_around(m, s, pose, ball)
   return true
 end
 
+-- A post between it and the ball: footwork knows of none.
+local function passes_post(m, s, pose, ball)
+  local place = field.past_posts(s.seen.me, pose, ball)
+  if not place then return false end
+  legs.go(m, s, pose, place, ball)
+  return true
+end
+
 -- A ball that rolls on is met where it comes to rest, from behind.
 local function follows(m, s, pose, ball)
   if not ball.rolls or ball.rolls.m_s < 0.5 or field.distance(ball, ball.rest) < 0.5 then return false end
@@ -48,7 +56,7 @@ function striker.play(m, s, pose, ball)
   if m.vars.kick_off_ours and in_circle then return legs.kick(m, s, pose, kick_off_place(s), 0) end
   m.vars.kick_off_ours = m.vars.kick_off_ours and in_circle
   if game.keeps_away(s) or m.vars.kick_off_theirs then return striker.block(m, s, pose, ball) end
-  if comes_back(m, s, pose, ball) or follows(m, s, pose, ball) or goes_around(m, s, pose, ball) then return end
+  if comes_back(m, s, pose, ball) or passes_post(m, s, pose, ball) or follows(m, s, pose, ball) or goes_around(m, s, pose, ball) then return end
   local kick = kicks.choose(m, s, pose, ball)
   legs.kick(m, s, pose, kick, kick.beyond_m)
 end

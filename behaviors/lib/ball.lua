@@ -49,7 +49,8 @@ end
 
 -- In each tick: a step of the way around the ball b until it is between the robot and the target, and then the kick, so
 -- that the ball rolls beyond_m farther than the target on a ground that slows it by roll_m_s2. All in the frame of
--- walk.at, at most_m_s (0.35), in the usual way or as quick. m.vars.side is the foot: 1 the left one.
+-- walk.at, at most_m_s (0.35), in the usual way or as quick. m.vars.side is the foot: 1 the left one. False: it is not
+-- behind the ball, and a kick that it was to do is taken back.
 function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s, way)
   most_m_s, way = most_m_s or 0.35, way or usual
   local at = walk.at(m)
@@ -70,13 +71,14 @@ function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s, way)
         walk.kick(m, b, rad, math.min(far_m, 4.5), roll_m_s2)
       end
     end
-    return
+    return true
   end
   walk.keep(m)
   local from_rad = math.atan2(left, behind)  -- about the ball, 0 behind it
   local to_rad = from_rad - walk.within(from_rad, 0.8)
   local c, n = math.cos(to_rad), math.sin(to_rad)
   toward(m, at, b.x_m - around_m * (c * ux + n * uy), b.y_m - around_m * (c * uy - n * ux), most_m_s, way)
+  return false
 end
 
 return ball

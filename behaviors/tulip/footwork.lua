@@ -52,6 +52,12 @@ local function clear(m, s)
   m:clear_faults()
 end
 
+-- Takes the kick back: that it is not to kick any more does not mean that it has kicked.
+local function keep(m)
+  walk.keep(m)
+  m.vars.armed = false
+end
+
 local function obey(m, s)
   clear(m, s)
   local order = m.vars.order
@@ -61,18 +67,20 @@ local function obey(m, s)
   if m.vars.armed and not kicks then m.vars.kicked_s = s.time_s end
   m.vars.armed = kicks
   if not order or s.time_s - order.heard_s > P.patience_s or order.what == "foot.stand" then
-    if kicks then walk.keep(m) end
+    if kicks then keep(m) end
     walk.stop(m)
   elseif s.time_s - m.vars.kicked_s < P.after_s then
     walk.go(m, {})
   elseif order.what == "foot.turn" then
-    if kicks then walk.keep(m) end
+    if kicks then keep(m) end
     walk.go(m, { turn_rad_s = order.data.rad_s })
   elseif order.what == "foot.go" then
-    if kicks then walk.keep(m) end
+    if kicks then keep(m) end
     go(m, order)
   elseif b and order.what == "foot.kick" then
-    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s, ball.quick)
+    if not ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s, ball.quick) then
+      m.vars.armed = false
+    end
   end
 end
 
