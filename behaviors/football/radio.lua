@@ -18,6 +18,7 @@ radio.tells = {
 }
 
 local soonest_s = 0.3  -- between two messages that tell news
+local passes_m = 0.9   -- a pass is told when the ball is so near: until then the mate goes on to its place
 
 function radio.hear(m, s)
   local said = s.event.data
@@ -39,10 +40,17 @@ end
 
 local function within(value, most) return value and field.within(value, -most, most) end
 
+-- The mate that it is about to pass to, or false.
+local function receiver(m, s, pose, ball)
+  local kick = m.vars.kick
+  if m.vars.role ~= "striker" or not kick or not ball or s.time_s - kick.chosen_s > 1 then return false end
+  return field.distance(pose, ball) < passes_m and kick.to or false
+end
+
 function radio.tell(m, s, pose, ball, tell_s)
   if s.seen.me.players < 2 then return end
   local vars = m.vars
-  local pass_to = vars.role == "striker" and vars.kick and s.time_s - vars.kick.chosen_s < 1 and vars.kick.to or false
+  local pass_to = receiver(m, s, pose, ball)
   local news = vars.role ~= vars.told_role or pass_to ~= vars.told_pass
   if not radio.is_due(m, s, news, tell_s) then return end
   vars.told_s, vars.told_role, vars.told_pass = s.time_s, vars.role, pass_to

@@ -55,6 +55,16 @@ describe("radio", function()
     expect(game.ball(mate, later, pose)).to_be_nil()
   end)
 
+  it("tells the mate of a pass when it is about to kick, and not while it walks to the ball", function()
+    local sent, m = nil, robot()
+    m.send = function(_, _, data) sent = data end
+    m.vars.kick = { to = 3, chosen_s = 9.9 }
+    radio.tell(m, knows(says(50, 4)), pose, { x_m = 1, y_m = 0, own = true }, 1)
+    expect(sent.pass_to).to_be_nil()
+    radio.tell(m, knows(says(50, 5)), pose, { x_m = -0.6, y_m = 0.5, own = true }, 1)
+    expect(sent.pass_to).to_equal(3)
+  end)
+
   it("does not pass on what it has by hearsay", function()
     local sent, m = nil, robot()
     m.send = function(_, _, data) sent = data end

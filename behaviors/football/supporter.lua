@@ -11,7 +11,7 @@ local supporter = {}
 local ahead_m, before_goal_m, side_m = 1.5, 1.3, 1
 local behind_ball_m = 1.6
 local near_m = 0.4  -- near enough to its place
-local has_m = 0.8   -- who is so near to the ball has it
+local has_m = 2     -- an opponent that is farther from the ball does not have it
 
 local function ahead(me, pose, ball)
   local side = math.abs(ball.y_m) > 0.4 and (ball.y_m > 0 and -1 or 1) or (pose.y_m < ball.y_m and -1 or 1)
@@ -28,7 +28,7 @@ local function behind(me, s, ball)
   return { x_m = ball.x_m + share * (own.x_m - ball.x_m), y_m = ball.y_m + share * (own.y_m - ball.y_m) }
 end
 
--- An opponent is at the ball, and no mate as near.
+-- An opponent is nearer to the ball than all mates.
 function supporter.lost(m, s, ball)
   local their_m, our_m = has_m, 10
   for _, robot in ipairs(m.vars.others) do their_m = math.min(their_m, field.distance(robot, ball)) end

@@ -77,13 +77,11 @@ std::string json_of(const SampleStatistics& value) {
               value.mean_interval.low, value.mean_interval.high, value.median, value.greatest);
 }
 
-std::string json_of(const VariantResults& all) {
-  const MatchSummary s = summary_of(all);
+std::string json_of(const MatchSummary& s) {
   std::string settings;
-  for (const std::string& setting : all.variant.settings)
-    settings += (settings.empty() ? "" : ", ") + json_text(setting);
-  std::string text = "{\"file\": " + json_text(all.variant.file) + ", \"settings\": [" + settings + "]" +
-                     told(", \"matches\": %zu, \"missing\": %zu, \"errors\": %llu", s.matches, s.missing,
+  for (const std::string& setting : s.variant.settings) settings += (settings.empty() ? "" : ", ") + json_text(setting);
+  std::string text = "{\"file\": " + json_text(s.variant.file) + ", \"settings\": [" + settings + "]" +
+                     told(", \"matches\": %zu, \"missing\": %zu, \"errors\": %llu", s.matches, s.missing.size(),
                           static_cast<unsigned long long>(s.errors));
   const std::pair<const char*, const Share*> shares[] = {{"ended_by_itself", &s.ended_by_itself},
                                                          {"home_won", &s.home_won},
@@ -112,7 +110,8 @@ std::string json_of(const VariantResults& all) {
 MatchSummary summary_of(const VariantResults& all) {
   MatchSummary s;
   s.matches = all.results.size();
-  s.missing = all.missing.size();
+  s.variant = all.variant;
+  s.missing = all.missing;
   s.ended_by_itself = share_of(all, ended_by_itself);
   s.home_won = share_of(all, [](const MatchResult& r) { return r.score[0] > r.score[1]; });
   s.drawn = share_of(all, [](const MatchResult& r) { return r.score[0] == r.score[1]; });
@@ -145,18 +144,24 @@ MatchSummary summary_of(const VariantResults& all) {
   return s;
 }
 
-bool all_well(const std::vector<VariantResults>& all) {
-  return std::ranges::all_of(all, [](const VariantResults& one) {
-    const MatchSummary s = summary_of(one);
-    return s.missing == 0 && s.errors == 0 && s.ended_by_itself.hits == s.matches && s.within_budget.hits == s.matches;
+std::vector<MatchSummary> summaries_of(const std::vector<VariantResults>& all) {
+  std::vector<MatchSummary> summaries;
+  summaries.reserve(all.size());
+  for (const VariantResults& one : all) summaries.push_back(summary_of(one));
+  return summaries;
+}
+
+bool all_well(const std::vector<MatchSummary>& all) {
+  return std::ranges::all_of(all, [](const MatchSummary& s) {
+    return s.missing.empty() && s.errors == 0 && s.ended_by_itself.hits == s.matches &&
+           s.within_budget.hits == s.matches;
   });
 }
 
-std::string summary_text(const std::vector<VariantResults>& all) {
+std::string summary_text(const std::vector<MatchSummary>& all) {
   std::string text;
-  for (const VariantResults& one : all) {
-    const MatchSummary s = summary_of(one);
-    text += one.variant.name() + told(": %zu matches\n", s.matches);
+  for (const MatchSummary& s : all) {
+    text += s.variant.name() + told(": %zu matches\n", s.matches);
     if (s.matches > 0) {
       text += line_of("ended by the rules or its file", s.ended_by_itself);
       text += line_of("won by home", s.home_won) + line_of("drawn", s.drawn) + line_of("won by away", s.away_won);
@@ -174,15 +179,15 @@ std::string summary_text(const std::vector<VariantResults>& all) {
     }
     if (s.errors > 0)
       text += told("  %llu errors of decisions or behaviors\n", static_cast<unsigned long long>(s.errors));
-    if (s.missing > 0) text += told("  %zu without a result:\n", s.missing);
-    for (std::size_t i = 0; i < std::min(one.missing.size(), missing_told); ++i) text += "    " + one.missing[i] + "\n";
+    if (!s.missing.empty()) text += told("  %zu without a result:\n", s.missing.size());
+    for (std::size_t i = 0; i < std::min(s.missing.size(), missing_told); ++i) text += "    " + s.missing[i] + "\n";
   }
   return text;
 }
 
-std::string summary_json(const std::vector<VariantResults>& all) {
+std::string summary_json(const std::vector<MatchSummary>& all) {
   std::string text;
-  for (const VariantResults& one : all) text += (text.empty() ? "" : ",\n  ") + json_of(one);
+  for (const MatchSummary& one : all) text += (text.empty() ? "" : ",\n  ") + json_of(one);
   return "{\"variants\": [" + text + "]}";
 }
 
