@@ -11,7 +11,8 @@ local supporter = {}
 local ahead_m, before_goal_m, side_m = 1.5, 1.3, 1
 local behind_ball_m = 1.6
 local near_m = 0.4  -- near enough to its place
-local has_m = 2     -- an opponent that is farther from the ball does not have it
+local has_m = 2     -- an opponent that is farther from the ball does not have it,
+local clear_m = 0.5 -- nor one that is nearer than a mate by less: they fight for it
 
 local function ahead(me, pose, ball)
   local side = math.abs(ball.y_m) > 0.4 and (ball.y_m > 0 and -1 or 1) or (pose.y_m < ball.y_m and -1 or 1)
@@ -28,19 +29,20 @@ local function behind(me, s, ball)
   return { x_m = ball.x_m + share * (own.x_m - ball.x_m), y_m = ball.y_m + share * (own.y_m - ball.y_m) }
 end
 
--- An opponent is nearer to the ball than all mates.
+-- An opponent is clearly nearer to the ball than all mates.
 function supporter.lost(m, s, ball)
   local their_m, our_m = has_m, 10
   for _, robot in ipairs(m.vars.others) do their_m = math.min(their_m, field.distance(robot, ball)) end
   for _, mate in pairs(m.vars.mates) do
     if s.time_s - mate.heard_s < 3 then our_m = math.min(our_m, field.distance(mate, ball)) end
   end
-  return their_m < has_m and their_m < our_m
+  return their_m < has_m and their_m + clear_m < our_m
 end
 
 function supporter.place(m, s, pose, ball)
   local me = s.seen.me
-  local attacks = ball.x_m > -0.2 * me.length_m and not game.keeps_away(s) and not supporter.lost(m, s, ball)
+  local from_m = me.keeper > 0 and -0.2 * me.length_m or 0  -- without a keeper it covers the goal in all of its own half
+  local attacks = ball.x_m > from_m and not game.keeps_away(s) and not supporter.lost(m, s, ball)
   local place = attacks and ahead(me, pose, ball) or behind(me, s, ball)
   local half_m, half_side_m = me.length_m / 2, me.width_m / 2
   local most_m = game.their_goal_kick(s) and half_m - me.mark_m - 1.5 or half_m - 0.8
