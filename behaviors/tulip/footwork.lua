@@ -85,6 +85,17 @@ local function obey(m, s)
 end
 
 local function lies(s) return floor.lies(s.base) end
+
+-- It leans on something, a goal's net for example: too far to walk, not far enough to lie. Then it lets itself fall to
+-- the side to which it leans, and gets up.
+local leans_rad, leans_s = 0.4, 1
+local function leans(side)
+  return function(s, m)
+    if s.base.tilt_rad < leans_rad then m.vars.upright_s = s.time_s end
+    return s.time_s - m.vars.upright_s > leans_s and (s.base.roll_rad < 0) == (side == "left")
+  end
+end
+
 local function dives(side)
   return function(_, m)
     local order = m.vars.order
@@ -100,7 +111,7 @@ end
 
 return k.behavior "footwork" {
   controls = "walking",
-  vars     = { known = {}, side = 1, armed = false, kicked_s = -10, sound_s = 0 },
+  vars     = { known = {}, side = 1, armed = false, kicked_s = -10, sound_s = 0, upright_s = 0 },
   initial  = "set_out",
   always   = { { on = "foot.*", action = hear } },
 
@@ -111,10 +122,13 @@ return k.behavior "footwork" {
   },
   k.state "obeys" {
     endless = true,
+    enter = function(m, s) m.vars.upright_s = s.time_s end,
     during = obey,
     { when = lies, to = "fallen", why = "lies" },
     { when = dives "left", to = "dive_left" },
     { when = dives "right", to = "dive_right" },
+    { when = leans "left", to = "dive_left", why = "leans on something" },
+    { when = leans "right", to = "dive_right", why = "leans on something" },
   },
   k.state "dive_left" {
     enter = let_go,

@@ -25,12 +25,13 @@ std::string json_of(const PlayedRobot& robot) {
   return "{\"name\": " + json_text(robot.name) +
          line_of(
              ", \"falls\": %llu, \"penalties\": %llu, \"messages\": %llu, \"errors\": %llu, \"upright_s\": %.2f, "
-             "\"played_s\": %.2f, \"still_max_s\": %.2f, \"frozen_max_s\": %.2f, \"off_median_m\": %.3f, \"off_most_m\": %.3f, "
+             "\"played_s\": %.2f, \"still_max_s\": %.2f, \"frozen_max_s\": %.2f, \"off_median_m\": %.3f, "
+             "\"off_most_m\": %.3f, "
              "\"off_median_rad\": %.4f}",
              static_cast<unsigned long long>(robot.falls), static_cast<unsigned long long>(robot.penalties),
              static_cast<unsigned long long>(robot.messages), static_cast<unsigned long long>(robot.errors),
-             robot.upright_s, robot.played_s, robot.still_max_s, robot.frozen_max_s, robot.off_median_m, robot.off_most_m,
-             robot.off_median_rad);
+             robot.upright_s, robot.played_s, robot.still_max_s, robot.frozen_max_s, robot.off_median_m,
+             robot.off_most_m, robot.off_median_rad);
 }
 
 template <typename T>

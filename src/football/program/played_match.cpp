@@ -16,7 +16,7 @@ constexpr double tries_rad_s = 0.3;    // joints that move so fast on the ground
 constexpr double rests_s = 3;          // the longest rest in an attempt
 constexpr double holds_m = 0.12;       // a ball so near to the middle of the robot is within it
 constexpr double still_m = 0.05, still_rad = 0.15;
-constexpr double keepers_m = 1.6;  // a ball nearer to the goal's middle is the keeper's
+constexpr double keepers_m = 1.6;       // a ball nearer to the goal's middle is the keeper's
 constexpr double touching_far_m = 1.2;  // robots that touch each other are nearer
 
 // What the page draws, and what is asked first of a match.

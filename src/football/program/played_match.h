@@ -78,7 +78,7 @@ class PlayedMatch {
   GameState state() const noexcept { return elsewhere_ ? told_.state : referee_.match().state(); }
   bool stopped() const noexcept { return elsewhere_ ? told_.stopped : referee_.match().stopped(); }
   bool plays(RobotId id) const noexcept;
-  double sign(Side side) const noexcept;      // Match::sign
+  double sign(Side side) const noexcept;       // Match::sign
   bool others_kick(Side side) const noexcept;  // a kick-off, free kick and so on, from which it keeps away
   bool over() const noexcept;
   std::array<unsigned, 2> scores() const noexcept;

@@ -96,10 +96,10 @@ class RobotSenses {
   std::uint32_t whistles_ = 0;
   Penalty penalty_ = Penalty::none;
   MessagePolicy policy_;
-  std::optional<GameControl> game_;     // the newest packet, and when it came
+  std::optional<GameControl> game_;  // the newest packet, and when it came
   std::int64_t game_heard_ns_ = 0, radio_due_ns_ = 0, said_ns_ = 0;
-  std::uint64_t sent_ = 0, said_ = 0;   // messages so far; how often it was told to say something
-  bool owes_ = false;                   // it was told to, and has not yet
+  std::uint64_t sent_ = 0, said_ = 0;  // messages so far; how often it was told to say something
+  bool owes_ = false;                  // it was told to, and has not yet
 };
 
 }  // namespace kadans::football
