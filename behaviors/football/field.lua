@@ -43,6 +43,24 @@ function field.robots(s, pose)
   return all
 end
 
+-- The place before a goal's post that is in the way from the robot to `goal`, or nil: on the field, beside the post.
+local post_m, before_post_m = 0.4, 0.55
+function field.past_posts(me, pose, goal)
+  local x_m, y_m = goal.x_m - pose.x_m, goal.y_m - pose.y_m
+  local far_m = math.max(math.sqrt(x_m ^ 2 + y_m ^ 2), 0.01)
+  for _, end_m in ipairs { -me.length_m / 2, me.length_m / 2 } do
+    for _, side_m in ipairs { -me.goal_m / 2 - 0.05, me.goal_m / 2 + 0.05 } do
+      local px_m, py_m = end_m - pose.x_m, side_m - pose.y_m
+      local ahead_m = (x_m * px_m + y_m * py_m) / far_m
+      local beside_m = math.abs(x_m * py_m - y_m * px_m) / far_m
+      if ahead_m > 0 and ahead_m < far_m and beside_m < post_m then
+        return { x_m = end_m + (end_m > 0 and -before_post_m or before_post_m), y_m = side_m }
+      end
+    end
+  end
+  return nil
+end
+
 -- A place on the way to `goal` that leaves robots in the way to one side.
 function field.around(pose, goal, robots)
   local x_m, y_m = goal.x_m - pose.x_m, goal.y_m - pose.y_m

@@ -33,6 +33,16 @@ describe("field", function()
     expect(field.around(pose, goal, { { x_m = -0.5, y_m = 0 } })).to_equal(goal)
   end)
 
+  it("goes around a goal's post on the field's side, and only around one that is in its way", function()
+    local me = { length_m = 9, goal_m = 2.6 }
+    local behind_line = { x_m = -4.62, y_m = 1.4, heading_rad = 0 }
+    local past = field.past_posts(me, behind_line, { x_m = -4, y_m = 1.17 })
+    expect(past.x_m).to_be_near(-3.95, 1e-9)
+    expect(past.y_m).to_be_near(1.35, 1e-9)
+    expect(field.past_posts(me, { x_m = -3.5, y_m = 1.4, heading_rad = 0 }, { x_m = -4, y_m = 1.17 })).to_be_nil()
+    expect(field.past_posts(me, { x_m = 4, y_m = 0, heading_rad = 0 }, { x_m = 4.7, y_m = 0 })).to_be_nil()
+  end)
+
   it("goes around a place that it shall keep away from, and leaves it first when it is there", function()
     local ball, goal = { x_m = 0, y_m = 0 }, { x_m = -2, y_m = 0 }
     local leaves = field.clear_of({ x_m = 0.5, y_m = 0, heading_rad = 0 }, goal, ball, 1)

@@ -38,6 +38,12 @@ function game.keeps_away(s)
   return told.state == playing and told.set_play > 0 and told.ours == 0
 end
 
+-- A free kick, throw-in and so on of its own, other than a penalty kick: the others keep away from the ball.
+function game.may_kick(s)
+  local told = s.seen.game
+  return told.state == playing and told.set_play > 0 and told.set_play ~= 3 and told.ours == 1
+end
+
 -- A penalty kick that is not taken yet: only the kicker moves.
 function game.penalty_kick(s) return s.seen.game.set_play == 3 end
 
@@ -63,9 +69,11 @@ function game.ball(m, s, pose)
   end
   local best
   for _, mate in pairs(m.vars.mates) do
-    if mate.ball_x_m and s.time_s - mate.heard_s < 3 and (not best or mate.heard_s > best.heard_s) then best = mate end
+    if mate.ball_x_m and s.time_s - mate.ball_s < 5 and (not best or mate.ball_s > best.ball_s) then best = mate end
   end
-  return best and { x_m = best.ball_x_m, y_m = best.ball_y_m, own = false }
+  if not best then return nil end
+  local at = rolling.on({ x_m = best.ball_x_m, y_m = best.ball_y_m }, best.ball_x_m_s, best.ball_y_m_s, s.time_s - best.ball_s)
+  return { x_m = at.x_m, y_m = at.y_m, own = false }
 end
 
 return game

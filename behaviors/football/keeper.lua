@@ -13,7 +13,8 @@ local least_m, most_m = 0.4, 0.9  -- how far before its goal it stands
 local clears_m = 1.6  -- a ball nearer to the goal's middle is its own
 local body_m = 0.18   -- what comes nearer than that to its middle it stops by standing there
 local dives_m, dives_s = 1.1, 1.2  -- how far it reaches, and how early it lets itself fall
-local calm_m = 3  -- from a ball that is farther it may look away
+local calm_m = 3     -- from a ball that is farther it may look away,
+local shoots_m = 0.8  -- and from one that rests with no opponent so near to it
 local waits_s, looks_s = 6, 9
 local at_once_m = 2.3              -- a kick from nearer than that leaves no time to see how fast it rolls
 
@@ -64,6 +65,16 @@ local function looks(m, s, ball)
   return unknown_s > waits_s and unknown_s % (waits_s + looks_s) > waits_s
 end
 
+-- Nobody is about to shoot: it may look to both sides of the ball in turn, which stays in sight.
+function keeper.is_calm(m, s, pose, ball)
+  if not ball or game.keeps_away(s) or field.distance(pose, ball) > calm_m then return true end
+  if ball.rolls then return false end
+  for _, robot in ipairs(m.vars.others) do
+    if field.distance(robot, ball) < shoots_m then return false end
+  end
+  return true
+end
+
 function keeper.play(m, s, pose, ball)
   local side = m.vars.can.dive and keeper.passes(s, pose, ball)
   if side then return legs.dive(m, s, side) end
@@ -72,7 +83,7 @@ function keeper.play(m, s, pose, ball)
   if looks(m, s, ball) then return search.play(m, s, nil) end
   local at, toward = place(s, ball), ball or { x_m = 0, y_m = 0 }
   if field.distance(pose, at) < 0.2 then at = { x_m = pose.x_m, y_m = pose.y_m } end
-  if field.distance(pose, toward) > calm_m then return legs.watch(m, s, pose, at, toward) end
+  if keeper.is_calm(m, s, pose, ball) then return legs.watch(m, s, pose, at, toward) end
   legs.go(m, s, pose, at, toward)
 end
 

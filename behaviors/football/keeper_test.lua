@@ -30,4 +30,15 @@ describe("keeper", function()
     expect(keeper.passes(s, pose, { x_m = -3, y_m = 0 })).to_be_nil()
     expect(keeper.passes(s, pose, nil)).to_be_nil()
   end)
+
+  it("looks around while nobody is about to shoot, and not when somebody is", function()
+    local m = { vars = { others = {} } }
+    local rests = { x_m = -2, y_m = -0.5 }
+    expect(keeper.is_calm(m, s, pose, rests)).to_be_true()
+    m.vars.others = { { x_m = -1.5, y_m = -0.3 } }
+    expect(keeper.is_calm(m, s, pose, rests)).to_be_false()
+    expect(keeper.is_calm({ vars = { others = {} } }, s, pose, ball(-2, 0, -1, 0))).to_be_false()
+    expect(keeper.is_calm(m, s, pose, { x_m = 3, y_m = 0 })).to_be_true()
+    expect(keeper.is_calm(m, s, pose, nil)).to_be_true()
+  end)
 end)

@@ -13,6 +13,7 @@ local before_feet_m = 0.9
 local turns = 0.06                    -- what a radian of the way around the ball costs; more when somebody presses,
 local presses_m, pressed = 1.5, 0.1
 local hurries_s, hurry = 5, 0.05      -- and by so much a second more when the ball rests long: 10 s is a stuck game
+local aside_rad = 0.25                -- so much of it costs nothing: who stands behind the ball need not choose again
 local stands_m, beside = 0.5, 0.4      -- it stands so far behind the ball; what a metre outside of the field costs there
 local dribble_m, pass_ahead_m = 1.1, 0.4
 local passed = 0.65                   -- the share of a ball's worth that is left when a mate has got to it
@@ -109,7 +110,7 @@ function kicks.all(m, s, pose, ball, now)
       math.abs(ball.y_m - stands_m * math.sin(rad)) - me.width_m / 2, 0)
     local share = kick.name == "pass" and passed or 1
     kick.worth = share * chance.of_kick(me, robots, ball, kick, kick.beyond_m, game.indirect(s)) -
-      cost * math.abs(field.angle(rad - toward_rad)) - beside * out_m
+      cost * math.max(0, math.abs(field.angle(rad - toward_rad)) - aside_rad) - beside * out_m
   end
   return list
 end

@@ -26,7 +26,7 @@ end
 -- To a place of the field, to face `toward` there; other robots are walked around. What is behind it, it turns to first,
 -- on the spot, which is quicker than while it walks.
 function legs.go(m, s, pose, place, toward, most_m_s)
-  local near = field.around(pose, place, field.robots(s, pose))
+  local near = field.past_posts(s.seen.me, pose, place) or field.around(pose, place, field.robots(s, pose))
   local at = field.to_robot(pose, near)
   local heading_rad = field.angle(math.atan2(toward.y_m - place.y_m, toward.x_m - place.x_m) - pose.heading_rad)
   local turn_rad = field.distance(pose, near) > far_m and math.atan2(at.y_m, at.x_m) or heading_rad
@@ -48,10 +48,11 @@ function legs.lies(m)
   return state ~= nil and (state:find("fallen", 1, true) or state:find("dive", 1, true)) ~= nil
 end
 
--- The same, no nearer to the ball than the rules want of a team that does not kick.
+-- The same, no nearer to the ball than the rules want of a team that does not kick. It may take them 45 s to do it:
+-- meanwhile it looks around.
 function legs.keep_away(m, s, pose, place, ball)
   local way = field.clear_of(pose, place, ball, s.seen.me.circle_m + 0.35)
-  legs.go(m, s, pose, way, ball)
+  legs.watch(m, s, pose, way, ball)
 end
 
 -- The ball to a place of the field, so that it would roll beyond_m farther.

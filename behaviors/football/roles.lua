@@ -36,10 +36,11 @@ local function is_the_keepers(m, s, ball, own_s)
   return keeper.clears(s, ball) and plays(s, mate) and mate.far_s < own_s + rises_s / 2
 end
 
--- All its mates are off the field: nobody goes to the ball but the keeper, unless an opponent is there sooner. Mates that
--- were never heard are silent, and play.
+-- All its mates are off the field: nobody goes to the ball but the keeper, unless an opponent is there sooner, who may
+-- kick it. Mates that were never heard are silent, and play.
 local function keeper_goes(m, s, pose, ball)
   if not m.vars.heard or not ball or has_mates(m, s) or game.keeps_away(s) then return false end
+  if game.may_kick(s) then return true end
   local own_m = field.distance(pose, ball.rest or ball) - (m.vars.role == "striker" and 0.5 or 0)
   for _, robot in ipairs(m.vars.others) do
     if field.distance(robot, ball.rest or ball) < own_m + 1 then return false end

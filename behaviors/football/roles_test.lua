@@ -22,6 +22,9 @@ describe("roles", function()
     expect(roles.pick(m, s, near, ball)).to_equal "striker"
     m.vars.others = { { x_m = 1.5, y_m = 0, mate = false } }
     expect(roles.pick(m, s, near, ball)).to_equal "keeper"
+    s.seen.game.set_play, s.seen.game.ours = 6, 1  -- its team's corner: the opponent keeps away
+    expect(roles.pick(m, s, near, ball)).to_equal "striker"
+    s.seen.game.set_play = 0
     m.vars.others, m.vars.mates, m.vars.heard = {}, {}, false  -- silent
     expect(roles.pick(m, s, near, ball)).to_equal "keeper"
   end)

@@ -100,6 +100,7 @@ function rolling.watch(known, s, pose)
   if s.time_s - last.s > (rolls and rolling_s or knows_s) then return nil end
   local at = rolls and { x_m = last.x_m, y_m = last.y_m } or mean(seen)
   at.rolls = rolls
+  at.age_s = s.time_s - last.s
   at.rest = rolls and rolling.rest(at, rolls) or at
   local kick = known.kick
   if kick and s.time_s - kick.s < short_s then at.kicked = { from = kick.from, x_m = last.x_m, y_m = last.y_m } end
@@ -117,6 +118,15 @@ end
 function rolling.rest(at, rolls)
   local share = rolls.m_s / (2 * rolling.slows_m_s2)
   return { x_m = at.x_m + share * rolls.x_m_s, y_m = at.y_m + share * rolls.y_m_s }
+end
+
+-- Where one that was `at` and rolled so is in_s later.
+function rolling.on(at, x_m_s, y_m_s, in_s)
+  local m_s = math.sqrt(x_m_s ^ 2 + y_m_s ^ 2)
+  if m_s < 1e-6 then return at end
+  local rolls_s = math.min(in_s, m_s / rolling.slows_m_s2)
+  local share_s = rolls_s - rolling.slows_m_s2 * rolls_s ^ 2 / (2 * m_s)
+  return { x_m = at.x_m + share_s * x_m_s, y_m = at.y_m + share_s * y_m_s }
 end
 
 -- When and where it crosses x_m: seconds and y, or nil when it rests before, or rolls the other way.

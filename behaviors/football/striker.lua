@@ -7,6 +7,7 @@ local search = require "search"
 
 local striker = {}
 
+local unseen_m, back_m = 0.6, 0.45
 local carpet_m = 0.7  -- so far beside the field it turns back; the carpet ends after 1 m
 
 -- No goal counts straight from a kick-off: the ball goes out of the circle first, aslant.
@@ -19,6 +20,14 @@ end
 local function goes_around(m, s, pose, ball)
   if field.distance(pose, ball) < 1 or field.around(pose, ball, field.robots(s, pose)) == ball then return false end
   legs.go(m, s, pose, ball, game.goal(s))
+  return true
+end
+
+-- A post between it and the ball: footwork knows of none.
+local function passes_post(m, s, pose, ball)
+  local place = field.past_posts(s.seen.me, pose, ball)
+  if not place then return false end
+  legs.go(m, s, pose, place, ball)
   return true
 end
 
@@ -40,15 +49,25 @@ local function comes_back(m, s, pose, ball)
   return true
 end
 
+-- To a ball that only a mate sees. One that lies before its feet, below what it sees itself, it steps back from until it
+-- sees it.
+local function comes_to(m, s, pose, ball)
+  local far_m = field.distance(pose, ball)
+  if far_m > unseen_m then return legs.go(m, s, pose, ball, game.goal(s)) end
+  local rad = far_m > 0.05 and math.atan2(ball.y_m - pose.y_m, ball.x_m - pose.x_m) or pose.heading_rad
+  local ahead = { x_m = pose.x_m + math.cos(rad), y_m = pose.y_m + math.sin(rad) }
+  legs.go(m, s, pose, { x_m = pose.x_m - back_m * math.cos(rad), y_m = pose.y_m - back_m * math.sin(rad) }, ahead)
+end
+
 function striker.play(m, s, pose, ball)
   if game.penalty_kick(s) and s.seen.game.ours ~= 1 then return legs.stand(m, s) end
   if not ball then return search.play(m, s, pose) end
-  if not ball.own then return legs.go(m, s, pose, ball, game.goal(s)) end
+  if not ball.own then return comes_to(m, s, pose, ball) end
   local in_circle = field.distance(ball, { x_m = 0, y_m = 0 }) < s.seen.me.circle_m + 0.1
   if m.vars.kick_off_ours and in_circle then return legs.kick(m, s, pose, kick_off_place(s), 0) end
   m.vars.kick_off_ours = m.vars.kick_off_ours and in_circle
   if game.keeps_away(s) or m.vars.kick_off_theirs then return striker.block(m, s, pose, ball) end
-  if comes_back(m, s, pose, ball) or follows(m, s, pose, ball) or goes_around(m, s, pose, ball) then return end
+  if comes_back(m, s, pose, ball) or passes_post(m, s, pose, ball) or follows(m, s, pose, ball) or goes_around(m, s, pose, ball) then return end
   local kick = kicks.choose(m, s, pose, ball)
   legs.kick(m, s, pose, kick, kick.beyond_m)
 end

@@ -85,7 +85,8 @@ end
 
 -- In each tick: a step of the way around the ball b until it is between the robot and the target, and then the kick, so
 -- that the ball rolls beyond_m farther than the target on a ground that slows it by roll_m_s2. All in the frame of
--- walk.at, at most_m_s (0.35), in the usual way or as quick. m.vars.side is the foot: 1 the left one.
+-- walk.at, at most_m_s (0.35), in the usual way or as quick. m.vars.side is the foot: 1 the left one. False: it is not
+-- behind the ball, and a kick that it was to do is taken back.
 function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s, way)
   most_m_s, way = most_m_s or 0.35, way or usual
   local at = walk.at(m)
@@ -94,15 +95,20 @@ function ball.approach(m, b, target, beyond_m, roll_m_s2, most_m_s, way)
   m.vars.side = ball.side(left, m.vars.side)
   if not ball.is_ahead(behind, left) then
     walk.keep(m)
-    return ball.around(m, b, rad, most_m_s, way)
+    ball.around(m, b, rad, most_m_s, way)
+    return false
   end
   local place = walk.to_kick(b, rad, m.vars.side, rad)
   local off_m = walk.distance(place, at)
-  if off_m > way.beside_m then return toward(m, at, place.x_m, place.y_m, most_m_s, way) end
+  if off_m > way.beside_m then
+    toward(m, at, place.x_m, place.y_m, most_m_s, way)
+    return true
+  end
   walk.beside(m, place)
   if off_m < way.kicks_m and math.abs(walk.angle(rad - at.heading_rad)) < 0.3 then
     walk.kick(m, b, rad, math.min(walk.distance(target, b) + beyond_m, 4.5), roll_m_s2)
   end
+  return true
 end
 
 return ball

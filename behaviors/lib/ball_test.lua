@@ -45,4 +45,18 @@ describe("ball", function()
     expect(picture(3)).to_be_near(2.05, 1e-9)
     expect(picture(3)).to_be_near(4, 1e-9)
   end)
+
+  it("says whether it is behind the ball, and takes a kick back where it is not", function()
+    local m, _, at = stage()
+    local b, target = { x_m = 1.5, y_m = 2 }, { x_m = 5, y_m = 2 }
+    m.vars = { side = 1 }
+    m.walk.set = function(_, name, value) at[name] = value end
+    at.kick_m_s = 0
+    at.x_m, at.y_m = 1.2, 2.09
+    expect(ball.approach(m, b, target, 1, 0.28)).to_be_true()
+    expect(at.kick_m_s).to_be_above(0)
+    at.x_m, at.y_m = 1.9, 2.5  -- the ball is behind it
+    expect(ball.approach(m, b, target, 1, 0.28)).to_be_false()
+    expect(at.kick_m_s).to_equal(0)
+  end)
 end)

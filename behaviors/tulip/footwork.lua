@@ -69,6 +69,12 @@ local function end_dribble(m)
   m.vars.dribbled = false
 end
 
+-- Takes the kick back: that it is not to kick any more does not mean that it has kicked.
+local function keep(m)
+  walk.keep(m)
+  m.vars.armed = false
+end
+
 local function obey(m, s)
   clear(m, s)
   local order = m.vars.order
@@ -81,22 +87,35 @@ local function obey(m, s)
   if heard and order.what == "foot.dribble" then return dribbles(m, s, order) end
   end_dribble(m)
   if not heard or order.what == "foot.stand" then
-    if kicks then walk.keep(m) end
+    if kicks then keep(m) end
     walk.stop(m)
   elseif s.time_s - m.vars.kicked_s < P.after_s then
     walk.go(m, {})
   elseif order.what == "foot.turn" then
-    if kicks then walk.keep(m) end
+    if kicks then keep(m) end
     walk.go(m, { turn_rad_s = order.data.rad_s })
   elseif order.what == "foot.go" then
-    if kicks then walk.keep(m) end
+    if kicks then keep(m) end
     go(m, order)
   elseif b and order.what == "foot.kick" then
-    ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s, ball.quick)
+    if not ball.approach(m, b, order.place, order.data.beyond_m or 1, P.roll_m_s2, P.most_m_s, ball.quick) then
+      m.vars.armed = false
+    end
   end
 end
 
 local function lies(s) return floor.lies(s.base) end
+
+-- It leans on something, a goal's net for example: too far to walk, not far enough to lie. Then it lets itself fall to
+-- the side to which it leans, and gets up.
+local leans_rad, leans_s = 0.4, 1
+local function leans(side)
+  return function(s, m)
+    if s.base.tilt_rad < leans_rad then m.vars.upright_s = s.time_s end
+    return s.time_s - m.vars.upright_s > leans_s and (s.base.roll_rad < 0) == (side == "left")
+  end
+end
+
 local function dives(side)
   return function(_, m)
     local order = m.vars.order
@@ -113,7 +132,8 @@ end
 
 return k.behavior "footwork" {
   controls = "walking",
-  vars     = { known = {}, kept = {}, dribbled = false, side = 1, armed = false, kicked_s = -10, sound_s = 0 },
+  vars     = { known = {}, kept = {}, dribbled = false, side = 1, armed = false,
+               kicked_s = -10, sound_s = 0, upright_s = 0 },
   initial  = "set_out",
   always   = { { on = "foot.*", action = hear } },
 
@@ -124,10 +144,13 @@ return k.behavior "footwork" {
   },
   k.state "obeys" {
     endless = true,
+    enter = function(m, s) m.vars.upright_s = s.time_s end,
     during = obey,
     { when = lies, to = "fallen", why = "lies" },
     { when = dives "left", to = "dive_left" },
     { when = dives "right", to = "dive_right" },
+    { when = leans "left", to = "dive_left", why = "leans on something" },
+    { when = leans "right", to = "dive_right", why = "leans on something" },
   },
   k.state "dive_left" {
     enter = let_go,

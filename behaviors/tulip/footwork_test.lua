@@ -48,6 +48,16 @@ describe("footwork", function()
     expect(run.error).to_equal ""
   end)
 
+  it("lets itself fall to the side to which it leans on something, and does not for a short sway", function()
+    run:set_sensor("base.roll_rad", 0.7)
+    run:set_sensor("base.tilt_rad", 0.7)
+    run:advance(0.5)
+    expect(run.state).to_equal "obeys"
+    run:advance(0.7)
+    expect(run.state:sub(1, 10)).to_equal "dive_right"
+    expect(run.error).to_equal ""
+  end)
+
   it("gets up when it lies, and hears meanwhile", function()
     run:set_sensor("base.pitch_rad", 1.5)
     run:set_sensor("base.tilt_rad", 1.5)

@@ -53,14 +53,24 @@ bool MessagePolicy::spend(const TeamMessage& message, double now_s) noexcept {
   return true;
 }
 
+bool MessagePolicy::counts(const Situation& situation) noexcept {
+  return situation.phase != GamePhase::timeout && situation.state != GameState::initial &&
+         situation.state != GameState::finished;
+}
+
+void MessagePolicy::sent(const TeamMessage& message, const Situation& situation) noexcept {
+  (void)spend(message, situation.now_s);
+  if (!counts(situation)) return;
+  tokens_ = std::max(tokens_ - 1, -config_.burst);
+  ++counted_;
+}
+
 bool MessagePolicy::send(const TeamMessage& message, const Situation& situation) noexcept {
   const double passed_s = seen_s_ ? std::max(situation.now_s - *seen_s_, 0.0) : 0;
   seen_s_ = situation.now_s;
   if (situation.phase == GamePhase::penalty_shoot_out) return false;  // a robot plays alone there
   const double silent_s = last_ ? situation.now_s - last_s_ : 1e9;
-  const bool counts = situation.phase != GamePhase::timeout && situation.state != GameState::initial &&
-                      situation.state != GameState::finished;
-  if (!counts) return silent_s >= 1 && spend(message, situation.now_s);  // free
+  if (!counts(situation)) return silent_s >= 1 && spend(message, situation.now_s);  // free
   const double left = allowed(situation);
   if (!(left >= 1)) return false;
   constexpr double stoppage_s = 60;  // play goes on a little when the clock is at its end

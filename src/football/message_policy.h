@@ -44,13 +44,17 @@ class MessagePolicy {
 
   // True: send it now; it counts as sent.
   bool send(const TeamMessage& message, const Situation& situation) noexcept;
+  // A message that was sent without asking, such as the news of another role: it counts and is paid for.
+  void sent(const TeamMessage& message, const Situation& situation) noexcept;
+  // Messages that this robot may still send: its share of what is surely left.
+  double allowed(const Situation& situation) const noexcept;
   // In errors; 1 is worth a message at half a bucket.
   double worth(const TeamMessage& message, const Situation& situation) const noexcept;
   double price() const noexcept;
   std::uint64_t counted_sent() const noexcept { return counted_; }
 
  private:
-  double allowed(const Situation& situation) const noexcept;  // messages that this robot may still send
+  static bool counts(const Situation& situation) noexcept;
   bool spend(const TeamMessage& message, double now_s) noexcept;
 
   Config config_;

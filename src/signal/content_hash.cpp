@@ -1,4 +1,4 @@
-#include "content_hash.h"
+#include "kadans/signal/content_hash.h"
 
 #include <algorithm>
 #include <vector>

@@ -37,7 +37,8 @@ MatchResult result_of(std::uint64_t seed, unsigned home, unsigned away, std::uin
   result.simulated_s = 120;
   result.robots.resize(2);
   result.robots[0] = {.id = {Side::home, 1}, .name = "home_1", .falls = falls, .messages = 30};
-  result.robots[1] = {.id = {Side::away, 1}, .name = "away_1", .messages = 10, .still_max_s = still_s};
+  result.robots[1] = {
+      .id = {Side::away, 1}, .name = "away_1", .messages = 10, .still_max_s = still_s, .frozen_max_s = still_s - 1};
   result.robots[1].off_median_m = 0.1;
   return result;
 }
@@ -65,15 +66,17 @@ TEST_CASE("A summary counts who wins, falls by robot and minute, and who stands 
   CHECK(s.falls_per_minute.mean == doctest::Approx(0.25));
   CHECK(s.still_below_limit.hits == 3);
   CHECK(s.still_max_s.greatest == 25);
+  CHECK(s.frozen_below_limit.hits == 3);
+  CHECK(s.frozen_max_s.greatest == 24);
   CHECK(s.messages.mean == 30);
   CHECK(s.off_m.median == doctest::Approx(0.1));
   CHECK(s.within_budget.hits == 3);
-  CHECK_FALSE(all_well({all}));
+  CHECK_FALSE(all_well(summaries_of({all})));
   all.results.erase(all.results.begin() + 2);
-  CHECK(all_well({all}));
+  CHECK(all_well(summaries_of({all})));
   all.missing = {"a match: crashed by signal 11"};
-  CHECK_FALSE(all_well({all}));
-  CHECK(summary_text({all}).find("crashed by signal 11") != std::string::npos);
+  CHECK_FALSE(all_well(summaries_of({all})));
+  CHECK(summary_text(summaries_of({all})).find("crashed by signal 11") != std::string::npos);
 }
 
 TEST_CASE("A result that is written is read again as it was") {
@@ -105,9 +108,9 @@ TEST_CASE("Matches in two parts come to what they come to as a whole, and what h
   fs::copy_file(folder / "a" / "plan.json", folder / "b" / "plan.json");
   CHECK(merge_many(parts)[0].missing.size() == 1);
   (void)part(folder / "b", {1, 2});
-  CHECK(summary_json(merge_many(parts)) == summary_json(whole));
+  CHECK(summary_json(summaries_of(merge_many(parts))) == summary_json(summaries_of(whole)));
   const auto written = fs::last_write_time(folder / "whole" / "0-11.json");
-  CHECK(summary_json(part(folder / "whole", {})) == summary_json(whole));
+  CHECK(summary_json(summaries_of(part(folder / "whole", {}))) == summary_json(summaries_of(whole)));
   CHECK(fs::last_write_time(folder / "whole" / "0-11.json") == written);
   ManyMatches other = short_ones;
   other.seed = 12;

@@ -248,4 +248,18 @@ TEST_CASE("The shipped schema of match files is what their reader says, and the 
   }
 }
 
+TEST_CASE("A mistake in a team's parameters is told at their place in the match file, once for all its robots") {
+  const fs::path file = written(folder / "parameters.json", R"({ "name": "drawn",
+  "home": { "team": "behaviors/football", "players": 2,
+            "parameters": "pases=0" } })");
+  try {
+    PlayedMatch match(read_match(file), 1);
+    FAIL("it was taken");
+  } catch (const InputError& error) {
+    REQUIRE(error.problems().size() == 1);
+    CHECK(error.problems()[0].text() ==
+          file.string() + ":3:27: behavior 'team' takes no argument 'pases', did you mean 'passes'?");
+  }
+}
+
 }  // namespace match_input_test

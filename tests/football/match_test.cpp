@@ -147,6 +147,26 @@ TEST_CASE("A robot's ball is what its pictures agree on: those that show it wher
   CHECK(filtered_m < 0.5);
 }
 
+// Nobody hears that play is on: all stand.
+TEST_CASE("Who stands still is frozen when the ball is its own to play, and waits when a mate or a striker is nearer") {
+  const MatchConfig match = read_match(match_of(R"({
+    "name": "nobody_hears",
+    "rules": { "hidden_playing_s": 20 },
+    "begins": { "ball_x_m": 1.5 },
+    "home": { "team": "behaviors/football", "players": 2,
+              "places": { "1": { "x_m": 0.8, "y_m": 0.2 }, "2": { "x_m": -1, "y_m": 0 } } },
+    "away": { "team": "behaviors/football", "players": 1, "keeper": 1, "places": { "1": { "x_m": -4.2, "y_m": 0 } } }
+  })"));
+  PlayedMatch played(match, 1);
+  while (played.step() && played.result().simulated_s < 5) (void)played.take_lines();
+  const MatchResult& result = played.result();
+  for (const PlayedRobot& robot : result.robots) {
+    CAPTURE(robot.name);
+    CHECK(robot.still_max_s > 3);
+    CHECK(robot.frozen_max_s == doctest::Approx(robot.name == "home_1" ? robot.still_max_s : 0));
+  }
+}
+
 TEST_CASE("Two teams of two walk to their places before the kick-off, the same way by the same seed") {
   const MatchConfig match = read_match(matches / "two_against_two.json");
   const MatchResult first = played("two_against_two.json", 2, 8), again = played("two_against_two.json", 2, 8);

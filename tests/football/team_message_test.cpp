@@ -307,6 +307,25 @@ TEST_CASE("messages that are spent where they help tell more than the same numbe
   }
 }
 
+TEST_CASE("a message that is sent without asking counts, and makes the next ones dearer") {
+  MessagePolicy asked({}), unasked({});
+  const auto at = [](double now_s) {
+    return MessagePolicy::Situation{.now_s = now_s, .state = GameState::playing, .remaining_s = 1200};
+  };
+  TeamMessage message{.team = 12, .player = 2};
+  CHECK(asked.send(message, at(0)));
+  unasked.sent(message, at(0));
+  CHECK(unasked.counted_sent() == 1);
+  CHECK(unasked.price() == doctest::Approx(asked.price()));
+  CHECK(unasked.worth(message, at(0.1)) == doctest::Approx(asked.worth(message, at(0.1))));
+  const double before = unasked.price(), left = unasked.allowed(at(0.1));
+  for (int i = 0; i < 40; ++i) unasked.sent(message, at(0.2));
+  CHECK(unasked.price() > before);
+  CHECK(unasked.allowed(at(0.2)) == left - 40);
+  unasked.sent(message, {.now_s = 1, .state = GameState::finished});
+  CHECK(unasked.counted_sent() == 41);
+}
+
 TEST_CASE("messages are free before and after the game, and none is sent in a shoot-out") {
   MessagePolicy policy({});
   std::uint64_t sent = 0;

@@ -242,6 +242,31 @@ TEST_CASE("A ball bounces with its restitution") {
   CHECK(up == doctest::Approx(0.8 * std::sqrt(2 * g)).epsilon(0.02));
 }
 
+// Ground, ball and weight in a row: who falls on a ball gets back what the ball's restitution leaves, and no more.
+TEST_CASE("What falls on a ball that lies on the ground bounces as the ball does, and is not flung up") {
+  for (const double restitution : {0.0, 0.6}) {
+    CAPTURE(restitution);
+    Robot robot = box(20, {0.3, 0.3, 0.1});
+    robot.settings.stand_on_ground = false;
+    robot.settings.base.position_m = {0, 0, 0.45};
+    robot.settings.world.objects = {object("ball", WorldBall{0.1, 0.37, 0, restitution}, {0, 0, 0.1})};
+    BulletWorld plant(robot.model, robot.settings, 1);
+    double fastest = 0, highest_m = 0;
+    bool fell = false;
+    for (int i = 0; i < 800; ++i) {
+      plant.step(ms);
+      const PlantTruth& truth = plant.truth();
+      fell = fell || truth.base.position_m[2] < 0.26;
+      if (!fell) continue;
+      fastest = std::max(fastest, truth.com_velocity_m_s[2]);
+      highest_m = std::max(highest_m, truth.base.position_m[2]);
+    }
+    const double hit_m_s = std::sqrt(2 * g * 0.2);
+    CHECK(fastest < restitution * hit_m_s + 0.2);
+    CHECK(highest_m < 0.25 + 0.2 * restitution * restitution + 0.02);
+  }
+}
+
 TEST_CASE("A kick gives the ball what it takes from the robot") {
   Robot robot = box(2, {0.2, 0.2, 0.2});
   robot.settings.gravity_m_s2 = {0, 0, 0};

@@ -17,6 +17,8 @@
 #include <string>
 #include <string_view>
 
+#include "kadans/signal/input_error.h"
+
 namespace kadans {
 
 class Fields;
@@ -51,6 +53,8 @@ class InputObject {
 
   // A mistake at the value of this field.
   void refuse(std::string_view name, const std::string& message);
+  // Where the value of this field stands, without a message: for a mistake that is found only later.
+  InputProblem place(std::string_view name) const;
 
  private:
   Fields* fields_;

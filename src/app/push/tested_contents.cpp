@@ -5,8 +5,8 @@
 
 #include "app/line_editor.h"
 #include "delivery.h"
+#include "kadans/signal/content_hash.h"
 #include "kadans/signal/input_error.h"
-#include "signal/content_hash.h"
 #include "signal/durable_file.h"
 
 namespace kadans {

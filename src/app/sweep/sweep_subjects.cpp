@@ -6,8 +6,8 @@
 #include "app/sim/played_behaviors.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
+#include "kadans/signal/content_hash.h"
 #include "scenario/judge/metrics.h"
-#include "signal/content_hash.h"
 #include "version.h"
 
 namespace kadans {

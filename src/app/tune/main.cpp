@@ -23,9 +23,9 @@
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
 #include "kadans/campaign/shard.h"
+#include "kadans/signal/content_hash.h"
 #include "kadans/signal/random.h"
 #include "program_tuning.h"
-#include "signal/content_hash.h"
 #include "signal/durable_file.h"
 
 namespace kadans {

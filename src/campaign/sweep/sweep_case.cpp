@@ -5,10 +5,10 @@
 #include <numeric>
 #include <string_view>
 
+#include "kadans/signal/content_hash.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/nearest_name.h"
 #include "kadans/signal/random.h"
-#include "signal/content_hash.h"
 #include "signal/number_text.h"
 #include "signal/shell_word.h"
 

@@ -8,7 +8,7 @@
 
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
-#include "signal/content_hash.h"
+#include "kadans/signal/content_hash.h"
 #include "signal/durable_file.h"
 
 namespace kadans {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "signal/content_hash.h"
+#include "kadans/signal/content_hash.h"
 
 namespace kadans {
 namespace {

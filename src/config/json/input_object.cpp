@@ -66,6 +66,11 @@ void InputObject::refuse(std::string_view name, const std::string& message) {
   if (reading()) problems_->add(fields_->place(name), message);
 }
 
+InputProblem InputObject::place(std::string_view name) const {
+  const TextPlace at = reading() ? fields_->place(name) : TextPlace{};
+  return {.file = problems_->file(), .line = at.line, .column = at.column, .message = {}};
+}
+
 void read_input_object(const std::filesystem::path& file, const InputObject::Read& read) {
   read_input_text(read_input_file(file), file, read);
 }

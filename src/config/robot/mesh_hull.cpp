@@ -12,10 +12,10 @@
 #include <nlohmann/json.hpp>
 
 #include "config/json/foreign_json.h"
+#include "kadans/signal/content_hash.h"
 #include "kadans/signal/input_error.h"
 #include "project_root.h"
 #include "realtime/machine/child_process.h"
-#include "signal/content_hash.h"
 #include "signal/durable_file.h"
 #include "signal/utf8.h"
 

@@ -110,7 +110,8 @@ int serve(const Options& options) {
   return ended_by_itself(result) ? exit_passed : exit_failed;
 }
 
-int tell(const std::vector<VariantResults>& all, bool json) {
+int tell(const std::vector<VariantResults>& results, bool json) {
+  const std::vector<MatchSummary> all = summaries_of(results);
   std::printf("%s", json ? (summary_json(all) + "\n").c_str() : summary_text(all).c_str());
   return all_well(all) ? exit_passed : exit_failed;
 }

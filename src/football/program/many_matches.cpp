@@ -8,6 +8,7 @@
 
 #include "kadans/campaign/job_pool.h"
 #include "kadans/config/input_object.h"
+#include "kadans/signal/content_hash.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/output_file.h"
 #include "match_report.h"
@@ -39,12 +40,6 @@ std::vector<Case> cases_of(const ManyMatches& plan, std::size_t variants) {
   return cases;
 }
 
-// FNV-1a, of bytes whose order counts.
-std::uint64_t hash_on(std::uint64_t hash, std::string_view bytes) {
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1'099'511'628'211ULL;
-  return hash;
-}
-
 std::string bytes_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -53,7 +48,8 @@ std::string bytes_of(const fs::path& file) {
 // Of the program, and of the files that matches are made of: all that stands in the folders of the working directory
 // that a project has.
 std::string hash_of_players(const ManyMatches& plan) {
-  std::uint64_t hash = hash_on(14'695'981'039'346'656'037ULL, bytes_of("/proc/self/exe"));
+  ContentHash hash;
+  hash.add_file("/proc/self/exe");
   std::vector<fs::path> files(plan.files.begin(), plan.files.end());
   for (const char* folder : {"behaviors", "models", "config"}) {
     std::error_code ignored;
@@ -66,10 +62,11 @@ std::string hash_of_players(const ManyMatches& plan) {
     }
   }
   std::ranges::sort(files);
-  for (const fs::path& file : files) hash = hash_on(hash_on(hash, file.generic_string()), bytes_of(file));
-  std::array<char, 20> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash));
-  return text.data();
+  for (const fs::path& file : files) {
+    hash.add(file.generic_string());
+    hash.add_file(file);
+  }
+  return hash.hex();
 }
 
 std::string texts_json(const std::vector<std::string>& texts) {

@@ -112,7 +112,8 @@ void read_team(InputObject& f, TeamSetup& team) {
   f.path("robot", team.robot, "the configuration of its robots");
   f.whole("players", team.players, 1, team_players_max, "robots of the team", true);
   f.whole("keeper", team.keeper, 0, team_players_max, "number of the keeper, 0: none");
-  f.text("parameters", team.parameters, "parameters of its decisions: \"passes=0, dives=0\"");
+  const bool given = f.text("parameters", team.parameters, "parameters of its decisions: \"passes=0, dives=0\"");
+  if (given) team.parameters_place = f.place("parameters");
   if (team.parameters.find_first_of("{}\"") != std::string::npos)
     f.refuse("parameters", "parameters are NAME=NUMBER, with commas between them");
   f.object("places", "where robots stand when a drill begins", [&](InputObject& e) {
@@ -126,6 +127,20 @@ void read_team(InputObject& f, TeamSetup& team) {
   if (team.keeper > team.players)
     f.refuse("keeper", "keeper is number " + std::to_string(team.keeper) + ", but the team has " +
                            std::to_string(team.players) + " players");
+}
+
+std::string decisions_of(const TeamSetup& team) {
+  return "\"decisions\": " +
+         json_text(team.folder + "/team.lua" + (team.parameters.empty() ? "" : "{" + team.parameters + "}"));
+}
+
+std::string line_of(const std::string& text, int number) {
+  std::size_t begin = 0;
+  for (int line = 1; line < number && begin != std::string::npos; ++line) {
+    begin = text.find('\n', begin);
+    if (begin != std::string::npos) ++begin;
+  }
+  return begin == std::string::npos ? "" : text.substr(begin, text.find('\n', begin) - begin);
 }
 
 std::string number(double value) {
@@ -167,7 +182,10 @@ std::string world_model() {
           "number": { "what": "its number" }, "keeper": { "what": "the keeper's number, 0 none" }, "players": { "what": "robots of the team" },
           "length_m": { "unit": "m" , "what": "of the field" }, "width_m": { "unit": "m", "what": "of the field" },
           "goal_m": { "unit": "m", "what": "width of the goals" }, "circle_m": { "unit": "m", "what": "radius of the centre circle" },
-          "mark_m": { "unit": "m", "what": "from a penalty mark to its goal line" } } })";
+          "mark_m": { "unit": "m", "what": "from a penalty mark to its goal line" } } },
+      "radio": { "what": "when to tell its mates something", "fields": {
+          "say": { "what": "how often a message was worth its price so far" },
+          "left": { "what": "messages that it may still send" } } })";
   for (std::size_t i = 1; i <= robots_told; ++i) {
     text +=
         ",\n      \"robot_" + std::to_string(i) +
@@ -238,9 +256,7 @@ std::string supervisor_of(const MatchConfig& match, RobotId id, const RobotPlace
   }
   for (const std::string& place : places.to) to += (to.empty() ? "" : ", ") + json_text(place);
   std::string text =
-      "{ \"decisions\": " +
-      json_text(team.folder + "/team.lua" + (team.parameters.empty() ? "" : "{" + team.parameters + "}")) +
-      ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
+      "{ " + decisions_of(team) + ", \"rate_Hz\": 20, \"when_lost\": \"stop\",\n    \"world\": " + world_model();
   if (!places.perception.empty()) text += ",\n    \"perception\": " + json_text(places.perception);
   if (!peers.empty())
     text += ",\n    \"messages\": { \"name\": " + json_text(robot_name(id)) + ", \"peers\": [" + peers + "]" +
@@ -370,6 +386,26 @@ std::string scenario_of(const MatchConfig& match, std::uint64_t seed) {
           ", \"mass_kg\": " + number(ball.mass_kg) + ", \"rolling_friction_m\": " + number(match.rolling_friction_m) +
           ", \"restitution\": 0.6, \"position_m\": [0, 0, " + number(ball.radius_m) + "] }" + goals(field) + "]\n}\n";
   return text;
+}
+
+InputError told_of_match(const InputError& error, const MatchConfig& match, std::uint64_t seed) {
+  const std::string scenario = scenario_of(match, seed);
+  std::vector<InputProblem> told;
+  for (InputProblem problem : error.problems()) {
+    if (problem.file == match.file && problem.line > 0) {
+      const std::string line = line_of(scenario, problem.line);
+      problem.line = problem.column = 0;
+      for (const TeamSetup& team : match.teams) {
+        const InputProblem& at = team.parameters_place;
+        if (team.parameters.empty() || line.find(decisions_of(team)) == std::string::npos) continue;
+        problem.file = at.file, problem.line = at.line, problem.column = at.column;
+        break;
+      }
+    }
+    const auto is_known = [&](const InputProblem& other) { return other.text() == problem.text(); };
+    if (std::ranges::none_of(told, is_known)) told.push_back(std::move(problem));
+  }
+  return InputError(std::move(told));
 }
 
 }  // namespace kadans::football

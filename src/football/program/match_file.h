@@ -15,6 +15,7 @@
 
 #include "football/field.h"
 #include "football/match.h"
+#include "kadans/signal/input_error.h"
 
 namespace kadans {
 class InputObject;
@@ -28,6 +29,7 @@ inline constexpr std::size_t robots_told = 3;    // of those that a robot sees: 
 struct TeamSetup {
   std::string name, folder, robot = "config/tulip/robot.json";
   std::string parameters;                                     // of its decisions: "passes=0, dives=0"
+  InputProblem parameters_place;                              // where they stand
   std::uint64_t players = 1, keeper = 0;                      // keeper 0: there is none
   std::array<std::optional<Pose2>, team_players_max> places;  // of a drill, in the team's frame
 };
@@ -92,6 +94,9 @@ std::string robot_name(RobotId id);            // "home_1"
 std::string json_text(std::string_view text);  // in JSON's quotes
 // The text of the scenario, for kadans::Simulation. The seed scatters what a drill begins with.
 std::string scenario_of(const MatchConfig& match, std::uint64_t seed);
+// What is wrong with that scenario, with places of the match file: a mistake in a team's parameters has theirs, and
+// what else the match made has none.
+InputError told_of_match(const InputError& error, const MatchConfig& match, std::uint64_t seed);
 // Where the ball lies when the drill of `match.begins` begins, in the world's frame.
 Point drill_ball(const MatchConfig& match, std::uint64_t seed);
 

@@ -25,12 +25,13 @@ std::string json_of(const PlayedRobot& robot) {
   return "{\"name\": " + json_text(robot.name) +
          line_of(
              ", \"falls\": %llu, \"penalties\": %llu, \"messages\": %llu, \"errors\": %llu, \"upright_s\": %.2f, "
-             "\"played_s\": %.2f, \"still_max_s\": %.2f, \"off_median_m\": %.3f, \"off_most_m\": %.3f, "
+             "\"played_s\": %.2f, \"still_max_s\": %.2f, \"frozen_max_s\": %.2f, \"off_median_m\": %.3f, "
+             "\"off_most_m\": %.3f, "
              "\"off_median_rad\": %.4f}",
              static_cast<unsigned long long>(robot.falls), static_cast<unsigned long long>(robot.penalties),
              static_cast<unsigned long long>(robot.messages), static_cast<unsigned long long>(robot.errors),
-             robot.upright_s, robot.played_s, robot.still_max_s, robot.off_median_m, robot.off_most_m,
-             robot.off_median_rad);
+             robot.upright_s, robot.played_s, robot.still_max_s, robot.frozen_max_s, robot.off_median_m,
+             robot.off_most_m, robot.off_median_rad);
 }
 
 template <typename T>
@@ -50,11 +51,11 @@ std::string text_of(const MatchResult& result, const MatchConfig& match) {
   for (const Decision& decision : result.decisions) text += "  " + decision.line() + "\n";
   for (const PlayedRobot& robot : result.robots)
     text += line_of(
-        "  %s: %llu falls, %llu penalties, %llu messages, stood still for %.1f s at most, %.2f m off in "
-        "the median\n",
+        "  %s: %llu falls, %llu penalties, %llu messages, stood still for %.1f s at most, frozen for "
+        "%.1f s, %.2f m off in the median\n",
         robot.name.c_str(), static_cast<unsigned long long>(robot.falls),
         static_cast<unsigned long long>(robot.penalties), static_cast<unsigned long long>(robot.messages),
-        robot.still_max_s, robot.off_median_m);
+        robot.still_max_s, robot.frozen_max_s, robot.off_median_m);
   return text + line_of("  seed %llu, %.1f s, %.1f s of them in play, hash %016llx",
                         static_cast<unsigned long long>(result.seed), result.simulated_s, result.playing_s,
                         static_cast<unsigned long long>(result.state_hash));
@@ -101,6 +102,7 @@ void read_robot(InputObject& f, MatchResult& result) {
   for (const auto& [key, value] : {std::pair{"upright_s", &robot.upright_s},
                                    {"played_s", &robot.played_s},
                                    {"still_max_s", &robot.still_max_s},
+                                   {"frozen_max_s", &robot.frozen_max_s},
                                    {"off_median_m", &robot.off_median_m},
                                    {"off_most_m", &robot.off_most_m},
                                    {"off_median_rad", &robot.off_median_rad}})

@@ -77,13 +77,11 @@ std::string json_of(const SampleStatistics& value) {
               value.mean_interval.low, value.mean_interval.high, value.median, value.greatest);
 }
 
-std::string json_of(const VariantResults& all) {
-  const MatchSummary s = summary_of(all);
+std::string json_of(const MatchSummary& s) {
   std::string settings;
-  for (const std::string& setting : all.variant.settings)
-    settings += (settings.empty() ? "" : ", ") + json_text(setting);
-  std::string text = "{\"file\": " + json_text(all.variant.file) + ", \"settings\": [" + settings + "]" +
-                     told(", \"matches\": %zu, \"missing\": %zu, \"errors\": %llu", s.matches, s.missing,
+  for (const std::string& setting : s.variant.settings) settings += (settings.empty() ? "" : ", ") + json_text(setting);
+  std::string text = "{\"file\": " + json_text(s.variant.file) + ", \"settings\": [" + settings + "]" +
+                     told(", \"matches\": %zu, \"missing\": %zu, \"errors\": %llu", s.matches, s.missing.size(),
                           static_cast<unsigned long long>(s.errors));
   const std::pair<const char*, const Share*> shares[] = {{"ended_by_itself", &s.ended_by_itself},
                                                          {"home_won", &s.home_won},
@@ -91,6 +89,7 @@ std::string json_of(const VariantResults& all) {
                                                          {"away_won", &s.away_won},
                                                          {"with_goals", &s.with_goals},
                                                          {"still_below_20_s", &s.still_below_limit},
+                                                         {"frozen_below_20_s", &s.frozen_below_limit},
                                                          {"within_budget", &s.within_budget}};
   for (const auto& [name, share] : shares) text += ",\n    \"" + std::string(name) + "\": " + json_of(*share);
   const std::pair<const char*, const SampleStatistics*> values[] = {{"goals", &s.goals},
@@ -98,6 +97,7 @@ std::string json_of(const VariantResults& all) {
                                                                     {"away_goals", &s.away_goals},
                                                                     {"falls_per_robot_and_minute", &s.falls_per_minute},
                                                                     {"still_max_s", &s.still_max_s},
+                                                                    {"frozen_max_s", &s.frozen_max_s},
                                                                     {"off_m", &s.off_m},
                                                                     {"off_rad", &s.off_rad},
                                                                     {"messages_of_a_team", &s.messages}};
@@ -110,7 +110,8 @@ std::string json_of(const VariantResults& all) {
 MatchSummary summary_of(const VariantResults& all) {
   MatchSummary s;
   s.matches = all.results.size();
-  s.missing = all.missing.size();
+  s.variant = all.variant;
+  s.missing = all.missing;
   s.ended_by_itself = share_of(all, ended_by_itself);
   s.home_won = share_of(all, [](const MatchResult& r) { return r.score[0] > r.score[1]; });
   s.drawn = share_of(all, [](const MatchResult& r) { return r.score[0] == r.score[1]; });
@@ -120,12 +121,17 @@ MatchSummary summary_of(const VariantResults& all) {
   const auto still_s = [](const MatchResult& r) {
     return worst(r, [](const PlayedRobot& p) { return p.still_max_s; });
   };
+  const auto frozen_s = [](const MatchResult& r) {
+    return worst(r, [](const PlayedRobot& p) { return p.frozen_max_s; });
+  };
   s.still_below_limit = share_of(all, [&](const MatchResult& r) { return still_s(r) <= still_limit_s; });
+  s.frozen_below_limit = share_of(all, [&](const MatchResult& r) { return frozen_s(r) <= still_limit_s; });
   s.goals = statistics_of(all, "goals", [](const MatchResult& r) { return double{0} + r.score[0] + r.score[1]; });
   s.home_goals = statistics_of(all, "home", [](const MatchResult& r) { return static_cast<double>(r.score[0]); });
   s.away_goals = statistics_of(all, "away", [](const MatchResult& r) { return static_cast<double>(r.score[1]); });
   s.falls_per_minute = statistics_of(all, "falls", falls_per_minute);
   s.still_max_s = statistics_of(all, "still", still_s);
+  s.frozen_max_s = statistics_of(all, "frozen", frozen_s);
   s.off_m = statistics_of(
       all, "off_m", [](const MatchResult& r) { return worst(r, [](const PlayedRobot& p) { return p.off_median_m; }); });
   s.off_rad = statistics_of(all, "off_rad", [](const MatchResult& r) {
@@ -138,18 +144,24 @@ MatchSummary summary_of(const VariantResults& all) {
   return s;
 }
 
-bool all_well(const std::vector<VariantResults>& all) {
-  return std::ranges::all_of(all, [](const VariantResults& one) {
-    const MatchSummary s = summary_of(one);
-    return s.missing == 0 && s.errors == 0 && s.ended_by_itself.hits == s.matches && s.within_budget.hits == s.matches;
+std::vector<MatchSummary> summaries_of(const std::vector<VariantResults>& all) {
+  std::vector<MatchSummary> summaries;
+  summaries.reserve(all.size());
+  for (const VariantResults& one : all) summaries.push_back(summary_of(one));
+  return summaries;
+}
+
+bool all_well(const std::vector<MatchSummary>& all) {
+  return std::ranges::all_of(all, [](const MatchSummary& s) {
+    return s.missing.empty() && s.errors == 0 && s.ended_by_itself.hits == s.matches &&
+           s.within_budget.hits == s.matches;
   });
 }
 
-std::string summary_text(const std::vector<VariantResults>& all) {
+std::string summary_text(const std::vector<MatchSummary>& all) {
   std::string text;
-  for (const VariantResults& one : all) {
-    const MatchSummary s = summary_of(one);
-    text += one.variant.name() + told(": %zu matches\n", s.matches);
+  for (const MatchSummary& s : all) {
+    text += s.variant.name() + told(": %zu matches\n", s.matches);
     if (s.matches > 0) {
       text += line_of("ended by the rules or its file", s.ended_by_itself);
       text += line_of("won by home", s.home_won) + line_of("drawn", s.drawn) + line_of("won by away", s.away_won);
@@ -157,7 +169,9 @@ std::string summary_text(const std::vector<VariantResults>& all) {
       text += line_of("goals a match", s.goals, "");
       text += line_of("falls a robot and minute", s.falls_per_minute, "");
       text += line_of("nobody still for 20 s of play", s.still_below_limit);
+      text += line_of("nobody frozen for 20 s of play", s.frozen_below_limit);
       text += line_of("longest stand in play", s.still_max_s, "s");
+      text += line_of("longest time frozen", s.frozen_max_s, "s");
       text += line_of("off in the median, worst robot", s.off_m, "m");
       text += line_of("turned off, worst robot", s.off_rad, "deg", 180 / std::numbers::pi);
       text += line_of("messages of the team that says more", s.messages, "");
@@ -165,15 +179,15 @@ std::string summary_text(const std::vector<VariantResults>& all) {
     }
     if (s.errors > 0)
       text += told("  %llu errors of decisions or behaviors\n", static_cast<unsigned long long>(s.errors));
-    if (s.missing > 0) text += told("  %zu without a result:\n", s.missing);
-    for (std::size_t i = 0; i < std::min(one.missing.size(), missing_told); ++i) text += "    " + one.missing[i] + "\n";
+    if (!s.missing.empty()) text += told("  %zu without a result:\n", s.missing.size());
+    for (std::size_t i = 0; i < std::min(s.missing.size(), missing_told); ++i) text += "    " + s.missing[i] + "\n";
   }
   return text;
 }
 
-std::string summary_json(const std::vector<VariantResults>& all) {
+std::string summary_json(const std::vector<MatchSummary>& all) {
   std::string text;
-  for (const VariantResults& one : all) text += (text.empty() ? "" : ",\n  ") + json_of(one);
+  for (const MatchSummary& one : all) text += (text.empty() ? "" : ",\n  ") + json_of(one);
   return "{\"variants\": [" + text + "]}";
 }
 

@@ -8,9 +8,11 @@ Pose2 ground_pose(const Pose& base) noexcept {
   return {base.position_m[0], base.position_m[1], yaw_rad};
 }
 
-SimulatedMatch::SimulatedMatch(const MatchConfig& match, std::uint64_t seed)
+SimulatedMatch::SimulatedMatch(const MatchConfig& match, std::uint64_t seed) try
     : simulation_(scenario_of(match, seed), match.file, seed) {
   for (std::size_t i = 0; i < simulation_.robots(); ++i) sent_.push_back(catalog(i).signals.find("supervisor.sent"));
+} catch (const InputError& error) {
+  throw told_of_match(error, match, seed);
 }
 
 bool SimulatedMatch::active(std::size_t number) const {

@@ -16,6 +16,7 @@ constexpr double tries_rad_s = 0.3;    // joints that move so fast on the ground
 constexpr double rests_s = 3;          // the longest rest in an attempt
 constexpr double holds_m = 0.12;       // a ball so near to the middle of the robot is within it
 constexpr double still_m = 0.05, still_rad = 0.15;
+constexpr double keepers_m = 1.6;       // a ball nearer to the goal's middle is the keeper's
 constexpr double touching_far_m = 1.2;  // robots that touch each other are nearer
 
 // What the page draws, and what is asked first of a match.
@@ -192,6 +193,12 @@ double PlayedMatch::sign(Side side) const noexcept {
   return told_.teams[0].number == 1 + index_of(side) ? -1 : 1;
 }
 
+bool PlayedMatch::others_kick(Side side) const noexcept {
+  if (elsewhere_) return told_.set_play != SetPlay::none && told_.kicking_team != 1 + index_of(side);
+  const Match& match = referee_.match();
+  return match.restart() != Restart::none && match.kicking() != side;
+}
+
 bool PlayedMatch::over() const noexcept {
   return elsewhere_ ? told_.state == GameState::finished && !told_.first_half : referee_.match().over();
 }
@@ -283,6 +290,23 @@ void PlayedMatch::heed(const RefereeReport& report) {
   state_ = match.state();
 }
 
+// It lies, its drives let go, or the ball is its own: on its feet it is the nearest of its team. Who waits for the ball
+// need not move: a robot whose mate is nearer, a keeper far from it, and who keeps away from a set play of the others.
+bool PlayedMatch::has_to_move(const Player& player) const noexcept {
+  const RobotId id = player.told.id;
+  const RobotTruth& robot = world_.robot(id);
+  if (!robot.upright || !robot.active) return true;
+  if (others_kick(id.side)) return false;
+  const Point own_goal = world_pose({-match_.field().goal_line_x_m(), 0, 0}, sign(id.side)).at();
+  if (match_.team(id.side).keeper == id.number && distance(world_.ball, own_goal) > keepers_m) return false;
+  const double own_m = distance(robot.pose.at(), world_.ball);
+  return std::ranges::none_of(players_, [&](const Player& other) {
+    const RobotId mate = other.told.id;
+    if (mate.side != id.side || mate == id || !plays(mate) || !world_.robot(mate).upright) return false;
+    return distance(world_.robot(mate).pose.at(), world_.ball) < own_m;
+  });
+}
+
 void PlayedMatch::measure(Player& player) {
   const RobotTruth& robot = world_.robot(player.told.id);
   if (player.was_upright && !robot.upright) ++player.told.falls;
@@ -293,12 +317,14 @@ void PlayedMatch::measure(Player& player) {
                      std::abs(wrapped(robot.pose.theta_rad - player.still.theta_rad)) > still_rad;
   if (moved || !in_play) {
     player.still = robot.pose;
-    player.still_s = 0;
+    player.still_s = player.frozen_s = 0;
   }
   if (!in_play) return;
   player.told.played_s += step_s;
   player.still_s += step_s;
   player.told.still_max_s = std::max(player.told.still_max_s, player.still_s);
+  if (has_to_move(player)) player.frozen_s += step_s;
+  player.told.frozen_max_s = std::max(player.told.frozen_max_s, player.frozen_s);
   if (!robot.upright) return;
   const Pose2 truth = world_pose(robot.pose, sign(player.told.id.side));
   const Pose2& thought = player.senses->belief().pose;

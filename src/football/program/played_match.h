@@ -21,7 +21,9 @@ struct PlayedRobot {
   RobotId id;
   std::string name;
   std::uint64_t falls = 0, messages = 0, penalties = 0, errors = 0;
-  double upright_s = 0, played_s = 0, still_max_s = 0;          // in play: the longest time without moving
+  double upright_s = 0, played_s = 0;
+  double still_max_s = 0;   // in play: the longest time without moving; one that waits for the ball counts, too
+  double frozen_max_s = 0;  // of such a time, the most during which it had to move (PlayedMatch::has_to_move)
   double off_median_m = 0, off_most_m = 0, off_median_rad = 0;  // of where it thinks to be, while playing
 };
 
@@ -66,7 +68,7 @@ class PlayedMatch {
     LinkSet arms;
     bool was_upright = true;
     Pose2 still;
-    double still_s = 0, joints_still_s = 0;
+    double still_s = 0, frozen_s = 0, joints_still_s = 0;
     std::vector<double> off_m, off_rad;
     // Since the referee looked last.
     bool touched_ball = false, touched_with_arms = false, touched_robot = false;
@@ -76,7 +78,8 @@ class PlayedMatch {
   GameState state() const noexcept { return elsewhere_ ? told_.state : referee_.match().state(); }
   bool stopped() const noexcept { return elsewhere_ ? told_.stopped : referee_.match().stopped(); }
   bool plays(RobotId id) const noexcept;
-  double sign(Side side) const noexcept;  // Match::sign
+  double sign(Side side) const noexcept;       // Match::sign
+  bool others_kick(Side side) const noexcept;  // a kick-off, free kick and so on, from which it keeps away
   bool over() const noexcept;
   std::array<unsigned, 2> scores() const noexcept;
   void note_touches();
@@ -88,6 +91,7 @@ class PlayedMatch {
   void follow(const GameControl& packet);
   void answer_referee();
   void prepare_half();
+  bool has_to_move(const Player& player) const noexcept;
   void measure(Player& player);
   void track_places();
   void note_lines();

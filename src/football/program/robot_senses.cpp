@@ -13,6 +13,7 @@ constexpr double near_m = 0.3;            // what lies nearer is below the camer
 constexpr double ball_sd_m = 0.03;
 constexpr std::size_t ways_kept = 40;  // 0.8 s
 constexpr std::int64_t self_every_ns = 1'000'000'000;
+constexpr std::int64_t owes_ns = 500'000'000;  // who does not say what it was told to in that time, says nothing
 
 std::uint32_t entry_of(const Catalog& catalog, const std::string& name) {
   return static_cast<std::uint32_t>(std::ranges::find(catalog.seen, name, &SeenInfo::name) - catalog.seen.begin());
@@ -38,7 +39,9 @@ RobotSenses::RobotSenses(const MatchConfig& match, MatchWorld& played_in, std::s
       field_entry_(entry_of(played_in.catalog(number), "field")),
       game_entry_(entry_of(played_in.catalog(number), "game")),
       whistle_entry_(entry_of(played_in.catalog(number), "whistle")),
-      me_entry_(entry_of(played_in.catalog(number), "me")) {
+      me_entry_(entry_of(played_in.catalog(number), "me")),
+      radio_entry_(entry_of(played_in.catalog(number), "radio")),
+      policy_({.game_messages = static_cast<double>(match.rules.messages)}) {
   for (std::size_t i = 1; i <= robots_told; ++i)
     robot_entries_.push_back(entry_of(played_in.catalog(number), "robot_" + std::to_string(i)));
   placed(place_before(match, id));
@@ -101,6 +104,49 @@ void RobotSenses::step(const WorldTruth& world, double sign) {
     if (seen.entry == ball_seen_entry_) note_ball(seen);
   }
   tell_self();
+  advise(world.robot(id_).upright);
+}
+
+TeamMessage RobotSenses::message(bool upright) const {
+  TeamMessage told{.team = team_number_, .player = id_.number, .fallen = !upright};
+  told.pose = PoseBelief{.pose = belief_.pose};
+  const BallFilter::Estimate seen = ball_.estimate(1e-9 * static_cast<double>(now_ns()));
+  if (!seen.known || ways_.empty()) return told;
+  const Pose2& way = ways_.back().second;
+  told.ball = BallBelief{.at = from_frame(belief_.pose, in_frame(way, seen.at)),
+                         .velocity_m_s = turned(seen.velocity_m_s, belief_.pose.theta_rad - way.theta_rad),
+                         .sd_m = seen.sd_m,
+                         .age_s = seen.age_s};
+  return told;
+}
+
+MessagePolicy::Situation RobotSenses::situation() const noexcept {
+  MessagePolicy::Situation now{.now_s = 1e-9 * static_cast<double>(now_ns())};
+  now.players = static_cast<unsigned>(match_.team(id_.side).players);
+  if (!game_) return now;
+  now.state = game_->state;
+  now.phase = game_->phase;
+  now.remaining_s = game_->remaining_s + (game_->first_half ? match_.rules.half_s : 0);
+  now.budget_left = game_->team(team_number_)->message_budget;
+  now.budget_age_s = 1e-9 * static_cast<double>(now_ns() - game_heard_ns_);
+  return now;
+}
+
+// The decisions are told when to say something, and how much they may still say. What they say unasked is counted.
+void RobotSenses::advise(bool upright) {
+  if (match_.team(id_.side).players < 2) return;
+  const MessagePolicy::Situation now = situation();
+  if (now_ns() - said_ns_ > owes_ns) owes_ = false;
+  for (const std::uint64_t sent = played_in_.messages(number_); sent_ < sent; ++sent_) {
+    if (!std::exchange(owes_, false)) policy_.sent(message(upright), now);
+  }
+  const bool plays = penalty_ == Penalty::none && game_ && !game_->stopped &&
+                     (game_->state == GameState::set || game_->state == GameState::playing);
+  const bool say = plays && policy_.send(message(upright), now);
+  if (say) ++said_, owes_ = true, said_ns_ = now_ns();
+  if (!say && now_ns() < radio_due_ns_) return;
+  radio_due_ns_ = now_ns() + self_every_ns;
+  tell(radio_entry_, {static_cast<double>(said_), std::max(policy_.allowed(now), 0.0)});
 }
 
 void RobotSenses::tell_place() {
@@ -125,6 +171,8 @@ void RobotSenses::hear(Bytes packet) {
   const TeamEntry* own = control.team(team_number_);
   const TeamEntry* others = control.team(static_cast<std::uint8_t>(3 - team_number_));
   if (own == nullptr || others == nullptr) return;
+  game_ = control;
+  game_heard_ns_ = now_ns();
   const Penalty penalty = own->robots.at(id_.index()).penalty;
   if (penalty != penalty_ && penalty != Penalty::none && penalty != Penalty::motion_in_set) {
     // It was carried to one of the touchlines, level with its own penalty mark, and faces the field.

@@ -9,6 +9,8 @@
 // The ball comes from the world's simulated perception, picture by picture; BallFilter makes of that where it is and
 // how it rolls, and leaves out what is not it.
 //
+// When a message to its mates is worth its price is MessagePolicy's to say; what it says is the decisions'.
+//
 // All random numbers come from streams of the run's seed. One thread, no physics.
 #pragma once
 
@@ -20,6 +22,7 @@
 
 #include "football/ball_filter.h"
 #include "football/localisation.h"
+#include "football/message_policy.h"
 #include "football/positions.h"
 #include "match_world.h"
 
@@ -63,6 +66,9 @@ class RobotSenses {
   void note_ball(const Observation& seen);
   void tell_place();
   void tell_self();
+  void advise(bool upright);
+  TeamMessage message(bool upright) const;
+  MessagePolicy::Situation situation() const noexcept;
   std::int64_t now_ns() const noexcept { return played_in_.time_ns() - played_in_.period_ns(); }  // of the last tick
   void tell(std::uint32_t entry, std::initializer_list<double> fields);
   bool sees(const Point& at) const noexcept;
@@ -85,10 +91,15 @@ class RobotSenses {
   std::deque<Late> late_;
   std::deque<LateView> late_views_;
   std::int64_t picture_due_ns_ = 0, self_due_ns_ = 0;
-  std::uint32_t ball_entry_, ball_seen_entry_, field_entry_, game_entry_, whistle_entry_, me_entry_;
+  std::uint32_t ball_entry_, ball_seen_entry_, field_entry_, game_entry_, whistle_entry_, me_entry_, radio_entry_;
   std::vector<std::uint32_t> robot_entries_;
   std::uint32_t whistles_ = 0;
   Penalty penalty_ = Penalty::none;
+  MessagePolicy policy_;
+  std::optional<GameControl> game_;  // the newest packet, and when it came
+  std::int64_t game_heard_ns_ = 0, radio_due_ns_ = 0, said_ns_ = 0;
+  std::uint64_t sent_ = 0, said_ = 0;  // messages so far; how often it was told to say something
+  bool owes_ = false;                  // it was told to, and has not yet
 };
 
 }  // namespace kadans::football

@@ -91,8 +91,10 @@ void ContactRow::aim(const ContactTiming& timing) {
     const bool own = (point_->m_contactPointFlags & BT_CONTACT_FLAG_HAS_CONTACT_ERP) != 0;
     wanted *= own ? point_->m_contactERP : timing.erp;
   }
+  // How fast the two came, not what the impulses of this step have made of it so far: a ball between ground and weight
+  // would bounce off the ground for being pressed onto it.
   if (point_->m_combinedRestitution > 0) {
-    const btScalar approach = -velocity()[0];
+    const btScalar approach = -bias_[0];
     if (approach > timing.restitution_velocity_m_s) wanted += point_->m_combinedRestitution * approach;
   }
   bias_[0] -= wanted;
