@@ -34,7 +34,7 @@ constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
 
-constexpr std::array<Breakage, 72> breakages = {{
+constexpr std::array<Breakage, 76> breakages = {{
     {"behaviors_stall", robot, "\"heartbeat_timeout_s\": 0.1", "\"heartbeat_timeout_s\": 1",
      "found within the timeout"},
     {"commands_lost", "", "\"from_s\": 1,", "\"from_s\": 2,", "nothing lost happens late"},
@@ -108,6 +108,13 @@ constexpr std::array<Breakage, 72> breakages = {{
     {"fetch", "behaviors/tulip/fetch.lua", "near_m  = { 0.6", "near_m  = { 1.2", "is before the ball, m"},
     {"go_to_ball", "behaviors/lib/ball.lua", "seen.x_m, seen.y_m)", "seen.x_m, -seen.y_m)", "a goal"},
     {"walk_cycle", "behaviors/tulip/walk_cycle.lua", "c:use(a.stands)", "c:use(a.swings)", "stays up"},
+    {"dribble", "behaviors/lib/dribbling.lua", "walk.kick(m, soon, rad,", "walk.kick(m, soon, rad + 0.4,",
+     "along its line, m"},
+    {"dribble", "behaviors/lib/ball.lua", "seen.x_m, seen.y_m)", "seen.x_m, -seen.y_m)",
+     "4 m in 16 s, set out included: 0.25 m/s"},
+    {"walk_two_steps", "behaviors/tulip/walk.lua", "brake_m_s2  = { 1.5", "brake_m_s2  = { 0.5",
+     "steps no more than two times after it is told to stop"},
+    {"walk_two_steps", "", "m_s=0.4", "m_s=0.3", "walks so after two steps"},
     {"walk", robot, "\"lift_m\": 0.03279", "\"lift_m\": 0", "stays up"},
     {"walk", "", "for_s=6", "for_s=60", "stands still at the end"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
