@@ -2,6 +2,7 @@
 # rebuild.sh PRESET TARGET...: builds targets in the preset's way below the build folder, then runs those that are test
 # programs. With KADANS_SOAK set it builds and runs all there are, with the tests' usual counts. Address randomisation is
 # off throughout: ThreadSanitizer of gcc 12 does not start on kernels with more of it.
+# In the way "clang", without KADANS_SOAK, the compiler parses what else KADANS_INSTALLED names (parse.py).
 set -euo pipefail
 preset=$1
 shift
@@ -29,3 +30,4 @@ for program in "$build"/tests/*_test; do
   echo "$target"
   setarch -R "$program" --minimal
 done
+[ "$preset" != clang ] || [ ${#quick[@]} -eq 0 ] || "$KADANS_SOURCE_DIR/tests/project/parse.py" "$build" $KADANS_INSTALLED -- "$@"
