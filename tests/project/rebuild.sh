@@ -23,11 +23,16 @@ cmake --preset "$preset" -B "$build" -DKADANS_REBUILD_TESTS=OFF $unity "${quick[
 [ -z "${KADANS_SOAK:-}" ] || set -- all
 setarch -R cmake --build "$build" --target "$@"
 
+jobs=${KADANS_SOAK:+1}  # there each takes as long as it wants, alone
 unset KADANS_SOAK
+programs=()
 for program in "$build"/tests/*_test; do
   target=$(basename "$program")
-  [[ " $* " == *" $target "* || ($* == all && $preset != clang) ]] || continue
-  echo "$target"
-  setarch -R "$program" --minimal
+  [[ " $* " == *" $target "* || ($* == all && $preset != clang) ]] && programs+=("$target")
 done
+passes() {
+  setarch -R "$1/$2" --minimal >"$1/$2.said" 2>&1 && echo "$2" || { cat "$1/$2.said"; exit 1; }
+}
+export -f passes
+printf '%s\n' "${programs[@]}" | xargs -P "${jobs:-$(nproc)}" -I{} bash -c 'passes "$0" "$1"' "$build/tests" {}
 [ "$preset" != clang ] || [ ${#quick[@]} -eq 0 ] || "$KADANS_SOURCE_DIR/tests/project/parse.py" "$build" $KADANS_INSTALLED -- "$@"
