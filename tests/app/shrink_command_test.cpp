@@ -190,7 +190,9 @@ TEST_CASE("What cannot be shrunk is told in a sentence, and nothing is written")
   refused("config/scenarios/pushed.json --case 3", "goes with the results of a sweep");
   refused("config/sweeps/jiwiy.json", "is the plan of a sweep, not a scenario");
   refused("nowhere.json", "nowhere.json: there is no such file");
-  refused("fall.mcap", "is a record: its run cannot be changed");
+  write(folder / "fall.json", "\x89MCAP0\r\n and what follows");
+  refused("fall.json", "is a record: its run cannot be changed");
+  refused("fall.mcap", "fall.mcap: there is no such file");
   refused("config", "holds no results of a sweep");
   write(folder / "config/scenarios/slow.json", R"({ "name": "slow", "robot": "config/tulip/robot.json",
     "duration_s": 100000, "wall_limit_s": 0.2, "checks": [] })");

@@ -2,7 +2,6 @@
 
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include <fcntl.h>
@@ -18,6 +17,7 @@
 #include "debugged_run.h"
 #include "signal/input_file.h"
 #include "signal/number_text.h"
+#include "telemetry/record/record_folder.h"
 
 namespace kadans {
 namespace {
@@ -159,7 +159,7 @@ void debug(RunChannel& channel, const DebugSubject& subject) {
 DebugSubject debug_subject(DebugLaunch launch) {
   DebugSubject subject{.launch = std::move(launch)};
   const std::string& file = subject.launch.file;
-  subject.recorded = std::ifstream(file).get() == 0x89;  // the first byte of MCAP, and of no text
+  subject.recorded = is_record(file);
   if (!subject.recorded) return subject;
   if (subject.launch.seed || subject.launch.duration_s || !subject.launch.play.empty() || !subject.launch.set.empty())
     throw InputError({.file = file, .message = "is a record, which says itself what was played, and with which seed"});

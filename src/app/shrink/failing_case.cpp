@@ -7,6 +7,7 @@
 #include "campaign/sweep/sweep_results.h"
 #include "signal/number_text.h"
 #include "signal/shell_word.h"
+#include "telemetry/record/record_folder.h"
 
 namespace kadans {
 namespace {
@@ -65,7 +66,7 @@ RunChoices failing_case(const ShrinkOptions& options) {
   const fs::path named = options.scenario;
   if (fs::is_directory(named) || named.parent_path().filename() == "cases") return case_of_sweep(options);
   if (options.number) refuse_case("--case", "goes with the results of a sweep: " + options.scenario + " is a file");
-  if (named.extension() == ".mcap")
+  if (is_record(named))
     refuse_case(options.scenario,
                 "is a record: its run cannot be changed. Shrink the scenario that it is of; a run on the wall clock is "
                 "repeated by 'kadans replay " +

@@ -1,12 +1,15 @@
 #include "record_folder.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <optional>
 #include <system_error>
 
 #include "signal/number_text.h"
+#include "telemetry/mcap/mcap_format.h"
 
 namespace kadans {
 namespace {
@@ -44,6 +47,12 @@ std::optional<std::uint64_t> number_in(std::string_view name, std::string_view r
 }
 
 }  // namespace
+
+bool is_record(const fs::path& file) {
+  std::array<char, mcap_magic.size()> front{};
+  std::ifstream(file, std::ios::binary).read(front.data(), front.size());
+  return std::string_view(front.data(), front.size()) == mcap_magic;
+}
 
 std::vector<RecordFolder::Own> RecordFolder::own_records() const {
   std::vector<Own> all;

@@ -16,6 +16,9 @@
 
 namespace kadans {
 
+// Whether the file begins as records do, whatever it is called.
+bool is_record(const std::filesystem::path& file);
+
 class RecordFolder {
  public:
   // `bytes_max`: of all records of this robot that nobody named; 0: there is no bound.

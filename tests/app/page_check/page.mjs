@@ -202,6 +202,7 @@ run(async () => {
   const [, url, port] = await first.begun;
   const browser = await chromium.launch(chromium_options);
   const context = await browser.newContext({ viewport: { width: 1100, height: 640 } });
+  context.setDefaultTimeout(0); // a busy machine draws slowly; run() bounds all of it
   const page = await context.newPage();
   const problems = [];
   const watch = (other) => other.on('pageerror', (error) => problems.push(error.stack));
