@@ -75,8 +75,10 @@ local function keep(m)
   m.vars.armed = false
 end
 
+local leans_rad = 0.4  -- from which on it leans on something
 local function obey(m, s)
   clear(m, s)
+  if s.base.tilt_rad < leans_rad then m.vars.upright_s = s.time_s end
   local order = m.vars.order
   if order then take(m, order) end
   local b = ball.watch(m, s, m.vars.known)
@@ -108,10 +110,9 @@ local function lies(s) return floor.lies(s.base) end
 
 -- It leans on something, a goal's net for example: too far to walk, not far enough to lie. Then it lets itself fall to
 -- the side to which it leans, and gets up.
-local leans_rad, leans_s = 0.4, 1
+local leans_s = 1
 local function leans(side)
   return function(s, m)
-    if s.base.tilt_rad < leans_rad then m.vars.upright_s = s.time_s end
     return s.time_s - m.vars.upright_s > leans_s and (s.base.roll_rad < 0) == (side == "left")
   end
 end

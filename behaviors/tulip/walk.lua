@@ -1,4 +1,5 @@
--- Walks at a velocity for some time, then comes to stand. When the robot falls, it gets up and walks on.
+-- Walks at a velocity for some time, then comes to stand. When a motor gets warm it walks higher: straighter knees bear the
+-- weight with less torque. When the robot falls, it gets up and walks on.
 local k = require "kadans"
 local floor = require "floor"
 local walk = require "walking"
@@ -9,16 +10,26 @@ local P = k.params {
   left_m_s    = { 0, min = -0.2, max = 0.2, unit = "m/s", doc = "velocity to the left" },
   turn_rad_s  = { 0, min = -1, max = 1, unit = "rad/s", doc = "turning to the left" },
   for_s       = { 1e5, min = 0, max = 1e5, unit = "s", doc = "how long it walks" },
+  warm_m      = { 0.525, min = 0.4, max = 0.6, unit = "m", doc = "height of the centre of mass once a motor is warm" },
   brake_m_s2  = { 1.5, min = 0.01, max = 10, unit = "m/s2", doc = "how fast it gets slower, to stand within two steps" },
 }
 
 local function lies(s) return floor.lies(s.base) end
 local function stands(_, m) return m.vars.stands end
 
+local function rise(m)
+  if m.walk:parameter("height_m") >= P.warm_m then return end
+  k.log.info("a motor is warm: it walks higher")
+  m.walk:set_parameter("height_m", P.warm_m)
+end
+
 return k.behavior "walk" {
   controls = "walking",
-  vars     = { speeds_up_m_s2 = 0, stands = false },
+  vars     = { speeds_up_m_s2 = 0, height_m = 0, stands = false },
   initial  = "set_out",
+  enter    = function(m) m.vars.height_m = m.walk:parameter("height_m") end,
+  exit     = function(m) m.walk:set_parameter("height_m", m.vars.height_m) end,
+  always   = { { on = "fault.motor_warm", action = rise } },
 
   k.state "set_out" {
     run = function(m) walk.set_out(m, P.settle_s) end,

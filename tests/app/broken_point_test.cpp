@@ -104,7 +104,7 @@ constexpr std::array<Breakage, 76> breakages = {{
     {"touched_feet", "behaviors/hanging/touched.lua", "c:use(\"held\")", "c:use(\"loose\")",
      "held in the tick of a contact, loose in the tick after the last one"},
     {"kick", "behaviors/lib/walking.lua", "rolls = 0.71", "rolls = 1.1", "the ball goes, m"},
-    {"kick", "behaviors/tulip/kick.lua", "P.rad, P.far_m", "P.rad + 0.4, P.far_m", "the ball goes straight, m"},
+    {"kick", "behaviors/tulip/kick.lua", "P.rad, P.far_m", "P.rad + 0.25, P.far_m", "the ball goes straight, m"},
     {"fetch", "behaviors/tulip/fetch.lua", "near_m  = { 0.6", "near_m  = { 1.2", "is before the ball, m"},
     {"go_to_ball", "behaviors/lib/ball.lua", "seen.x_m, seen.y_m)", "seen.x_m, -seen.y_m)", "a goal"},
     {"walk_cycle", "behaviors/tulip/walk_cycle.lua", "c:use(a.stands)", "c:use(a.swings)", "stays up"},
