@@ -6,7 +6,7 @@
 namespace kadans {
 namespace {
 
-constexpr int times_tried = 16;
+constexpr std::size_t times_tried = 16;
 constexpr double late_s = 0.25;    // a foot that finds no ground until then counts as put down
 constexpr double astray_m = 0.03;  // by which xi is nearer to the foot that was to swing: then the other one does
 constexpr double flat_s = 0.05;    // after a landing, from which on the foot lies flat
@@ -150,18 +150,18 @@ void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
                           c.apart_max_m)};
   };
   std::array<double, times_tried> cost{};
-  int best = 0;
-  for (int i = 0; i < times_tried; ++i, ran = {ran.x_m * grows.x_m, ran.y_m * grows.y_m}) {
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < times_tried; ++i, ran = {ran.x_m * grows.x_m, ran.y_m * grows.y_m}) {
     const GroundPoint dcm{from_x_m + ran.x_m, from_y_m + ran.y_m}, at = place(dcm);
     const auto square = [](double v) { return v * v; };
     cost[i] = square(dcm.x_m - at.x_m - s.meant.offset.x_m) + square(dcm.y_m - at.y_m - s.meant.offset.y_m) +
               p * (square(at.x_m - s.meant.step.x_m) + square(at.y_m - s.meant.step.y_m)) +
-              c.time_weight * square(earliest_s + i * apart_s - wanted_s);
+              c.time_weight * square(earliest_s + static_cast<double>(i) * apart_s - wanted_s);
     if (cost[i] < cost[best]) best = i;
   }
   if (s.time_s < c.place_share * s.step_s) {  // then the foot comes straight down
     const double beyond = best == 0 || best == times_tried - 1 ? 0 : lowest(cost[best - 1], cost[best], cost[best + 1]);
-    s.step_s = earliest_s + (best + beyond) * apart_s;
+    s.step_s = earliest_s + (static_cast<double>(best) + beyond) * apart_s;
     const double left_s = s.step_s - s.time_s;
     s.feet.foothold = place({from_x_m + (s.dcm.x_m - from_x_m) * std::exp(w_x * left_s),
                              from_y_m + (s.dcm.y_m - from_y_m) * std::exp(w_y * left_s)});
