@@ -127,7 +127,6 @@ class Stance final : public ControlObject {
   };
   Answer answer(double dcm_m, double rest_m, double pull, const std::array<double, 2>& sole_m,
                 double righting_Nm) const noexcept;
-  // The moments about x and y that would right the trunk if the soles were long enough.
   void find_pressure(const BaseStatus& base) noexcept;
   void find_force() noexcept;
   void load(std::size_t side, double share) noexcept;

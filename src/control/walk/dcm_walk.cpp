@@ -29,8 +29,6 @@ enum Channel : std::uint32_t {
   channels
 };
 
-double length_m(const Vec3& way_m) noexcept { return std::hypot(way_m[0], way_m[1], way_m[2]); }
-
 }  // namespace
 
 DcmWalk::Leg DcmWalk::leg(const ObjectSetup& setup, std::size_t foot) const {
@@ -428,8 +426,9 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   // The sole is level with the ground by what hip and knee are, not by what they shall be. A kick is aimed without
   // both.
   const double by_now = s.kick.kicks() ? 0 : c.by_now;
-  const Vec3 is_m = difference(over_feet_.over(b).foot_m, swing_hip_m), by_now_m{is_m[0], is_m[1], way_m[2]};
-  const double longest_m = swing.inverse.longest_m() + by_now * (length_m(by_now_m) - swing.inverse.longest_m());
+  const Vec3 is_m = difference(over_feet_.over(b).foot_m, swing_hip_m);
+  const double leg_m = swing.inverse.longest_m();
+  const double longest_m = leg_m + by_now * (std::hypot(is_m[0], is_m[1], way_m[2]) - leg_m);
   LegInverse::Angles swing_rad = swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m), yaw_rad, longest_m);
   const auto& joints = input.joints.joints;
   const double lag_rad = joints[swing.inverse.axis(hip_pitch).joint].position_rad - swing_rad[hip_pitch] +
