@@ -56,6 +56,13 @@ local function toward(m, at, x_m, y_m, most_m_s, way)
   })
 end
 
+-- Turns to where the ball was last, by the table that ball.watch keeps.
+function ball.search(m, known)
+  local at = walk.at(m)
+  local turn_rad = known.x_m and walk.angle(math.atan2(known.y_m - at.y_m, known.x_m - at.x_m) - at.heading_rad) or 1
+  walk.go(m, { turn_rad_s = turn_rad > 0 and 0.6 or -0.6 })
+end
+
 -- How the robot is to the ball when that shall go toward rad: how far behind it, and how far to the left of its way.
 function ball.beside(at, b, rad)
   local ux, uy = math.cos(rad), math.sin(rad)

@@ -24,13 +24,6 @@ local function look(m, s)
   return b
 end
 
--- Turns to where the ball was last.
-local function search(m)
-  local at, b = walk.at(m), m.vars.known
-  local turn_rad = b.x_m and walk.angle(math.atan2(b.y_m - at.y_m, b.x_m - at.x_m) - at.heading_rad) or 1
-  walk.go(m, { turn_rad_s = turn_rad > 0 and 0.6 or -0.6 })
-end
-
 local function lies(s) return floor.lies(s.base) end
 local function there(_, m) return m.vars.there end
 
@@ -45,7 +38,7 @@ return k.behavior "dribble" {
     { when = lies, to = "fallen", why = "lies" },
   },
   k.state "search" {
-    enter = search,
+    enter = function(m) ball.search(m, m.vars.known) end,
     during = look,
     { when = lies, to = "fallen", why = "lies" },
     { when = there, to = "stop", why = "the ball is there" },
