@@ -24,9 +24,9 @@ struct Gains {
   double kp, kd, bandwidth_Hz, damping_ratio, observer_Hz;
 };
 using LegGains = std::array<Gains, 3>;
-constexpr LegGains soft{{{294, 1.91, 19.7, 0.22, 2.66}, {200, 5.45, 19.5, 1.05, 0}, {222, 3.54, 26.2, 0.48, 1}}};
+constexpr LegGains soft{{{226, 2.02, 19.5, 0.18, 2.66}, {157, 3.25, 19.5, 0.73, 0}, {219, 3.1, 25.6, 0.44, 1}}};
 constexpr LegGains stiff{{{300, 4, 22, 0.7, 3}, {300, 4, 22, 0.7, 3}, {300, 4, 22, 0.7, 3}}};
-constexpr double velocity_Hz = 318, rate_Hz = 120;
+constexpr double velocity_Hz = 400, rate_Hz = 204;
 
 // Standing the chain hangs on the ground, in the air on the torso. Segments: shank, thigh, torso; or foot, shank,
 // thigh. Their angles to the upright are small motions about `pose`; half of the torso's mass is on this leg. SI.
@@ -106,7 +106,7 @@ struct Drive {
   Gains gains;
   SpringTorqueLoop loop;
   VelocityFilter filter;
-  std::array<double, 3> asked_Nm{};
+  std::array<double, 5> asked_Nm{};
   double wanted_Nm = 0, motor_Nm = 0, rotor_rad = 0, rotor_rad_s = 0;
 };
 
@@ -132,7 +132,7 @@ double worst_rad_s(const LegGains& gains) {
   for (const Leg& leg : {Leg(true, {0.15, -0.15, 0}), Leg(true, {0.63, -0.63, 0}), Leg(true, {0, -0.15, 2.15}),
                          Leg(false, {0, 0, 0}), Leg(false, {1.2, 1.2, -0.3}), Leg(false, {0.5, 0.5, -2})}) {
     for (const double scale : {0.85, 1.15}) {
-      for (const std::size_t delay : {0U, 1U, 2U}) worst = std::max(worst, left_rad_s(leg, gains, scale, delay));
+      for (const std::size_t delay : {0U, 2U, 4U}) worst = std::max(worst, left_rad_s(leg, gains, scale, delay));
     }
   }
   return worst;
@@ -140,7 +140,7 @@ double worst_rad_s(const LegGains& gains) {
 
 }  // namespace
 
-TEST_CASE("A leg on soft springs comes to rest, standing, squatting, folded and in the air, 2 ms late too") {
+TEST_CASE("A leg on soft springs comes to rest, standing, squatting, folded and in the air, 4 ms late too") {
   CHECK(worst_rad_s(soft) < 0.2);
 }
 

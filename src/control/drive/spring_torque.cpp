@@ -42,7 +42,6 @@ void SpringTorque::declare(Declaration& declaration, Part& part) {
   tables.tunable("damping_ratio", "", 0, 3, c.damping_ratio, &c.damping_ratio, "Of the torque's answer.");
   tables.tunable("rate_cutoff_Hz", "Hz", 10, 400, c.rate_cutoff_Hz, &c.rate_cutoff_Hz,
                  "Cut-off of the low pass on the torque's rate; a light load on the spring wants it low.");
-  tables.tunable("lead", "", 0, 1.5, c.lead, &c.lead, "Share of the wanted torque's rate that is not damped; 1: no lag.");
   tables.tunable("observer_Hz", "Hz", 0, 50, c.observer_Hz, &c.observer_Hz,
                  "How fast friction and the like are found and made up for; 0: never.");
   tables.tunable("share", "", 0, 1, part.share, &part.share, "Of the loop's work; 0: the motor gets what is wanted.");
@@ -88,7 +87,6 @@ std::unique_ptr<ControlObject> make_spring_torque(const ObjectSetup& setup) {
 
 void SpringTorqueLoop::restart() noexcept {
   rate_.reset();
-  wanted_rate_.reset();
   state_ = {};
   fresh_ = true;
 }
@@ -116,7 +114,6 @@ double SpringTorqueLoop::step(double wanted_Nm, const JointState& joint, double 
   }
   State& s = state_;
   const double rate_Nm_s = rate_.update(joint.effort_Nm, dt_s);
-  const double damped_Nm_s = rate_Nm_s - config_.lead * wanted_rate_.update(wanted_Nm, dt_s);
   s.disturbance_Nm = observe(joint.velocity_rad_s + rate_Nm_s / config_.spring_Nm_per_rad, dt_s);
   s.wanted_Nm = wanted_Nm;
   s.torque_Nm = joint.effort_Nm;
@@ -124,7 +121,7 @@ double SpringTorqueLoop::step(double wanted_Nm, const JointState& joint, double 
   const double damping_s =
       2 * config_.damping_ratio * turn * config_.bandwidth_Hz * config_.rotor_inertia_kg_m2 / config_.spring_Nm_per_rad;
   const double asked_Nm =
-      wanted_Nm + stiffest_gain() * (wanted_Nm - s.torque_Nm) - damping_s * damped_Nm_s + s.disturbance_Nm;
+      wanted_Nm + stiffest_gain() * (wanted_Nm - s.torque_Nm) - damping_s * rate_Nm_s + s.disturbance_Nm;
   s.motor_Nm = std::clamp(asked_Nm, -config_.effort_max_Nm, config_.effort_max_Nm);
   s.saturated = s.motor_Nm != asked_Nm;
   return s.motor_Nm;

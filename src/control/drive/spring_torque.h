@@ -51,7 +51,6 @@ class SpringTorqueLoop {
     double damping_ratio = 0.7;         // z
     double observer_Hz = 5;             // o / 2 pi; 0: no observer
     double rate_cutoff_Hz = 200;        // of T'; retune() after a change
-    double lead = 0;                    // l: share of the wanted torque's rate that is not damped
     double effort_max_Nm = 0;           // of the motor
   };
   struct State {
@@ -63,7 +62,7 @@ class SpringTorqueLoop {
     bool saturated = false;
   };
 
-  explicit SpringTorqueLoop(double dt_s = 0.001) : rate_({.dt_s = dt_s}), wanted_rate_({.dt_s = dt_s}) { (void)retune(); }
+  explicit SpringTorqueLoop(double dt_s = 0.001) : rate_({.dt_s = dt_s}) { (void)retune(); }
 
   Config& config() noexcept { return config_; }
   const State& state() const noexcept { return state_; }
@@ -71,22 +70,20 @@ class SpringTorqueLoop {
   // The next step is a first one: the estimate of the disturbance starts at 0.
   void restart() noexcept;
   // Takes over rate_cutoff_Hz. False, and nothing changes, when the tick is too long for it.
-  bool retune() noexcept {
-    return rate_.set_cutoff(config_.rate_cutoff_Hz) && wanted_rate_.set_cutoff(config_.rate_cutoff_Hz);
-  }
+  bool retune() noexcept { return rate_.set_cutoff(config_.rate_cutoff_Hz); }
   // Returns the motor's torque. `joint`.effort_Nm is the spring's deflection times k. When the measurement is not
   // finite, the motor gets wanted_Nm.
   double step(double wanted_Nm, const JointState& joint, double dt_s) noexcept;
 
   double stiffest_gain() const noexcept;  // w^2/w0^2 - 1
-  void pass_state(StateBytes& bytes) noexcept { bytes(state_, rate_, wanted_rate_, momentum_Nms_, fresh_); }
+  void pass_state(StateBytes& bytes) noexcept { bytes(state_, rate_, momentum_Nms_, fresh_); }
 
  private:
   double observe(double rotor_rad_s, double dt_s) noexcept;
 
   Config config_;
   State state_;
-  VelocityFilter rate_, wanted_rate_;
+  VelocityFilter rate_;
   double momentum_Nms_ = 0;  // p^
   bool fresh_ = true;
 };
