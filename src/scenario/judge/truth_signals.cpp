@@ -7,11 +7,6 @@
 #include "kadans/model/kinematics.h"
 
 namespace kadans {
-namespace {
-
-double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
-}  // namespace
 
 TruthSignals::TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
                            const WorldSettings& world, bool several)
