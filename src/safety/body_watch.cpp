@@ -113,6 +113,8 @@ namespace {
 
 constexpr double well_within = 0.8;  // of the angles, to count as standing again
 
+double norm(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
 }  // namespace
 
 bool FallWatch::beyond(const BaseStatus& base, double rate_rad_s) const noexcept {
@@ -148,7 +150,7 @@ void FallWatch::advance(const BaseStatus& base, double rate_rad_s, double dt_s) 
 
 FaultMask FallWatch::look(const BaseStatus& base, const ImuSample& sample, double dt_s) noexcept {
   using enum FaultCode;
-  advance(base, length(base.angular_velocity_rad_s), dt_s);
+  advance(base, norm(base.angular_velocity_rad_s), dt_s);
   if (phase_ == Phase::falling) {
     share_ = settings_.soft_share;
   } else if (share_ < 1) {
@@ -156,13 +158,13 @@ FaultMask FallWatch::look(const BaseStatus& base, const ImuSample& sample, doubl
   }
   if (phase_ == Phase::upright) return bit_if(!(base.tilt_rad <= tilt_max_rad_), tilt);
   if (phase_ == Phase::fallen) return 0;
-  const double acceleration_m_s2 = length(sample.acceleration_m_s2);
+  const double acceleration_m_s2 = norm(sample.acceleration_m_s2);
   if (std::isfinite(acceleration_m_s2)) impact_m_s2_ = std::max(impact_m_s2_, acceleration_m_s2);
   return bit(fall) | bit_if(acceleration_m_s2 > settings_.impact_max_m_s2, impact);
 }
 
 void FallWatch::describe(const BaseStatus& base, Fault& fault) const noexcept {
-  const double rate_rad_s = length(base.angular_velocity_rad_s);
+  const double rate_rad_s = norm(base.angular_velocity_rad_s);
   if (fault.code == FaultCode::tilt) {
     fault.value = base.tilt_rad;
     fault.limit = tilt_max_rad_;
