@@ -5,13 +5,7 @@ describe("fetch", function()
   local run
   before_each(function() run = k.play("fetch.lua", { scenario = "config/scenarios/fetch.json" }) end)
 
-  local function see(x_m, y_m)
-    run:set_sensor("seen.ball.confidence", 1)
-    run:set_sensor("seen.ball.carried", true)
-    run:set_sensor("seen.ball.age_s", 0.1)
-    run:set_sensor("seen.ball.x_m", x_m)
-    run:set_sensor("seen.ball.y_m", y_m)
-  end
+  local function see(x_m, y_m) run:set_seen("ball", { x_m = x_m, y_m = y_m, carried = true }) end
   local function last() return run.orders[#run.orders] end
 
   it("stands until it sees a ball that lies still", function()
@@ -72,13 +66,11 @@ describe("fetch", function()
   it("gets up wherever it falls, and searches again", function()
     see(2, 0)
     run:advance_to("go")
-    run:set_sensor("base.pitch_rad", 1.5)
-    run:set_sensor("base.tilt_rad", 1.5)
+    run:set_posture "prone"
     run:advance(0.1)
     expect(run.state).to_equal "fallen"
     expect(last().list).to_equal "get_up"
-    run:set_sensor("base.pitch_rad", 0)
-    run:set_sensor("base.tilt_rad", 0)
+    run:set_posture "upright"
     run:play_ends()
     run:advance(0.1)
     expect(run.state).to_equal "search"

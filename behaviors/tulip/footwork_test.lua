@@ -24,10 +24,7 @@ describe("footwork", function()
   end)
 
   it("dribbles a ball that it sees, until it shall do something else", function()
-    run:set_sensor("seen.ball.confidence", 1)
-    run:set_sensor("seen.ball.age_s", 0.1)
-    run:set_sensor("seen.ball.x_m", 0.35)
-    run:set_sensor("seen.ball.y_m", 0.09)
+    run:set_seen("ball", { x_m = 0.35, y_m = 0.09 })
     run:emit("foot.dribble", { x_m = 4, y_m = 0 })
     run:advance(0.5)
     expect(run.state).to_equal "obeys"
@@ -59,11 +56,8 @@ describe("footwork", function()
   end)
 
   it("gets up when it lies, and hears meanwhile", function()
-    run:set_sensor("base.pitch_rad", 1.5)
-    run:set_sensor("base.tilt_rad", 1.5)
-    run:set_sensor("base.posture", 1)
-    run:advance(0.1)
-    expect(run.state:sub(1, 6)).to_equal "fallen"
+    run:set_posture "prone"
+    run:advance_to("fallen", 0.1)
     run:emit("foot.stand")
     run:advance(0.1)
     expect(run.error).to_equal ""

@@ -5,10 +5,8 @@ describe("get_up", function()
   local run
   before_each(function() run = k.play "get_up.lua" end)
 
-  local function lies(roll, pitch)
-    run:set_sensor("base.roll_rad", roll)
-    run:set_sensor("base.pitch_rad", pitch)
-    run:set_sensor("base.tilt_rad", 1.5)
+  local function lies(posture)
+    run:set_posture(posture)
     run:set_sensor("feet.left.contact", true)
     run:set_sensor("feet.right.contact", true)
   end
@@ -18,14 +16,12 @@ describe("get_up", function()
     run:set_sensor("base.pitch_rad", math.pi - 2.1)
   end
   local function stands()
-    run:set_sensor("base.pitch_rad", 0)
-    run:set_sensor("base.roll_rad", 0)
-    run:set_sensor("base.tilt_rad", 0)
+    run:set_posture "upright"
     run:set_sensor("base.height_m", 0.86)
   end
 
   it("lies still before it begins", function()
-    lies(0, 1.5)
+    lies "prone"
     run:advance(0.7)
     expect(run.state).to_equal "lie"
     run:advance(0.2)
@@ -33,7 +29,7 @@ describe("get_up", function()
   end)
 
   it("frees a leg that lies across before it folds", function()
-    lies(0, 1.5)
+    lies "prone"
     run:set_sensor("joints.l_hip_roll.position_rad", -0.2)
     run:advance(0.9)
     expect(run.state).to_equal "face"
@@ -42,7 +38,7 @@ describe("get_up", function()
 
   it("folds onto hands and feet from its face, rises, and is up after two seconds of standing", function()
     run:set_parameter("flat_s", 2)  -- sensors that are set by hand tell the balance nothing
-    lies(0, 1.5)
+    lies "prone"
     run:advance_to("bear")
     folded()
     run:advance_to("rise")
@@ -58,9 +54,10 @@ describe("get_up", function()
   end)
 
   it("waits on hands and feet until its mass is over its soles, but not for ever", function()
-    lies(0, 1.5)
+    lies "prone"
     run:advance_to("bear")
-    lies(math.pi, 1.5)  -- the torso as low as on the face
+    run:set_sensor("base.roll_rad", math.pi)
+    run:set_sensor("base.pitch_rad", 1.5)  -- the torso as low as on the face
     run:advance(2.9)
     expect(run.state).to_equal "bear"
     run:advance(0.2)
@@ -68,35 +65,35 @@ describe("get_up", function()
   end)
 
   it("does not rise when it has tipped over", function()
-    lies(0, 1.5)
+    lies "prone"
     run:advance_to("bear")
-    lies(1.5, 0)
+    lies "right"
     run:advance(0.4)
     expect(run.states).to_contain "bear again"
   end)
 
   it("rolls onto its face first, over the side that it lies on", function()
-    lies(0, -1.5)
+    lies "supine"
     run:advance(0.9)
     expect(run.state).to_contain "roll"
     run:advance(0.5)
-    lies(0, 1.5)
+    lies "prone"
     run:advance_to("fold")
     expect(run.states).to_contain "fold"
   end)
 
   it("rolls over the right side when it lies there", function()
-    lies(1.5, 0)
+    lies "right"
     run:advance(0.9)
     expect(run.state).to_equal "roll_right"
   end)
 
   it("tries again when it falls, and says so at the end", function()
-    lies(0, 1.5)
+    lies "prone"
     run:advance_to("bear")
     folded()
     run:advance_to("rise")
-    lies(0, 1.5)
+    lies "prone"
     run:advance(1.2)
     expect(run.state).to_equal "lie"
     run:advance_to("bear")
@@ -110,7 +107,7 @@ describe("get_up", function()
 
   it("gives up after as many tries as it is told", function()
     run:set_parameter("tries", 2)
-    lies(0, -1.5)  -- and never rolls over
+    lies "supine"  -- and never rolls over
     expect(run:finish(30)).to_equal "failed"
   end)
 end)

@@ -36,10 +36,8 @@ describe("keep_up", function()
 
   it("gets up when it lies, and gives up when it cannot", function()
     run:advance(1)
-    run:set_sensor("base.pitch_rad", 1.5)
-    run:set_sensor("base.tilt_rad", 1.5)
-    run:advance(0.1)
-    expect(run.state:sub(1, 6)).to_equal "fallen"
+    run:set_posture "prone"
+    run:advance_to("fallen", 0.1)
     expect(run:finish(60)).to_equal "failed"
   end)
 end)

@@ -38,16 +38,17 @@ TEST_CASE("behavior test tells a failed expectation with its line and what was t
 }
 
 TEST_CASE("a mistake in a test is told with its line and what there is") {
-  const Outcome outcome =
-      tested("lua_test_mistakes",
-             "local k = require 'kadans'\n"
-             "it('a', function() expect(1).to_equals(1) end)\n"
-             "it('b', function() k.play 'squt.lua' end)\n"
-             "it('c', function() k.play('squat.lua'):set_sensor('base.pitch', 1) end)\n"
-             "it('d', function() k.play('squat.lua'):emit('jump') end)\n"
-             "it('e', function() k.play('squat.lua'):set_parameter('repeats', 1000) end)\n"
-             "it('f', function() local x = k.play('squat.lua').joints.l_kne end)\n"
-             "it('g', function() local run = k.play('squat.lua') run:advance_to('rest', 0.1) end)\n");
+  const Outcome outcome = tested("lua_test_mistakes",
+                                 "local k = require 'kadans'\n"
+                                 "it('a', function() expect(1).to_equals(1) end)\n"
+                                 "it('b', function() k.play 'squt.lua' end)\n"
+                                 "it('c', function() k.play('squat.lua'):set_sensor('base.pitch', 1) end)\n"
+                                 "it('d', function() k.play('squat.lua'):emit('jump') end)\n"
+                                 "it('e', function() k.play('squat.lua'):set_parameter('repeats', 1000) end)\n"
+                                 "it('f', function() local x = k.play('squat.lua').joints.l_kne end)\n"
+                                 "it('g', function() local run = k.play('squat.lua') run:advance_to('rest', 0.1) end)\n"
+                                 "it('h', function() k.play('squat.lua'):set_posture('flat') end)\n"
+                                 "it('i', function() k.play('squat.lua'):set_seen('ball', { x = 1 }) end)\n");
   CHECK(outcome.exit_code == 1);
   CHECK(has(outcome.out, "my_test.lua:2: expect(...) has no 'to_equals'"));
   CHECK(has(outcome.out, "my_test.lua:3: "));
@@ -56,7 +57,9 @@ TEST_CASE("a mistake in a test is told with its line and what there is") {
   CHECK(has(outcome.out, "my_test.lua:6: no parameter 'repeats', or the value is outside its range"));
   CHECK(has(outcome.out, "my_test.lua:7: s.joints has no 'l_kne', did you mean 'l_knee'?"));
   CHECK(has(outcome.out, "my_test.lua:8: \"rest\" was not reached within 0.1 s"));
-  CHECK(has(outcome.out, "0 passed, 7 failed"));
+  CHECK(has(outcome.out, "my_test.lua:9: set_posture needs upright, prone, supine, left or right"));
+  CHECK(has(outcome.out, "my_test.lua:10: no sensor 'seen.ball."));
+  CHECK(has(outcome.out, "0 passed, 9 failed"));
 }
 
 TEST_CASE("a test file that does not load exits 2 with its line") {

@@ -63,7 +63,7 @@ TEST_CASE("LegInverse points a leg that may not be as long to the same place") {
   const RobotModel model = leg_robot();
   const LegInverse leg(model, all_axes(model), 5);
   const Vec3 ankle_m{0.15, 0.2, -0.4};
-  const double far_m = std::hypot(ankle_m[0], ankle_m[1], ankle_m[2]);
+  const double far_m = length(ankle_m);
   for (const double most_m : {0.42, far_m, 0.6}) {
     const Vec3 at_m = difference(foot(model, leg.angles(ankle_m, 0.1, most_m), false).position_m, leg.hip_m());
     for (std::size_t i = 0; i < 3; ++i) CHECK(at_m[i] == doctest::Approx(ankle_m[i] * std::min(most_m / far_m, 1.0)));

@@ -30,10 +30,8 @@ class LiveProgram {
   // Any thread. The process of the behaviors that is alive, other than `other`; waits for one. -1: the program ended.
   pid_t behavior_process(pid_t other = -1) const { return child(false, other); }
   pid_t decision_process(pid_t other = -1) const { return child(true, other); }
-  void signal_behavior_process(int number) const {
-    const pid_t pid = behavior_process();
-    if (pid > 1) kill(pid, number);
-  }
+  void signal_behavior_process(int number) const { send(number, behavior_process()); }
+  void signal_decision_process(int number) const { send(number, decision_process()); }
 
   // Of a signal in the record, between two times.
   struct Range {
@@ -43,6 +41,10 @@ class LiveProgram {
 
  private:
   pid_t child(bool decides, pid_t other) const;
+  // -1 would be all processes of the machine.
+  static void send(int number, pid_t pid) {
+    if (pid > 1) kill(pid, number);
+  }
 
   std::filesystem::path folder_;
   program::Running running_;

@@ -14,8 +14,8 @@ Vec3 random_vector(RandomStream& random, double largest) {
 }
 
 Vec3 unit(Vec3 v) {
-  const double length = std::hypot(v[0], v[1], v[2]);
-  for (double& part : v) part /= length;
+  const double norm = length(v);
+  for (double& part : v) part /= norm;
   return v;
 }
 
@@ -92,7 +92,7 @@ State moved_on(const State& state, const Eigen::VectorXd& velocity, double time_
     next.base.pose.position_m[static_cast<std::size_t>(k)] += time_s * velocity[k];
   }
   const Vec3 turn{velocity[3], velocity[4], velocity[5]};
-  const double speed_rad_s = std::hypot(turn[0], turn[1], turn[2]);
+  const double speed_rad_s = length(turn);
   if (speed_rad_s > 0) {
     const Quat by = from_axis_angle(unit(turn), speed_rad_s * time_s);
     next.base.pose.orientation = multiply(by, state.base.pose.orientation);

@@ -37,8 +37,6 @@ double pressure_N(BulletWorld& plant) {
   return sum_N;
 }
 
-double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 }  // namespace
 
 TEST_CASE("A robot starts on the box under it and stands there as on the ground") {

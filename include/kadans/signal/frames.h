@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -29,6 +30,7 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
 inline Vec3 sum(const Vec3& a, const Vec3& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vec3 difference(const Vec3& a, const Vec3& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Vec3 scaled(double by, const Vec3& v) noexcept { return {by * v[0], by * v[1], by * v[2]}; }
+inline double length(const Vec3& v) noexcept { return std::hypot(v[0], v[1], v[2]); }
 
 // Between two times from outside, which may have any value: the difference wraps around and does not overflow.
 inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {

@@ -20,8 +20,7 @@ LimbChain::LimbChain(const RobotModel& model, std::size_t link) {
     const Joint& joint = model.joints[i - 1];
     segments_.push_back(
         {.joint = i - 1, .prismatic = joint.type == JointType::prismatic, .origin = joint.origin, .axis = joint.axis});
-    const Vec3& way = joint.origin.position_m;
-    if (joint.parent > 0) reach_m_ += std::hypot(way[0], way[1], way[2]);
+    if (joint.parent > 0) reach_m_ += length(joint.origin.position_m);
     if (segments_.back().prismatic) reach_m_ += std::max(std::abs(joint.lower_rad), std::abs(joint.upper_rad));
   }
   if (segments_.empty())

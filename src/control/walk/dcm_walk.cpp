@@ -428,7 +428,7 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   const double by_now = s.kick.kicks() ? 0 : c.by_now;
   const Vec3 is_m = difference(over_feet_.over(b).foot_m, swing_hip_m);
   const double leg_m = swing.inverse.longest_m();
-  const double longest_m = leg_m + by_now * (std::hypot(is_m[0], is_m[1], way_m[2]) - leg_m);
+  const double longest_m = leg_m + by_now * (length({is_m[0], is_m[1], way_m[2]}) - leg_m);
   LegInverse::Angles swing_rad = swing.inverse.angles(rotate_inverse(over_feet_.upright(), way_m), yaw_rad, longest_m);
   const auto& joints = input.joints.joints;
   const double lag_rad = joints[swing.inverse.axis(hip_pitch).joint].position_rad - swing_rad[hip_pitch] +

@@ -27,7 +27,6 @@ Quat of_columns(const Vec3& x, const Vec3& y, const Vec3& z) {
 
 }  // namespace
 
-double length(const Vec3& v) noexcept { return std::hypot(v[0], v[1], v[2]); }
 Vec3 unit(const Vec3& v) noexcept {
   const double n = length(v);
   return n > 0 ? Vec3{v[0] / n, v[1] / n, v[2] / n} : Vec3{0, 0, 1};

@@ -37,7 +37,6 @@ class MjcfDefaults {
 };
 
 inline Vec3 vec3(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-double length(const Vec3& v) noexcept;
 Vec3 unit(const Vec3& v) noexcept;  // z for what has no direction
 // The shortest turn that brings z to a direction.
 Quat z_to(const Vec3& direction) noexcept;

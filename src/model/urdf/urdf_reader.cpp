@@ -404,7 +404,7 @@ class UrdfReader {
     constexpr double tolerance = 1e-3;
     Vec3 v{};
     if (!e.leaf({{"xyz", vector, v.data(), required}})) return;
-    const double norm = std::hypot(v[0], v[1], v[2]);
+    const double norm = length(v);
     const std::string what = "the axis of joint " + shown_quoted(to.name);
     if (!(norm > 0)) return document_.refuse(e.at_value("xyz"), what + " is zero: it has no direction");
     if (!(std::abs(norm - 1) <= tolerance)) {

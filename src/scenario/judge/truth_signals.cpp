@@ -9,7 +9,7 @@
 namespace kadans {
 namespace {
 
-double length(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+double norm(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 }  // namespace
 
@@ -237,14 +237,14 @@ void WorldSignals::declare(SignalTable& table, const WorldObject& object, State&
 void WorldSignals::update(const PlantTruth& truth) noexcept {
   other_links_ = static_cast<double>((truth.touching_links & ~feet_).count());
   robot_links_ = static_cast<double>(truth.robot_links.count());
-  robots_force_N_ = length(truth.robots_force_N);
+  robots_force_N_ = norm(truth.robots_force_N);
   self_penetration_m_ = truth.self_penetration_m;
   const std::size_t count = std::min<std::size_t>(objects_.size(), truth.object_count);
   for (std::size_t i = 0; i < count; ++i) {
     const ObjectTruth& object = truth.objects[i];
     State& state = objects_[i];
     const Vec3 up = rotate(object.pose.orientation, {0, 0, 1});
-    state.force_N = length(object.force_N);
+    state.force_N = norm(object.force_N);
     state.links = static_cast<double>(object.links.count());
     state.position_m = object.pose.position_m;
     state.velocity_m_s = object.velocity_m_s;

@@ -157,14 +157,37 @@ function methods.set_parameter(run, name, value)
   end
 end
 local levels = { normal = 0, limited = 1, hold = 2, damp = 3, off = 4 }
-function methods.set_sensor(run, name, value)
+local function set_sensor(run, name, value)
   local as_number = value
   if value == true then as_number = 1 elseif value == false then as_number = 0 end
   if type(value) == "string" then as_number = levels[value] end
-  if type(as_number) ~= "number" then error("set_sensor needs a number, true, false or a safety level", 2) end
+  if type(as_number) ~= "number" then error("what it measures is a number, true, false or a safety level", 3) end
   if not change(run.id, "sensor", name, as_number) then
-    error("no sensor '" .. tostring(name) .. "': it is written like \"base.pitch_rad\"", 2)
+    error("no sensor '" .. tostring(name) .. "': it is written like \"base.pitch_rad\"", 3)
   end
+end
+function methods.set_sensor(run, name, value) set_sensor(run, name, value) end
+-- The base as it is when the robot stands upright, or lies on one of its sides.
+local attitudes = {
+  upright = { roll_rad = 0, pitch_rad = 0, tilt_rad = 0, posture = 0 },
+  prone = { roll_rad = 0, pitch_rad = 1.5, tilt_rad = 1.5, posture = 1 },
+  supine = { roll_rad = 0, pitch_rad = -1.5, tilt_rad = 1.5, posture = 2 },
+  left = { roll_rad = -1.5, pitch_rad = 0, tilt_rad = 1.5, posture = 3 },
+  right = { roll_rad = 1.5, pitch_rad = 0, tilt_rad = 1.5, posture = 4 },
+}
+function methods.set_posture(run, posture)
+  local attitude = attitudes[posture]
+  if attitude == nil then error("set_posture needs upright, prone, supine, left or right", 2) end
+  for name, value in pairs(attitude) do set_sensor(run, "base." .. name, value) end
+end
+-- An entry of the world model that has just been seen, with these values.
+function methods.set_seen(run, entry, values)
+  if type(entry) ~= "string" or type(values) ~= "table" then
+    error("set_seen needs an entry of the world model and values of it, like \"ball\", { x_m = 1 }", 2)
+  end
+  local seen = { confidence = 1, age_s = 0 }
+  for name, value in pairs(values) do seen[name] = value end
+  for name, value in pairs(seen) do set_sensor(run, "seen." .. entry .. "." .. tostring(name), value) end
 end
 
 -- Of decisions: what they played has ended, with "done" unless another outcome is given.
