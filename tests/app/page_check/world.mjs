@@ -73,7 +73,7 @@ async function stands(page, what) {
   check(over_m.every((m) => Math.abs(m) < touching_m), `${what}: soles are on the ground that is drawn, ${over_m.map((m) => (1000 * m).toFixed(1))} mm over it`);
 }
 
-// As the page shows the record, and as `kadans render` lets it be drawn: the server takes no pictures here.
+// As the page shows the record, and as `kadans render` lets it be drawn; its pictures are taken here.
 async function check_walk(page, name, duration_s, times) {
   const view = start(['view', await record_of(`${project}/config/sweeps/scenarios/${name}.json`, name, duration_s)], /(http:\S+)/);
   const [, url] = await view.begun;
@@ -100,7 +100,7 @@ const things = {
     { kind: 'box', name: 'crate', size_m: [0.3, 0.2, 0.1], position_m: [1.5, 1.5, 0.7], roll_pitch_yaw_rad: [0.9, 0.3, 0.4], mass_kg: 1 },
     { kind: 'wall', name: 'wall', position_m: [-2, 0, -0.3], roll_pitch_yaw_rad: [0, 0, 0.5], width_m: 2, height_m: 1 },
     { kind: 'pendulum', name: 'hit', distance_m: 0.4, position_m: [0, 3, 1] },
-    { kind: 'payload', name: 'bag', link: 'torso', point_m: [0, 0, 0.1], mass_kg: 2, from_s: 1 },
+    { kind: 'payload', name: 'bag', link: 'torso', point_m: [0, 0, 0.1], mass_kg: 2, from_s: 1, until_s: 3 },
   ],
 };
 
@@ -112,10 +112,13 @@ async function check_things(page, record) {
   await page.goto((await view.begun)[1]);
   await loaded(page);
   await drawn_at(page, 0.1);
-  check(!(await page.evaluate(() => found((o) => o.name === 'bag').visible)), 'a payload is not drawn before it is carried');
+  const carried = () => page.evaluate(() => found((o) => o.name === 'bag').visible);
+  check(!(await carried()), 'a payload is not drawn before it is carried');
   check((await crate_over_m(page)) > 0.2, 'a crate is drawn in the air');
+  await drawn_at(page, 2);
+  check(await carried(), 'a payload is drawn while it is carried');
   await drawn_at(page, 3.9);
-  check(await page.evaluate(() => found((o) => o.name === 'bag').visible), 'a payload is drawn while it is carried');
+  check(!(await carried()), 'and not afterwards');
   const over_m = await crate_over_m(page);
   check(Math.abs(over_m) < touching_m, `a crate that fell lies as it fell, on ground that was driven: ${(1000 * over_m).toFixed(1)} mm over it`);
   const rod_m = await page.evaluate(() => {
@@ -147,6 +150,8 @@ async function check_live(page, file) {
   await page.click('[role=tab]:has-text("World")');
   const count = (what) => page.locator(`.world-map ${what}`).count();
   await until('the world from above has its lines', async () => (await count('.markings line')) === 2 && (await count('.markings circle')) === 1 && (await count('.markings path')) === 1);
+  const driven = await page.evaluate(() => document.querySelector('.world-map .markings').getAttribute('transform').match(/[-\d.]+/g).map(Number));
+  check(Math.abs(driven[0] - 0.05) < 0.002 && Math.abs(driven[1]) < 0.002, 'they are there where the ground was driven');
   const wall = await page.evaluate(() => document.querySelectorAll('.world-map polygon.thing')[1].getAttribute('points').split(' ').map((at) => at.split(',').map(Number)));
   const [[x0, y0], [x1, y1]] = wall;
   const along = Math.abs(((Math.atan2(y1 - y0, x1 - x0) - 0.5) * 2) / Math.PI);
@@ -163,6 +168,7 @@ run(async () => {
   await context.addInitScript(tools);
   const page = await context.newPage();
   const problems = [];
+  await page.route('**/frames/**', (route) => route.fulfill({ status: 200 }));
   page.on('pageerror', (error) => problems.push(error.stack));
   await check_walk(page, 'walk_up_slope', 6, [1, 5.5]);
   await check_walk(page, 'walk_off_edge', 6, [1, 5.5]);
