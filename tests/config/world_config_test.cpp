@@ -117,7 +117,9 @@ TEST_CASE("Every wrong entry of a world is refused with its place and what was m
        R"({"time_s": 1, "velocity_m_s": [0, 0, 0]}]}})",
        "file:1:106: world[0].motion.profile[1].time_s is 1, must be later than the one before, 1 s"},
       {R"({"kind": "markings", "lines": [{"from_m": [0, 0, 0], "to_m": [1, 1]}]})",
-       "file:1:57: world[0].lines[0].from_m: 3 numbers, must be 2"},
+       "file:1:54: world[0].lines[0].from_m must be an array of 2 numbers in m, it has 3: x and y of its beginning, in "
+       "the "
+       "ground's plane"},
       {R"({"kind": "markings", "arcs": [{"center_m": [0, 0], "radius_m": 1, "from_rad": 3, "to_rad": 2}]})",
        "file:1:103: world[0].arcs[0].to_rad is 2, must be more than from_rad, 3 rad"},
       {R"({"kind": "ground"}, {"kind": "ground"})", "file:1:32: world[1]: another entry is named 'ground'"},
