@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/assembly.h"
-#include "app/program.h"
 #include "app/services.h"
 
 namespace drawn_world_test {
