@@ -206,6 +206,8 @@ void Assembly::complete() {
     const bool several = shared_ != nullptr && shared_->robot_count() > 1;
     truth_ = std::make_unique<TruthSignals>(*source, catalog, feet_of(variant_.plant), feet_settle_s,
                                             variant_.plant.world, several);
+    const std::span<const SignalId> left_out = truth_->unhashed();
+    unhashed_.assign(left_out.begin(), left_out.end());
     for (const ObjectConfig& object : robot_.config.objects) {
       if (object.type.name == "gaze") truth_->watch(catalog, eyes_of(object));
     }

@@ -42,6 +42,9 @@ TEST_CASE("A world of every kind is read as it is written") {
   const WorldConfig config = read(R"(
     {"kind": "ground", "slope_rad": 0.1, "slope_heading_rad": 1,
      "motion": {"profile": [{"time_s": 0, "velocity_m_s": [1, 0, 0]}], "repeat": true}},
+    {"kind": "markings", "line_m": 0.1, "lines": [{"from_m": [1, 2], "to_m": [3, 4]}],
+     "arcs": [{"center_m": [5, 6], "radius_m": 0.7, "from_rad": 1, "to_rad": 2}]},
+    {"kind": "markings", "arcs": [{"center_m": [0, 0], "radius_m": 1}]},
     {"kind": "box", "name": "crate", "size_m": [1, 2, 3], "position_m": [4, 5, 6], "roll_pitch_yaw_rad": [0, 0, 1.5],
      "friction": 0.3, "mass_kg": 7, "velocity_m_s": [1, 0, 0]},
     {"kind": "ramp", "name": "ramp", "length_m": 2, "width_m": 1, "incline_rad": 0.2, "position_m": [0, 0, 0]},
@@ -57,6 +60,13 @@ TEST_CASE("A world of every kind is read as it is written") {
   CHECK(world.slope_rad == 0.1);
   CHECK(world.slope_heading_rad == 1);
   CHECK(world.ground_motion.repeat);
+  REQUIRE(world.markings.size() == 2);
+  CHECK(world.markings[0].line_m == 0.1);
+  CHECK(world.markings[0].lines.at(0).to_m == std::array<double, 2>{3, 4});
+  CHECK(world.markings[0].arcs.at(0).center_m == std::array<double, 2>{5, 6});
+  CHECK(world.markings[0].arcs.at(0).from_rad == 1);
+  CHECK(world.markings[0].arcs.at(0).to_rad == 2);
+  CHECK(world.markings[1].arcs.at(0).to_rad > 6.28);
   REQUIRE(world.objects.size() == 6);
   CHECK(world.objects[3].name == "wall");
   const auto& crate = std::get<WorldBox>(world.objects[0].shape);
@@ -106,6 +116,12 @@ TEST_CASE("Every wrong entry of a world is refused with its place and what was m
       {R"({"kind": "ground", "motion": {"profile": [{"time_s": 1, "velocity_m_s": [0, 0, 0]},)"
        R"({"time_s": 1, "velocity_m_s": [0, 0, 0]}]}})",
        "file:1:106: world[0].motion.profile[1].time_s is 1, must be later than the one before, 1 s"},
+      {R"({"kind": "markings", "lines": [{"from_m": [0, 0, 0], "to_m": [1, 1]}]})",
+       "file:1:54: world[0].lines[0].from_m must be an array of 2 numbers in m, it has 3: x and y of its beginning, in "
+       "the "
+       "ground's plane"},
+      {R"({"kind": "markings", "arcs": [{"center_m": [0, 0], "radius_m": 1, "from_rad": 3, "to_rad": 2}]})",
+       "file:1:103: world[0].arcs[0].to_rad is 2, must be more than from_rad, 3 rad"},
       {R"({"kind": "ground"}, {"kind": "ground"})", "file:1:32: world[1]: another entry is named 'ground'"},
       {R"({"kind": "stairs", "name": "a", "count": 0, "rise_m": 1, "run_m": 1, "width_m": 1, "position_m": [0, 0, 0]})",
        "file:1:53: world[0].count is 0, must be 1..32: number of steps"},

@@ -46,6 +46,21 @@ TEST_CASE("A match file with nothing but a team has the rules of 2026 and an emp
   CHECK(has(scenario_of(match, 1), "\"left_post_1\""));
 }
 
+TEST_CASE(
+    "The lines of the field are painted on the ground of a match: areas, circle, marks, and corner arcs where there "
+    "are any") {
+  MatchConfig match = read_match(matches / "two_against_two.json");
+  const std::string small = scenario_of(match, 1);
+  CHECK(has(small, R"({ "from_m": [2.525, -1.975], "to_m": [2.525, 1.975] })"));    // the left penalty area's front
+  CHECK(has(small, R"({ "from_m": [-3.525, -1.475], "to_m": [-3.525, 1.475] })"));  // the right goal area's
+  CHECK(has(small, R"({ "from_m": [0, -2.975], "to_m": [0, 2.975] })"));
+  CHECK(has(small, R"({ "from_m": [-3.025, 0], "to_m": [-2.975, 0] })"));  // of the right penalty mark's cross
+  CHECK(has(small, R"("arcs": [{ "center_m": [0, 0], "radius_m": 0.725 }])"));
+  match.field_size = FieldSize::middle;
+  CHECK(has(scenario_of(match, 1),
+            R"({ "center_m": [-6.975, -4.475], "radius_m": 0.475, "from_rad": 0, "to_rad": 1.57)"));
+}
+
 TEST_CASE("Robots stand before a half in their own half, beside the field or on it, and none in another's place") {
   MatchConfig match = read_match(matches / "two_against_two.json");
   for (const bool on_field : {false, true}) {

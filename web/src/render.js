@@ -35,6 +35,7 @@ export async function render_record(session, wanted) {
     await Promise.all([show.model, ...show.others].map((model) => model.complete));
     for (const t of times) {
       show.draw(t, all_marks);
+      Object.assign(globalThis, { kadans: session, kadans_stage: stage, kadans_picture: t }); // for tests
       const picture = await new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
       await post(`${t.toFixed(3).padStart(9, '0')}.png`, picture);
     }

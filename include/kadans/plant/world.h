@@ -45,6 +45,7 @@ struct PlantTruth {
   std::array<Vec3, max_feet> foot_force_N{};  // from what the foot stands on, world axes
   std::uint32_t object_count = 0;
   std::array<ObjectTruth, max_world_objects> objects{};
+  Vec3 ground_m{};                  // how far a ground that is driven has gone
   LinkSet ground_links;             // that press on the ground
   LinkSet robot_links;              // that press on another robot
   Vec3 robots_force_N{};            // from other robots, world axes

@@ -11,11 +11,14 @@
 //   ball      pose of its centre; rolling_friction_m is the lever arm of rolling resistance
 //   pendulum  pose of the bob's centre at rest; a bob on a massless rod, held distance_m behind until release_s
 //   ground    a plane through the world's origin that rises at slope_rad towards slope_heading_rad
+//   markings  lines painted on that plane, for eyes and pictures alone: no contact knows of them
 // Boxes, ramps, stairs, walls and the ground may be driven along a velocity profile; nothing stops them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <variant>
 #include <vector>
@@ -95,11 +98,27 @@ struct PayloadSettings {
   double from_s = 0, until_s = std::numeric_limits<double>::infinity();
 };
 
+// Lines and arcs of circles on the ground, all of one width; places are in the plane, x and y from the world's origin.
+struct GroundMarkings {
+  struct Line {
+    std::array<double, 2> from_m{}, to_m{};
+  };
+  struct Arc {
+    std::array<double, 2> center_m{};
+    double radius_m = 0;                                 // to the middle of the painted line
+    double from_rad = 0, to_rad = 2 * std::numbers::pi;  // from x towards y
+  };
+  double line_m = 0.05;  // width
+  std::vector<Line> lines;
+  std::vector<Arc> arcs;
+};
+
 struct WorldSettings {
   std::vector<WorldObject> objects;
   std::vector<PayloadSettings> payloads;
   double slope_rad = 0, slope_heading_rad = 0;
   MotionSettings ground_motion;
+  std::vector<GroundMarkings> markings;
 };
 
 // The boxes that an object is made of: one, stairs one per step; none for a ball or a pendulum.

@@ -11,8 +11,9 @@
 namespace kadans {
 namespace {
 
-enum class Kind : std::uint8_t { box, ramp, stairs, wall, ball, pendulum, ground, payload };
-const std::array<std::string, 8> part_kinds{"box", "ramp", "stairs", "wall", "ball", "pendulum", "ground", "payload"};
+enum class Kind : std::uint8_t { box, ramp, stairs, wall, ball, pendulum, ground, markings, payload };
+const std::array<std::string, 9> part_kinds{"box",      "ramp",   "stairs",   "wall",   "ball",
+                                            "pendulum", "ground", "markings", "payload"};
 
 constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 constexpr NumberRange anywhere_m{-1000, 1000, "m"}, size_m{1e-3, 1000, "m"}, time_s{0, 1e6, "s"}, mass{1e-4, 1e4, "kg"};
@@ -30,6 +31,7 @@ struct Entry {
   double release_s = 0, from_s = 0, until_s = std::numeric_limits<double>::infinity();
   std::uint32_t count = 1;
   MotionSettings motion;
+  GroundMarkings markings;
   std::vector<ObjectCarry> carried;
 };
 
@@ -45,6 +47,7 @@ class EntryReader {
     placing();
     sizes();
     moving();
+    painted();
     return known;
   }
 
@@ -121,6 +124,31 @@ class EntryReader {
     if (of({box, ramp, stairs, wall, ground})) {
       f_.object("motion", "prescribed motion, which no load changes", [&](Fields& e) { motion(e); });
     }
+  }
+
+  void painted() {
+    if (!of({Kind::markings})) return;
+    f_.number("line_m", entry_.markings.line_m, size_m, "width of the painted lines");
+    f_.list("lines", {0, 1000}, "straight lines on the ground", [&](Fields& e) {
+      GroundMarkings::Line line;
+      e.numbers("from_m", line.from_m, anywhere_m, "x and y of its beginning, in the ground's plane", Need::required);
+      e.numbers("to_m", line.to_m, anywhere_m, "x and y of its end", Need::required);
+      if (e.reading()) entry_.markings.lines.push_back(line);
+    });
+    f_.list("arcs", {0, 1000}, "circles on the ground, or parts of them", [&](Fields& e) {
+      GroundMarkings::Arc arc;
+      e.numbers("center_m", arc.center_m, anywhere_m, "x and y of its centre, in the ground's plane", Need::required);
+      e.number("radius_m", arc.radius_m, size_m, "to the middle of the line", Need::required);
+      e.number("from_rad", arc.from_rad, {-7, 7, "rad"}, "where it begins, from x towards y");
+      e.number("to_rad", arc.to_rad, {-7, 7, "rad"}, "where it ends (default: all around)");
+      if (!e.reading()) return;
+      if (!(arc.to_rad > arc.from_rad)) {
+        problems_.add(e.place(e.has("to_rad") ? "to_rad" : "from_rad"),
+                      e.path("to_rad") + " is " + number_text(arc.to_rad) + ", must be more than from_rad, " +
+                          number_text(arc.from_rad) + " rad");
+      }
+      entry_.markings.arcs.push_back(arc);
+    });
   }
 
   void carry(Fields& f) {
@@ -203,6 +231,8 @@ void add(const Fields& f, const Entry& entry, WorldConfig& world) {
     settings.slope_rad = entry.slope_rad;
     settings.slope_heading_rad = entry.slope_heading_rad;
     settings.ground_motion = entry.motion;
+  } else if (entry.kind == Kind::markings) {
+    settings.markings.push_back(entry.markings);
   } else if (entry.kind == Kind::payload) {
     settings.payloads.push_back({entry.name, entry.link, entry.point_m, entry.mass_kg, entry.from_s, entry.until_s});
     world.payload_links.push_back(f.place("link"));
@@ -227,8 +257,8 @@ void world_fields(Fields& f, WorldConfig& world, Problems& problems) {
     const bool known = EntryReader(e, entry, problems).read();
     if (!e.reading() || !known) return;
     verify(e, entry, problems);
-    const std::string name = entry.kind == Kind::ground ? "ground" : entry.name;
-    if (std::find(names.begin(), names.end(), name) != names.end()) {
+    const std::string name = entry.kind == Kind::ground ? "ground" : entry.name;  // "": markings have none
+    if (!name.empty() && std::find(names.begin(), names.end(), name) != names.end()) {
       problems.add(e.place("name"), e.path() + ": another entry is named " + in_quotes(name));
     }
     names.push_back(name);

@@ -1,6 +1,6 @@
 // The "world" of a scenario: a list of the fixed and moving bodies around the robot, the slope and motion of the
-// ground, and the payloads that the robot carries. The kind of an entry decides which keys it has; plant/world.h
-// explains them.
+// ground, what is painted on it, and the payloads that the robot carries. The kind of an entry decides which keys it
+// has; plant/world_settings.h explains them.
 #pragma once
 
 #include <string>

@@ -245,6 +245,34 @@ std::string goals(const Field& field) {
   return text;
 }
 
+std::string pair(const Point& at) { return "[" + number(at.x_m) + ", " + number(at.y_m) + "]"; }
+
+// What is painted on the carpet, for pictures. A mark is a cross.
+std::string painted(const Field& field) {
+  const Markings markings = markings_of(field);
+  std::vector<Segment> lines = markings.lines;
+  const double arm_m = (field.mark_m - field.line_m) / 2;
+  for (const Point& mark : markings.marks) {
+    lines.push_back({{mark.x_m - arm_m, mark.y_m}, {mark.x_m + arm_m, mark.y_m}});
+    lines.push_back({{mark.x_m, mark.y_m - arm_m}, {mark.x_m, mark.y_m + arm_m}});
+  }
+  std::string text = ",\n    { \"kind\": \"markings\", \"line_m\": " + number(field.line_m) + ", \"lines\": [";
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text += std::string(i == 0 ? "" : ", ") + "{ \"from_m\": " + pair(lines[i].from) +
+            ", \"to_m\": " + pair(lines[i].to) + " }";
+  }
+  text += "],\n      \"arcs\": [{ \"center_m\": [0, 0], \"radius_m\": " + number(markings.circle_radius_m) + " }";
+  const double corner_m = field.corner_radius_m - field.line_m / 2;
+  for (unsigned corner = 0; corner < 4 && corner_m > 0; ++corner) {
+    const double x_m = (corner == 0 || corner == 3 ? -1 : 1) * field.goal_line_x_m();
+    const double y_m = (corner < 2 ? -1 : 1) * field.touchline_y_m();
+    const double from_rad = corner * std::numbers::pi / 2;  // into the field
+    text += ", { \"center_m\": " + pair({x_m, y_m}) + ", \"radius_m\": " + number(corner_m) +
+            ", \"from_rad\": " + number(from_rad) + ", \"to_rad\": " + number(from_rad + std::numbers::pi / 2) + " }";
+  }
+  return text + "] }";
+}
+
 }  // namespace
 
 std::string supervisor_of(const MatchConfig& match, RobotId id, const RobotPlaces& places) {
@@ -384,7 +412,8 @@ std::string scenario_of(const MatchConfig& match, std::uint64_t seed) {
           ", \"lost\": " + number(match.lost) +
           " },\n  \"world\": [\n    { \"kind\": \"ball\", \"name\": \"ball\", \"radius_m\": " + number(ball.radius_m) +
           ", \"mass_kg\": " + number(ball.mass_kg) + ", \"rolling_friction_m\": " + number(match.rolling_friction_m) +
-          ", \"restitution\": 0.6, \"position_m\": [0, 0, " + number(ball.radius_m) + "] }" + goals(field) + "]\n}\n";
+          ", \"restitution\": 0.6, \"position_m\": [0, 0, " + number(ball.radius_m) + "] }" + goals(field) +
+          painted(field) + "]\n}\n";
   return text;
 }
 

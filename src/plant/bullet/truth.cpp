@@ -54,6 +54,7 @@ void TruthReader::read(const Drives& drives, const std::vector<FootLoad>& feet) 
 void TruthReader::read_world(const ContactWorld& world, const WorldObjects& objects, double dt_s) {
   truth_.object_count = static_cast<std::uint32_t>(objects.size());
   for (std::size_t i = 0; i < objects.size(); ++i) objects.read(i, truth_.objects[i]);
+  truth_.ground_m = from_bullet(world.ground().getWorldTransform().getOrigin());
   if (dt_s > 0) read_contacts(world, *body_, dt_s, truth_);
   truth_.residual_m_s = world.residual_m_s();
 }

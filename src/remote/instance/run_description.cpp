@@ -7,6 +7,7 @@
 
 #include "config/json/foreign_json.h"
 #include "kadans/control/set_partition.h"
+#include "kadans/model/kinematics.h"
 #include "script/chart/chart_graph.h"
 
 namespace kadans {
@@ -154,13 +155,47 @@ Json parameters_of(const Catalog& catalog) {
   return parameters;
 }
 
+// The plane through the world's origin, and what is painted on it. One that is driven has signals world.ground.x_m and
+// so on.
+Json ground_of(const WorldSettings& world) {
+  const auto& [w, x, y, z] = ground_pose(world).orientation;
+  Json markings = Json::array();
+  for (const GroundMarkings& painted : world.markings) {
+    Json lines = Json::array(), arcs = Json::array();
+    for (const auto& [from_m, to_m] : painted.lines) lines.push_back({{"from_m", from_m}, {"to_m", to_m}});
+    for (const GroundMarkings::Arc& arc : painted.arcs) {
+      arcs.push_back(
+          {{"center_m", arc.center_m}, {"radius_m", arc.radius_m}, {"from_rad", arc.from_rad}, {"to_rad", arc.to_rad}});
+    }
+    markings.push_back({{"line_m", painted.line_m}, {"lines", lines}, {"arcs", arcs}});
+  }
+  return {{"orientation_xyzw", {x, y, z, w}}, {"markings", markings}};
+}
+
+// What is carried without an end has no until_s.
+Json payloads_of(const WorldSettings& world) {
+  Json payloads = Json::array();
+  for (const PayloadSettings& payload : world.payloads) {
+    payloads.push_back({{"name", payload.name},
+                        {"link", payload.link},
+                        {"point_m", vector_of(payload.point_m)},
+                        {"mass_kg", payload.mass_kg},
+                        {"from_s", payload.from_s}});
+    if (std::isfinite(payload.until_s)) payloads.back()["until_s"] = payload.until_s;
+  }
+  return payloads;
+}
+
 // Where they are at the start; those that move have signals world.<name>.x_m and so on.
 Json world_of(const WorldSettings& world) {
   Json objects = Json::array();
   for (const WorldObject& object : world.objects) {
     Json one{{"name", object.name}, {"position_m", vector_of(object.pose.position_m)}};
     if (const auto* ball = std::get_if<WorldBall>(&object.shape)) one["radius_m"] = ball->radius_m;
-    if (const auto* pendulum = std::get_if<WorldPendulum>(&object.shape)) one["radius_m"] = pendulum->radius_m;
+    if (const auto* pendulum = std::get_if<WorldPendulum>(&object.shape)) {
+      one["radius_m"] = pendulum->radius_m;
+      one["hinge_m"] = vector_of(transform(object.pose, {0, 0, pendulum->length_m}));
+    }
     for (const SolidBox& box : solid_boxes(object)) {
       const auto& [w, x, y, z] = box.pose.orientation;
       one["boxes"].push_back({{"size_m", vector_of(box.size_m)},
@@ -205,6 +240,8 @@ std::string run_description(const RobotConfig& robot, const Catalog& catalog, co
                          {"objects", objects_of(robot, catalog)},
                          {"parameters", parameters_of(catalog)},
                          {"world", world_of(world)},
+                         {"ground", ground_of(world)},
+                         {"payloads", payloads_of(world)},
                          {"behaviors", behaviors_of(host)}};
   return json_text(description);
 }

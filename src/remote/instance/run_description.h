@@ -1,6 +1,7 @@
 // Describes a run for viewers as one JSON text: the robot's name and feet, control sets with their objects, parameters
-// with unit and range, the objects of the world as balls and boxes, and the charts of the behaviors. Their states have
-// the same numbers as the signal behavior.<name>.state. A record and a live server send the text on /description.
+// with unit and range, the objects of the world as balls and boxes, the ground with its slope and markings, payloads,
+// and the charts of the behaviors. Their states have the same numbers as the signal behavior.<name>.state. A record and
+// a live server send the text on /description. Whoever draws the world draws it from here and from the signals.
 //
 // It is made from the tables; this code knows no concrete control object or behavior.
 #pragma once

@@ -217,6 +217,11 @@ WorldSignals::WorldSignals(SignalTable& table, const WorldSettings& world, std::
   }
   table.add({"plant.self_penetration_m", "m", "Largest overlap of two links of the robot."}, &self_penetration_m_);
   for (std::size_t i = 0; i < objects_.size(); ++i) declare(table, world.objects[i], objects_[i]);
+  if (!world.ground_motion.moves()) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string name = "world.ground." + std::string(1, "xyz"[i]) + "_m";
+    unhashed_.push_back(table.add({name, "m", "How far the ground has been driven."}, &ground_m_[i]));
+  }
 }
 
 void WorldSignals::declare(SignalTable& table, const WorldObject& object, State& state) {
@@ -232,6 +237,13 @@ void WorldSignals::declare(SignalTable& table, const WorldObject& object, State&
     table.add({velocity, "m/s", "Velocity of the object."}, &state.velocity_m_s[i]);
   }
   table.add({name + "tilt_rad", "rad", "Angle between the object's z axis and the vertical."}, &state.tilt_rad);
+  if (std::holds_alternative<WorldBox>(object.shape) && object.free()) declare_turn(table, name, state);
+}
+
+void WorldSignals::declare_turn(SignalTable& table, const std::string& name, State& state) {
+  const char* const angles[] = {"roll_rad", "pitch_rad", "yaw_rad"};
+  for (std::size_t i = 0; i < 3; ++i)
+    unhashed_.push_back(table.add({name + angles[i], "rad", "How the object is turned."}, &state.angles_rad[i]));
 }
 
 void WorldSignals::update(const PlantTruth& truth) noexcept {
@@ -239,6 +251,7 @@ void WorldSignals::update(const PlantTruth& truth) noexcept {
   robot_links_ = static_cast<double>(truth.robot_links.count());
   robots_force_N_ = norm(truth.robots_force_N);
   self_penetration_m_ = truth.self_penetration_m;
+  ground_m_ = truth.ground_m;
   const std::size_t count = std::min<std::size_t>(objects_.size(), truth.object_count);
   for (std::size_t i = 0; i < count; ++i) {
     const ObjectTruth& object = truth.objects[i];
@@ -248,6 +261,7 @@ void WorldSignals::update(const PlantTruth& truth) noexcept {
     state.links = static_cast<double>(object.links.count());
     state.position_m = object.pose.position_m;
     state.velocity_m_s = object.velocity_m_s;
+    state.angles_rad = roll_pitch_yaw(object.pose.orientation);
     state.tilt_rad = std::atan2(std::hypot(up[0], up[1]), up[2]);
   }
 }

@@ -71,24 +71,31 @@ class GazeTruth {
 //   world.<name>.force_N, links    force of the robot on the object, and number of its links that press
 //   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    position, velocity and tilt of an object that can
 //   move
+//   world.<name>.roll_rad, pitch_rad, yaw_rad    how a free box is turned
+//   world.ground.x_m, y_m, z_m     how far a ground that is driven has gone
+// The last two follow from what a run's state hash covers already, and are left out of it.
 class WorldSignals {
  public:
   // Declares the signals. `feet` are the indices of the foot links. `several`: there is more than one robot.
   WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet, bool several);
 
   void update(const PlantTruth& truth) noexcept;
+  std::span<const SignalId> unhashed() const noexcept { return unhashed_; }  // ascending
 
  private:
   struct State {
     double force_N = 0, links = 0;
-    Vec3 position_m{}, velocity_m_s{};
+    Vec3 position_m{}, velocity_m_s{}, angles_rad{};
     double tilt_rad = 0;
   };
   void declare(SignalTable& table, const WorldObject& object, State& state);
+  void declare_turn(SignalTable& table, const std::string& name, State& state);
 
   LinkSet feet_;
   double other_links_ = 0, robot_links_ = 0, robots_force_N_ = 0, self_penetration_m_ = 0;
+  Vec3 ground_m_{};
   std::vector<State> objects_;
+  std::vector<SignalId> unhashed_;
 };
 
 class TruthSignals {
@@ -109,6 +116,7 @@ class TruthSignals {
   // Call after each step of the plant. `row` holds the signals of the last control tick; the set-points are read from
   // it.
   void update(double time_s, std::span<const double> row) noexcept;
+  std::span<const SignalId> unhashed() const noexcept { return world_->unhashed(); }  // in the state hash of a run
 
  private:
   struct State {

@@ -26,13 +26,16 @@ constexpr const char* parameters_schema = R"({
 
 const char* const description_schema = R"({
   "title": "kadans.Description",
-  "description": "Robot, control sets, parameters and charts of a run",
+  "description": "Robot, control sets, parameters, world and charts of a run",
   "type": "object",
   "properties": {
     "robot": { "type": "object" },
     "sets": { "type": "array" },
     "objects": { "type": "array" },
     "parameters": { "type": "array" },
+    "world": { "type": "array" },
+    "ground": { "type": "object" },
+    "payloads": { "type": "array" },
     "behaviors": { "type": "array" }
   }
 })";

@@ -1,5 +1,6 @@
 // The world from above: where the robots are, what each of them believes to see, and what is really there when somebody
 // knows. A number for each belief below.
+import { from_above } from '../data/outlines.js';
 import { clock, number, useSession } from '../watching.js';
 
 const fields_of = (session, prefix) => [...session.signals.keys()].filter((name) => name.startsWith(prefix)).map((name) => name.slice(prefix.length));
@@ -39,13 +40,10 @@ function world_of(session) {
     const drawn = seen.filter((entry) => entry.confidence > 0 && known(entry)).map((entry) => ({ ...entry, ...from_robot(at, entry) }));
     return { name: prefix.slice(0, -1) || session.description?.robot.name, ...at, seen, drawn };
   });
-  const things = (session.description?.world ?? []).map(({ name, position_m, radius_m, boxes }) => {
-    const moved = place(session, `world.${name}.`);
-    const [x, y] = known(moved) ? [moved.x, moved.y] : position_m;
-    const size = boxes?.[0]?.size_m;
-    return { name, x, y, radius: radius_m ?? (size ? Math.max(0.03, Math.min(size[0], size[1]) / 2) : 0.05), box: size };
-  });
-  return { robots: robots.filter(known), things };
+  const things = (session.description?.world ?? []).map((thing) => from_above(session, thing));
+  const driven = place(session, 'world.ground.');
+  const ground = { markings: session.description?.ground?.markings ?? [], ...(known(driven) ? driven : { x: 0, y: 0 }) };
+  return { robots: robots.filter(known), things, ground };
 }
 
 // Metres to a grid of 1, 2, 5, 10 ... with at most eight lines.
@@ -63,9 +61,35 @@ function Grid({ x, y, size }) {
   return <g class="grid">{lines}<text x={x + size * 0.02} y={-(y + size * 0.02)} font-size={size * 0.035} transform="scale(1,-1)">{`grid ${number(step)} m`}</text></g>;
 }
 
+const around = ([x, y], radius) => [{ x: x - radius, y: y - radius }, { x: x + radius, y: y + radius }];
+const marked = ({ lines, arcs }) => [...lines.flatMap((line) => [line.from_m, line.to_m]).map(([x, y]) => ({ x, y })), ...arcs.flatMap((arc) => around(arc.center_m, arc.radius_m))];
+
+function Arc({ arc: { center_m: [x, y], radius_m, from_rad, to_rad }, line_m }) {
+  if (to_rad - from_rad > 6.28) return <circle cx={x} cy={y} r={radius_m} stroke-width={line_m} />;
+  const at = (angle) => `${x + radius_m * Math.cos(angle)} ${y + radius_m * Math.sin(angle)}`;
+  return <path d={`M ${at(from_rad)} A ${radius_m} ${radius_m} 0 ${to_rad - from_rad > Math.PI ? 1 : 0} 1 ${at(to_rad)}`} stroke-width={line_m} />;
+}
+
+function Markings({ ground: { markings, x, y } }) {
+  return markings.map(({ line_m, lines, arcs }, number) => (
+    <g key={number} class="markings" transform={`translate(${x} ${y})`}>
+      {lines.map(({ from_m, to_m }, i) => <line key={i} x1={from_m[0]} y1={from_m[1]} x2={to_m[0]} y2={to_m[1]} stroke-width={line_m} />)}
+      {arcs.map((arc, i) => <Arc key={i} {...{ arc, line_m }} />)}
+    </g>
+  ));
+}
+
+// A thing that has no size of its own to speak of is a dot.
+function Thing({ thing: { x, y, radius, outlines }, least }) {
+  if (outlines.length === 0) return <circle class="thing ball" cx={x} cy={y} r={Math.max(radius ?? 0, least)} />;
+  return outlines.map((corners, i) => <polygon key={i} class="thing" points={corners.map((corner) => `${corner.x},${corner.y}`).join(' ')} />);
+}
+
+const wide = ({ outlines }) => outlines.some((corners) => Math.hypot(corners[0].x - corners[2].x, corners[0].y - corners[2].y) > 20);
+
 // x ahead is to the right, y to the left is up.
-function Map({ robots, things }) {
-  const all = [...robots, ...robots.flatMap((robot) => robot.drawn), ...things.filter(({ box }) => !box || Math.max(box[0], box[1]) < 20)];
+function Map({ robots, things, ground }) {
+  const all = [...robots, ...robots.flatMap((robot) => robot.drawn), ...things.filter((thing) => !wide(thing)), ...ground.markings.flatMap(marked)];
   const [xs, ys] = [all.map(({ x }) => x), all.map(({ y }) => y)];
   const size = Math.max(2, 1.3 * Math.max(Math.max(...xs) - Math.min(...xs), Math.max(...ys) - Math.min(...ys)));
   const [x, y] = [(Math.max(...xs) + Math.min(...xs) - size) / 2, (Math.max(...ys) + Math.min(...ys) - size) / 2];
@@ -74,7 +98,8 @@ function Map({ robots, things }) {
     <svg class="world-map" viewBox={`${x} ${-y - size} ${size} ${size}`} role="img" aria-label="The world from above">
       <g transform="scale(1,-1)">
         <Grid {...{ x, y, size }} />
-        {things.map(({ name, x, y, radius, box }) => (box ? <rect key={name} class="thing" x={x - box[0] / 2} y={y - box[1] / 2} width={box[0]} height={box[1]} /> : <circle key={name} class="thing ball" cx={x} cy={y} r={Math.max(radius, size * 0.01)} />))}
+        <Markings ground={ground} />
+        {things.map((thing) => <Thing key={thing.name} {...{ thing, least: size * 0.01 }} />)}
         {robots.map((robot) => (
           <g key={robot.name} class={robot.really ? 'robot-at' : 'robot-at believed'}>
             {robot.drawn.map((entry) => (
@@ -95,12 +120,12 @@ function Map({ robots, things }) {
 
 export function WorldPanel({ session }) {
   useSession(session, 5);
-  const { robots, things } = world_of(session);
+  const { robots, things, ground } = world_of(session);
   const seen = robots.flatMap((robot) => robot.seen.map((entry) => ({ ...entry, robot: robot.name })));
   if (robots.length === 0) return <p class="hint">Nothing says where this robot is.</p>;
   return (
     <div class="world">
-      <Map {...{ robots, things }} />
+      <Map {...{ robots, things, ground }} />
       <p class="muted">{robots.some(({ really }) => really) ? 'Filled: where things are. Rings: where a robot believes them, from where it is.' : 'Where the robot believes that it is, and what it believes to see.'}</p>
       {seen.length === 0 ? <p class="hint">No entries: this robot has no world model (docs/supervisor.md).</p> : (
         <table class="joints">

@@ -44,6 +44,11 @@ class Foot {
     this.dot.position.copy(this.cop).z += lift_m;
   }
 
+  // Over the ground's plane: what it stands on may lie on that.
+  over_m(ground) {
+    return this.cop.z - ground.height_m(this.cop.x, this.cop.y);
+  }
+
   ground_points(model) {
     const node = model.link(this.info.link);
     return this.corners.map((corner) => corner.clone().applyMatrix4(node.matrixWorld));
@@ -51,7 +56,8 @@ class Foot {
 }
 
 export class BalanceMarks {
-  constructor(feet) {
+  constructor(feet, ground) {
+    this.ground = ground;
     this.root = new Group();
     this.feet = feet.map((info) => new Foot(info));
     this.com = new Vector3();
@@ -81,33 +87,35 @@ export class BalanceMarks {
 
   // `shown`: names of groups. The model is posed at t afterwards.
   update(session, t, model, shown) {
-    model.balance(session, t, this.com, this.dcm);
+    model.balance(session, t, this.com, this.dcm, this.ground);
     for (const foot of this.feet) foot.update(session, t, model);
     const bearing = this.feet.filter((foot) => foot.bears);
     for (const [name, parts] of Object.entries(this.groups)) for (const part of parts) part.visible = shown.has(name);
     if (this.feet.length === 0) for (const part of [this.plumb, this.com_spot, this.dcm_spot]) part.visible = false; // it stands on nothing
     for (const foot of this.feet) foot.arrow.visible = foot.dot.visible = foot.bears && shown.has('contacts');
-    const ground_z = bearing.length > 0 ? Math.min(...bearing.map((foot) => foot.cop.z)) + lift_m : lift_m;
+    const over_m = bearing.length > 0 ? Math.min(...bearing.map((foot) => foot.over_m(this.ground))) + lift_m : lift_m;
+    const put = ({ x, y }, to = new Vector3()) => to.set(x, y, this.ground.height_m(x, y) + over_m);
     this.com_ball.position.copy(this.com);
-    this.com_spot.position.set(this.com.x, this.com.y, ground_z);
-    this.dcm_spot.position.set(this.dcm.x, this.dcm.y, ground_z);
+    put(this.com, this.com_spot.position);
+    put(this.dcm, this.dcm_spot.position);
+    for (const spot of [this.com_spot, this.dcm_spot, this.cop_spot, ...this.feet.map((foot) => foot.dot)]) spot.quaternion.copy(this.ground.root.quaternion);
     this.plumb.geometry.setFromPoints([this.com, this.com_spot.position]);
-    this.place_cop(bearing, ground_z);
-    this.place_support(bearing, model, ground_z);
+    this.place_cop(bearing, put);
+    this.place_support(bearing, model, put);
   }
 
-  place_cop(bearing, ground_z) {
+  place_cop(bearing, put) {
     const total_N = bearing.reduce((sum, foot) => sum + foot.force_N, 0);
     if (total_N <= 0) return (this.cop_spot.visible = false);
     this.cop_spot.position.set(0, 0, 0);
     for (const foot of bearing) this.cop_spot.position.addScaledVector(foot.cop, foot.force_N / total_N);
-    this.cop_spot.position.z = ground_z;
+    put(this.cop_spot.position, this.cop_spot.position);
   }
 
-  place_support(bearing, model, ground_z) {
+  place_support(bearing, model, put) {
     const corners = hull(bearing.flatMap((foot) => foot.ground_points(model)));
     if (corners.length < 3) return (this.area.visible = this.outline.visible = false);
-    const points = corners.map((corner) => new Vector3(corner.x, corner.y, ground_z));
+    const points = corners.map((corner) => put(corner));
     const fan = [];
     for (let i = 1; i + 1 < points.length; ++i) fan.push(...points[0].toArray(), ...points[i].toArray(), ...points[i + 1].toArray());
     this.area.geometry.setAttribute('position', new Float32BufferAttribute(fan, 3));

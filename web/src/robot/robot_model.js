@@ -121,7 +121,7 @@ export class RobotModel {
 
   // Centre of mass and divergent component of motion (its place plus its speed over the pendulum's rate); leaves the
   // robot posed at t.
-  balance(session, t, com, dcm) {
+  balance(session, t, com, dcm, ground) {
     const dt_s = 0.02;
     const before = new Vector3();
     const first = session.start_s;
@@ -131,8 +131,9 @@ export class RobotModel {
     this.centre_of_mass(com);
     const passed_s = Math.min(dt_s, t - first);
     dcm.copy(com).setZ(0);
-    if (passed_s <= 0 || com.z <= 0.05) return;
-    const per_rate = Math.sqrt(com.z / gravity_m_s2) / passed_s;
+    const height_m = com.z - ground.height_m(com.x, com.y);
+    if (passed_s <= 0 || height_m <= 0.05) return;
+    const per_rate = Math.sqrt(height_m / gravity_m_s2) / passed_s;
     dcm.x += (com.x - before.x) * per_rate;
     dcm.y += (com.y - before.y) * per_rate;
   }

@@ -1,8 +1,9 @@
-// What stands on the stage for a session: the robot, what bears it, where it looks, and the further robots of its world.
-// Made when its URDF is there.
+// What stands on the stage for a session: the robot, what bears it, what it carries, where it looks, the ground, and the
+// further robots and things of its world. Made when its URDF is there.
 import { Vector3 } from 'three';
 import { BalanceMarks } from './balance_marks.js';
 import { GazeMark } from './gaze_mark.js';
+import { Payloads } from './payloads.js';
 import { RobotModel } from './robot_model.js';
 import { WorldObjects } from './world_objects.js';
 
@@ -15,7 +16,8 @@ export class Show {
 
   // Of a description only what is drawn: behaviors come and go in it.
   take(session) {
-    const key = JSON.stringify([session.description?.robot, session.description?.objects, session.description?.world]);
+    const { robot, objects, world, ground, payloads } = session.description ?? {};
+    const key = JSON.stringify([robot, objects, world, ground, payloads]);
     const same = this.session === session && this.urdf === session.urdf && this.others?.length === session.others.size;
     if (same && (this.description === session.description || this.key === key)) return;
     this.clear();
@@ -30,9 +32,11 @@ export class Show {
       this.framed = false;
       this.stage.moved = true;
     });
-    this.marks = new BalanceMarks(session.description?.robot?.feet ?? []);
-    this.gazes = (session.description?.objects ?? []).filter((object) => object.type === 'gaze').map((object) => new GazeMark(this.stage, object, this.model, () => this.sender()));
-    this.world = new WorldObjects(session.description?.world ?? []);
+    this.marks = new BalanceMarks(robot?.feet ?? [], this.stage.ground);
+    this.gazes = (objects ?? []).filter((object) => object.type === 'gaze').map((object) => new GazeMark(this.stage, object, this.model, () => this.sender()));
+    this.world = new WorldObjects(world ?? []);
+    this.payloads = new Payloads(payloads ?? [], this.model);
+    this.stage.ground.lay(ground);
     this.marks.root.visible = this.stage.fine;
     this.stage.scene.add(...this.roots());
     this.framed = same_robot && this.framed;
@@ -45,6 +49,7 @@ export class Show {
   // Once it is known how large the robot is and where it is.
   frame() {
     this.framed = Boolean(this.session.description) && this.session.signals.size > 0 && this.session.end_s > 0;
+    this.stage.ground.move(this.session, this.session.cursor_s);
     this.model.pose(this.session, this.session.cursor_s);
     const base = this.model.root.position;
     const { center, radius } = this.model.bounds();
@@ -59,7 +64,8 @@ export class Show {
     }
     if (this.gazes.length > 0) return this.stage.frame(center.setX(center.x + 0.4), Math.max(radius, 0.62), base, beside);
     const { radius: tall } = this.model;
-    if (this.marks.feet.length > 0) return this.stage.frame(center.set(base.x, base.y, 0.86 * tall), 1.14 * tall, base); // as if it stood
+    const ground_m = this.stage.ground.height_m(base.x, base.y);
+    if (this.marks.feet.length > 0) return this.stage.frame(center.set(base.x, base.y, ground_m + 0.86 * tall), 1.14 * tall, base); // as if it stood
     return this.stage.frame(center, radius, base);
   }
 
@@ -79,9 +85,11 @@ export class Show {
   draw(t, shown) {
     if (this.model) {
       if (!this.framed) this.frame();
+      this.stage.ground.move(this.session, t);
       this.marks.update(this.session, t, this.model, shown);
       for (const other of this.others) other.pose(this.session, t);
       this.world.update(this.session, t);
+      this.payloads.update(t);
       for (const gaze of this.gazes) gaze.update(this.session, t);
       this.stage.follow(this.model.root.position);
     }

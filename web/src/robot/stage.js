@@ -1,35 +1,16 @@
 // The place where the robot stands: light, ground, camera. Draws when told to; knows nothing of time.
 import {
-  AmbientLight, BufferGeometry, Color, DirectionalLight, Float32BufferAttribute, Fog, HemisphereLight, LineBasicMaterial,
-  LineSegments, Mesh, PCFShadowMap, PerspectiveCamera, PlaneGeometry, Scene, ShadowMaterial, Vector3, WebGLRenderer,
+  AmbientLight, Color, DirectionalLight, Fog, HemisphereLight, PCFShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { Ground } from './ground.js';
 
 const themes = {
-  light: { back: 0xeef1f4, grid: 0xc9d1d9, lines: 0xdde3e8, sun: 2.1, sky: 1.5, shadow: 0.16 },
-  dark: { back: 0x14191f, grid: 0x35404b, lines: 0x232b34, sun: 1.7, sky: 0.9, shadow: 0.45 },
+  light: { back: 0xeef1f4, grid: 0xc9d1d9, lines: 0xdde3e8, paint: 0x8b98a5, sun: 2.1, sky: 1.5, shadow: 0.16 },
+  dark: { back: 0x14191f, grid: 0x35404b, lines: 0x232b34, paint: 0xc4ccd4, sun: 1.7, sky: 0.9, shadow: 0.45 },
 };
 
 const from_start = new Vector3(2.5, 1.7, 0.62);
-
-// Lines each quarter of a metre, whole metres stronger. In pieces: some machines lose a line that begins behind the eye.
-function make_grid(theme) {
-  const [reach, step, piece] = [7, 0.25, 1];
-  const [points, colors] = [[], []];
-  for (let at = -reach; at <= reach; at += step) {
-    const { r, g, b } = new Color(Number.isInteger(at) ? theme.grid : theme.lines);
-    for (let from = -reach; from < reach; from += piece) {
-      points.push(at, from, 0, at, from + piece, 0, from, at, 0, from + piece, at, 0);
-      for (let i = 0; i < 4; ++i) colors.push(r, g, b);
-    }
-  }
-  const lines = new BufferGeometry();
-  lines.setAttribute('position', new Float32BufferAttribute(points, 3));
-  lines.setAttribute('color', new Float32BufferAttribute(colors, 3));
-  const grid = new LineSegments(lines, new LineBasicMaterial({ vertexColors: true, toneMapped: false }));
-  grid.position.z = -0.001;
-  return grid;
-}
 
 const in_software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
@@ -65,11 +46,8 @@ export class Stage {
     this.from = from_start;
     this.followed = new Vector3();
     this.add_lights();
-    this.ground = new Mesh(new PlaneGeometry(5, 5), new ShadowMaterial());
-    this.ground.receiveShadow = true;
-    this.ground.material.depthWrite = false; // or it would hide the grid below it
-    this.ground.visible = fine;
-    this.scene.add(this.ground);
+    this.ground = new Ground(fine);
+    this.scene.add(this.ground.root);
     this.look_from_start();
   }
 
@@ -90,12 +68,9 @@ export class Stage {
     this.moved = true;
     this.scene.background = new Color(theme.back);
     this.scene.fog = new Fog(theme.back); // the ground has no edge
-    if (this.grid) this.scene.remove(this.grid);
-    this.grid = make_grid(theme);
-    this.scene.add(this.grid);
+    this.ground.set_theme(theme);
     this.sun.intensity = theme.sun;
     this.sky.intensity = theme.sky;
-    this.ground.material.opacity = theme.shadow;
   }
 
   look_from_start() {
@@ -109,23 +84,20 @@ export class Stage {
   frame(centre, radius, base, from = from_start) {
     this.from = from;
     this.target.copy(centre);
-    this.followed.copy(base);
+    this.followed.set(base.x, base.y, this.ground.height_m(base.x, base.y));
     this.distance = 4.1 * radius;
     this.look_from_start();
   }
 
-  // Keeps `point` where it is in the picture, sideways; height stays.
-  follow(point) {
-    const dx = point.x - this.followed.x;
-    const dy = point.y - this.followed.y;
-    this.followed.copy(point);
-    this.target.x += dx;
-    this.target.y += dy;
-    for (const at of [this.controls.target, this.camera.position]) at.set(at.x + dx, at.y + dy, at.z);
-    this.ground.position.set(point.x, point.y, 0);
-    this.grid.position.set(Math.round(point.x), Math.round(point.y), -0.001);
-    this.sun.target.position.set(point.x, point.y, 0.4);
-    this.sun.position.set(point.x + 1.2, point.y + 1.6, 4.2);
+  // Keeps `point` where it is in the picture, sideways; of its height, only what the ground below it rises.
+  follow({ x, y }) {
+    const ground_m = this.ground.height_m(x, y);
+    const way = new Vector3(x, y, ground_m).sub(this.followed);
+    this.followed.add(way);
+    for (const at of [this.target, this.controls.target, this.camera.position]) at.add(way);
+    this.ground.follow(x, y);
+    this.sun.target.position.set(x, y, ground_m + 0.4);
+    this.sun.position.set(x + 1.2, y + 1.6, ground_m + 4.2);
   }
 
   resize(width, height, ratio = Math.min(2, globalThis.devicePixelRatio)) {

@@ -1,5 +1,6 @@
-// The objects of the world around the robot: balls and boxes, as the description has them. Those that move have signals.
-import { BoxGeometry, Group, Mesh, MeshStandardMaterial, SphereGeometry } from 'three';
+// The objects of the world around the robot: balls, boxes, and pendulums, as the description has them. Those that move have
+// signals.
+import { BoxGeometry, BufferGeometry, Euler, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3 } from 'three';
 
 const ball_color = 0xe8762b;
 const box_color = 0x9aa7b4;
@@ -10,27 +11,47 @@ function mesh(geometry, color) {
   return made;
 }
 
-export class WorldObjects {
-  constructor(objects) {
-    this.root = new Group();
-    this.objects = objects.map(({ name, position_m, radius_m, boxes }) => {
-      const group = new Group();
-      if (radius_m) group.add(mesh(new SphereGeometry(radius_m, 32, 20), ball_color));
-      for (const box of boxes ?? []) {
-        const part = mesh(new BoxGeometry(...box.size_m), box_color);
-        part.position.set(...box.position_m.map((at_m, axis) => at_m - position_m[axis]));
-        part.quaternion.set(...box.orientation_xyzw);
-        group.add(part);
-      }
-      this.root.add(group);
-      return { name, position_m, group };
-    });
+class WorldThing {
+  constructor({ name, position_m, radius_m, hinge_m, boxes }) {
+    Object.assign(this, { name, position_m });
+    this.group = new Group();
+    this.group.name = name;
+    this.parts = [this.group];
+    if (radius_m) this.group.add(mesh(new SphereGeometry(radius_m, 32, 20), ball_color));
+    for (const box of boxes ?? []) {
+      const part = mesh(new BoxGeometry(...box.size_m), box_color);
+      part.position.set(...box.position_m.map((at_m, axis) => at_m - position_m[axis]));
+      part.quaternion.set(...box.orientation_xyzw);
+      this.group.add(part);
+    }
+    this.turned = new Quaternion(...(boxes?.[0]?.orientation_xyzw ?? [0, 0, 0, 1])); // as its first box is drawn
+    if (!hinge_m) return;
+    this.hinge = new Vector3(...hinge_m);
+    this.rod = new Line(new BufferGeometry(), new LineBasicMaterial({ color: box_color }));
+    this.rod.frustumCulled = false;
+    this.rod.name = `rod of ${name}`;
+    this.parts.push(this.rod);
   }
 
   update(session, t) {
-    for (const { name, position_m, group } of this.objects) {
-      const at_m = ['x', 'y', 'z'].map((axis) => session.value(`world.${name}.${axis}_m`, t));
-      group.position.set(...(at_m.every(Number.isFinite) ? at_m : position_m));
-    }
+    const values = (...fields) => fields.map((field) => session.value(`world.${this.name}.${field}`, t));
+    const at_m = values('x_m', 'y_m', 'z_m');
+    this.group.position.set(...(at_m.every(Number.isFinite) ? at_m : this.position_m));
+    this.rod?.geometry.setFromPoints([this.hinge, this.group.position]);
+    const [roll_rad, pitch_rad, yaw_rad] = values('roll_rad', 'pitch_rad', 'yaw_rad');
+    if (![roll_rad, pitch_rad, yaw_rad].every(Number.isFinite)) return;
+    this.group.quaternion.setFromEuler(new Euler(roll_rad, pitch_rad, yaw_rad, 'ZYX')).multiply(this.turned.clone().invert());
+  }
+}
+
+export class WorldObjects {
+  constructor(objects) {
+    this.root = new Group();
+    this.things = objects.map((object) => new WorldThing(object));
+    for (const part of this.things.flatMap((thing) => thing.parts)) this.root.add(part);
+  }
+
+  update(session, t) {
+    for (const thing of this.things) thing.update(session, t);
   }
 }
