@@ -86,7 +86,7 @@ constexpr std::array<Breakage, 76> breakages = {{
     {"slope_up", "", "0.035", "0.25", "stays up"},
     {"soft_get_up_prone", getting_up, rises, sinks, "leans less than 0.2 rad"},
     {"soft_get_up_supine", getting_up, rises, sinks, "leans less than 0.2 rad"},
-    {"soft_squat", "config/tulip/soft.json", "\"*_hip_pitch.damping_ratio\": 0.48",
+    {"soft_squat", "config/tulip/soft.json", "\"*_hip_pitch.damping_ratio\": 0.44",
      "\"*_hip_pitch.damping_ratio\": 0.01", "torso upright, rad"},
     {"soft_step_forward", "config/tulip/soft.json", "\"swing_s\": 0.217", "\"swing_s\": 1", "stays up"},
     {"squat", squat, "P.depth_m)", "0.01)", "crouches, lowest height in m"},
