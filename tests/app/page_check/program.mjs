@@ -3,7 +3,7 @@ import { spawn } from 'node:child_process';
 
 export const [kadans, project, folder] = process.argv.slice(2);
 const patience_ms = 40_000;
-const all_ms = Number(process.env.KADANS_ALL_MS ?? 240_000);
+const all_ms = Number(process.env.KADANS_ALL_MS ?? 600_000);
 const running = new Set();
 let last_ok = 'nothing';
 
