@@ -1,6 +1,6 @@
 // The world from above: where the robots are, what each of them believes to see, and what is really there when somebody
 // knows. A number for each belief below.
-import { from_above } from '../data/outlines.js';
+import { from_above } from '../robot/outlines.js';
 import { clock, number, useSession } from '../watching.js';
 
 const fields_of = (session, prefix) => [...session.signals.keys()].filter((name) => name.startsWith(prefix)).map((name) => name.slice(prefix.length));

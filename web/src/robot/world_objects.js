@@ -1,6 +1,7 @@
 // The objects of the world around the robot: balls, boxes, and pendulums, as the description has them. Those that move have
 // signals.
-import { BoxGeometry, BufferGeometry, Euler, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3 } from 'three';
+import { BoxGeometry, BufferGeometry, Group, Line, LineBasicMaterial, Mesh, MeshStandardMaterial, Quaternion, SphereGeometry, Vector3 } from 'three';
+import { placed } from './outlines.js';
 
 const ball_color = 0xe8762b;
 const box_color = 0x9aa7b4;
@@ -34,13 +35,10 @@ class WorldThing {
   }
 
   update(session, t) {
-    const values = (...fields) => fields.map((field) => session.value(`world.${this.name}.${field}`, t));
-    const at_m = values('x_m', 'y_m', 'z_m');
-    this.group.position.set(...(at_m.every(Number.isFinite) ? at_m : this.position_m));
+    const { at_m, turn } = placed(session, this, t);
+    this.group.position.set(...at_m);
     this.rod?.geometry.setFromPoints([this.hinge, this.group.position]);
-    const [roll_rad, pitch_rad, yaw_rad] = values('roll_rad', 'pitch_rad', 'yaw_rad');
-    if (![roll_rad, pitch_rad, yaw_rad].every(Number.isFinite)) return;
-    this.group.quaternion.setFromEuler(new Euler(roll_rad, pitch_rad, yaw_rad, 'ZYX')).multiply(this.turned.clone().invert());
+    if (turn) this.group.quaternion.copy(turn).multiply(this.turned.clone().invert());
   }
 }
 
