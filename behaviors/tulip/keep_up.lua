@@ -11,8 +11,7 @@ local P = k.params {
   bear_s      = { 0.25, min = 0, max = 5, unit = "s", doc = "time until the legs bear by force, and the pose gives way" },
   front_m     = { 0.1, min = 0, max = 0.5, unit = "m", doc = "how far ahead its weight may go before it steps" },
   back_m      = { 0.075, min = 0, max = 0.5, unit = "m", doc = "the same backward; from the middle between its feet" },
-  catch_s     = { 1.5, min = 0.1, max = 100, unit = "s", doc = "how long it steps after such a push" },
-  spread_s    = { 0.8, min = 0, max = 100, unit = "s", doc = "then it steps until its feet are apart again" },
+  side_m      = { 0.14, min = 0, max = 0.5, unit = "m", doc = "the same to either side" },
   go          = { 0, min = 0, max = 1, doc = "1: it walks, or steps in place; 0: it stands while it can" },
   forward_m_s = { 0, min = -0.25, max = 0.65, unit = "m/s", doc = "velocity forward, with go" },
   left_m_s    = { 0, min = -0.2, max = 0.2, unit = "m/s", doc = "velocity to the left" },
@@ -27,7 +26,7 @@ local function stands(_, m) return m.vars.stands end
 local function in_place() return P.forward_m_s == 0 and P.left_m_s == 0 and P.turn_rad_s == 0 end
 
 -- The walk bears; the posture holds the arms, and the legs once it has stopped.
-local function step(m)
+local function take_over(m)
   m.stance:set_parameter("share", 0)
   m.posture:set_gains("stiff")
   m.posture:move("keep", { time_s = P.settle_s })
@@ -50,42 +49,38 @@ return k.behavior "keep_up" {
       m.balance:set_parameter("share", 0)
       m.posture:set_gains("balance")
       m:wait(P.settle_s)
-      local beyond = { "control.stance.dcm_x_m > " .. P.front_m, "control.stance.dcm_x_m < " .. -P.back_m }
+      local beyond = {
+        "control.stance.dcm_x_m > " .. P.front_m,
+        "control.stance.dcm_x_m < " .. -P.back_m,
+        "control.stance.dcm_y_m > " .. P.side_m,
+        "control.stance.dcm_y_m < " .. -P.side_m,
+      }
       m:on({ any = beyond }, function(c) c.walk:set("go", 1) end, { within_s = 3600, event = "beyond_its_soles" })
     end,
-    { on = "beyond_its_soles", to = "catch" },
+    { on = "beyond_its_soles", to = "step" },
     { when = lies, to = "fallen", why = "lies" },
     { when = goes, after = 1, to = "go" },
   },
-  k.state "catch" {
-    enter = step,
-    { when = lies, to = "fallen", why = "lies" },
-    { when = goes, after = P.catch_s, to = "go" },
-    { after = P.catch_s, to = "spread" },
-  },
-  k.state "spread" {
-    enter = function(m) m.walk:set_gains("wide") end,
-    { when = lies, to = "fallen", why = "lies" },
-    { after = P.spread_s, to = "stop" },
-  },
   k.state "go" {
     enter = function(m)
-      step(m)
+      take_over(m)
       m.walk:set_gains(in_place() and "in_place" or "usual")
       local way = { forward_m_s = P.forward_m_s, left_m_s = P.left_m_s, turn_rad_s = P.turn_rad_s }
       local gone, why = walk.go(m, way)
       if not gone then k.log.error("it stays: %s", why) end
     end,
     { when = lies, to = "fallen", why = "lies" },
-    { when = stays, to = "spread" },
+    { when = stays, to = "step" },
   },
-  k.state "stop" {
+  k.state "step" {
     enter = function(m)
+      take_over(m)
       walk.stop(m)
       m.vars.stands = false
     end,
     during = function(m) m.vars.stands = walk.stands(m) end,
     { when = lies, to = "fallen", why = "lies" },
+    { when = goes, to = "go" },
     { when = stands, to = "stand" },
   },
   k.state "fallen" {

@@ -11,7 +11,6 @@ local P = k.params {
   turn_rad_s  = { 0, min = -1, max = 1, unit = "rad/s", doc = "turning to the left" },
   for_s       = { 1e5, min = 0, max = 1e5, unit = "s", doc = "how long it walks" },
   warm_m      = { 0.525, min = 0.4, max = 0.6, unit = "m", doc = "height of the centre of mass once a motor is warm" },
-  brake_m_s2  = { 1.5, min = 0.01, max = 10, unit = "m/s2", doc = "how fast it gets slower, to stand within two steps" },
 }
 
 local function lies(s) return floor.lies(s.base) end
@@ -25,7 +24,7 @@ end
 
 return k.behavior "walk" {
   controls = "walking",
-  vars     = { speeds_up_m_s2 = 0, height_m = 0, stands = false },
+  vars     = { height_m = 0, stands = false },
   initial  = "set_out",
   enter    = function(m) m.vars.height_m = m.walk:parameter("height_m") end,
   exit     = function(m) m.walk:set_parameter("height_m", m.vars.height_m) end,
@@ -45,12 +44,7 @@ return k.behavior "walk" {
     { when = lies, to = "fallen", why = "lies" },
   },
   k.state "stop" {
-    enter = function(m)
-      m.vars.speeds_up_m_s2 = m.walk:parameter("speed_max_m_s2")
-      m.walk:set_parameter("speed_max_m_s2", P.brake_m_s2)
-      walk.stop(m)
-    end,
-    exit = function(m) m.walk:set_parameter("speed_max_m_s2", m.vars.speeds_up_m_s2) end,
+    enter = walk.stop,
     during = function(m) m.vars.stands = walk.stands(m) end,
     { when = stands, to = "stands" },
     { when = lies, to = "fallen", why = "lies" },

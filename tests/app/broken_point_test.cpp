@@ -112,7 +112,7 @@ constexpr std::array<Breakage, 76> breakages = {{
      "along its line, m"},
     {"dribble", "behaviors/lib/ball.lua", "seen.x_m, seen.y_m)", "seen.x_m, -seen.y_m)",
      "4 m in 16 s, set out included: 0.25 m/s"},
-    {"walk_two_steps", "behaviors/tulip/walk.lua", "brake_m_s2  = { 1.5", "brake_m_s2  = { 0.5",
+    {"walk_two_steps", "config/tulip/robot.json", "\"trim_per_s\": 0.7,", "\"trim_per_s\": 0.7, \"brake_m_s2\": 0.5,",
      "steps no more than two times after it is told to stop"},
     {"walk_two_steps", "", "m_s=0.4", "m_s=0.3", "walks so after two steps"},
     {"walk", robot, "\"lift_m\": 0.03279", "\"lift_m\": 0", "stays up"},

@@ -121,6 +121,8 @@ void DcmWalk::declare_plan(Declaration& d) {
   d.parameter({"sway_s", "s", 0, 5, c.sway_s, "Longest time from standing to the first step."}, &c.sway_s);
   d.parameter({"speed_max_m_s2", "m/s2", 0.01, 10, c.speed_max_m_s2, "How fast the meant velocity changes."},
               &c.speed_max_m_s2);
+  d.parameter({"brake_m_s2", "m/s2", 0.01, 10, c.brake_m_s2, "How fast it does once the robot shall stand."},
+              &c.brake_m_s2);
   d.parameter({"sunk_m", "m", 0.001, 1, c.sunk_m, "How far it may sink before it rests on both feet."}, &c.sunk_m);
   d.parameter({"rest_s", "s", 0, 10, c.rest_s, "Longest rest."}, &c.rest_s);
   d.parameter({"heel_m", "m", 0.001, 0.5, c.sole.heel_m, "Of the sole that may bear, behind the foot's frame."},

@@ -40,6 +40,7 @@ void WalkPlan::sway(const Config& c, const Sight& sight) noexcept {
   State& s = state_;
   s.phase = Phase::sways;
   s.time_s = 0;
+  s.meant.turn_rad = 0;
   s.stance = std::abs(sight.over[0].dcm_y_m) <= std::abs(sight.over[1].dcm_y_m) ? 0 : 1;
   leave(sight);
   s.dcm = {sight.over[s.stance].dcm_x_m, sight.over[s.stance].dcm_y_m};
@@ -64,6 +65,13 @@ bool WalkPlan::swayed(const Config& c, const Sight& sight) noexcept {
   return true;
 }
 
+// Both feet do not hold it any more: it steps at once.
+bool WalkPlan::step_out(const Config& c, const Sight& sight) noexcept {
+  sway(c, sight);
+  state_.phase = Phase::steps;
+  return true;
+}
+
 // The other foot is about to leave the ground.
 void WalkPlan::leave(const Sight& sight) noexcept {
   const Vec3 &a = sight.over[state_.stance].foot_m, &b = sight.over[1 - state_.stance].foot_m;
@@ -80,7 +88,7 @@ GroundPoint WalkPlan::goal(const Config& c, const Sight& sight) const noexcept {
 
 void WalkPlan::follow_wanted(const Config& c, const Wanted& wanted, double dt_s) noexcept {
   State& s = state_;
-  const double most = c.speed_max_m_s2 * dt_s;
+  const double most = (wanted.go ? c.speed_max_m_s2 : c.brake_m_s2) * dt_s;
   s.meant.velocity.forward_m_s =
       toward(s.meant.velocity.forward_m_s, wanted.go ? wanted.velocity.forward_m_s : 0, most);
   s.meant.velocity.left_m_s = toward(s.meant.velocity.left_m_s, wanted.go ? wanted.velocity.left_m_s : 0, most);
@@ -219,7 +227,8 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   s.meant.turn_rad = s.meant.velocity.turn_rad_s * c.step_s;
   const double slow_m_s = 0.06, beside_m = 0.1;
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
-      std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m)
+      std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m &&
+      between_feet(c, safe_share))
     s.phase = Phase::bears;
   if (sight.sunk_m > c.sunk_m && between_feet(c, safe_share)) s.phase = Phase::rests;
 }
@@ -234,17 +243,16 @@ bool WalkPlan::between_feet(const Config& c, double share) const noexcept {
          s.dcm.y_m < std::max(other.y_m, 0.0) + c.sole.half_width_m;
 }
 
-// It steps on when it is up and xi in the middle, when that takes too long, and when xi leaves the feet.
+// It steps on when it is up and xi in the middle, and when that takes too long.
 void WalkPlan::rest(const Config& c, const Wanted& wanted, const Sight& sight) noexcept {
   State& s = state_;
   const GroundPoint to = goal(c, sight);
   const bool up = sight.sunk_m < up_share * c.sunk_m,
              still = std::hypot(s.dcm.x_m - to.x_m, s.dcm.y_m - to.y_m) < still_m;
-  const bool holds = between_feet(c, held_share);
-  if (holds && !(up && still) && s.time_s < c.rest_s) return;
+  if (!(up && still) && s.time_s < c.rest_s) return;
   s.phase = Phase::bears;
   s.time_s = 0;
-  if (wanted.go || !holds) sway(c, sight);
+  if (wanted.go) sway(c, sight);
 }
 
 bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight, double dt_s) noexcept {
@@ -253,8 +261,11 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
   s.time_s += dt_s;
   follow_wanted(c, wanted, dt_s);
   look(c, sight, dt_s);
-  if (s.phase == Phase::rests) rest(c, wanted, sight);
-  if (s.phase == Phase::bears || s.phase == Phase::rests) return false;
+  if (s.phase == Phase::bears || s.phase == Phase::rests) {
+    if (!between_feet(c, held_share)) return step_out(c, sight);
+    if (s.phase == Phase::rests) rest(c, wanted, sight);
+    return false;
+  }
   if (s.phase == Phase::sways) return swayed(c, sight);
   if (s.prepares && s.time_s < 1.5 * dt_s && KickSwing::reaches(c.kick, wanted.kick, side_of(1 - s.stance)))
     s.kick.begin(c.kick, wanted.kick);

@@ -4,7 +4,8 @@
 //   stands  Both feet are where they were put; nothing is asked for.
 //   sways   Before the first step the load goes to the foot that will swing, until xi is where a step begins.
 //   steps   One foot stands. The other one goes to its foothold, and stands from its landing on.
-//   bears   After the last step both feet stand side by side, and xi comes to rest between them.
+//   bears   After the last step both feet stand side by side, and xi comes to rest between them. When it leaves them,
+//           the robot steps again, as often as it must.
 //   rests   It has sunk, because a knee that bears alone has not torque enough. As xi is between the feet, both bear
 //           until it is up again; then it steps on.
 //
@@ -57,6 +58,7 @@ class WalkPlan {
     double sway_gain = 1.0;       // shift of the load per error of xi, before the first step
     double sway_s = 0.4;          // longest such time
     double speed_max_m_s2 = 0.5;  // how fast the meant velocity changes
+    double brake_m_s2 = 1.5;      // how fast it does once the robot shall stand
     double sunk_m = 0.04;         // how far the centre of mass may sink before it rests on both feet
     double rest_s = 0.5;          // longest rest
     Sole sole{.heel_m = 0.06, .toe_m = 0.10, .half_width_m = 0.03};
@@ -137,6 +139,7 @@ class WalkPlan {
   void rest(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
   void sway(const Config& config, const Sight& sight) noexcept;
   bool swayed(const Config& config, const Sight& sight) noexcept;
+  bool step_out(const Config& config, const Sight& sight) noexcept;
 
   State state_;
   GroundPoint from_com_m_;  // the centre of mass over the stance foot at the last landing
