@@ -50,8 +50,9 @@ struct Pendulum {
     const GroundPoint &a = foot[state().stance], &b = foot[1 - state().stance];
     if (state().phase == Phase::steps) return {a.x_m + state().in_sole_x_m, a.y_m + beside_m};
     const GroundPoint goal = plan.goal(config, sight());
-    const double y_m = a.y_m + 2 * state().dcm.y_m - goal.y_m;
-    return {(a.x_m + b.x_m) / 2, std::clamp(y_m, std::min(a.y_m, b.y_m), std::max(a.y_m, b.y_m))};
+    const double x_m = a.x_m + 2 * state().dcm.x_m - goal.x_m, y_m = a.y_m + 2 * state().dcm.y_m - goal.y_m;
+    return {std::clamp(x_m, std::min(a.x_m, b.x_m) - config.sole.heel_m, std::max(a.x_m, b.x_m) + config.sole.toe_m),
+            std::clamp(y_m, std::min(a.y_m, b.y_m), std::max(a.y_m, b.y_m))};
   }
   void tick() {
     const GroundPoint at = pressure();
@@ -212,6 +213,45 @@ TEST_CASE("WalkPlan stops beside its own foot, within a few steps, and xi comes 
   robot.run(1.2);
   CHECK(robot.state().phase == Phase::bears);
   CHECK(robot.state().steps - steps <= 3);
+}
+
+TEST_CASE("WalkPlan slows down at its own rate once it shall stand") {
+  Pendulum robot(0.3);
+  robot.run(3);
+  robot.wanted.go = false;
+  robot.run(0.1);
+  CHECK(robot.state().meant.velocity.forward_m_s == doctest::Approx(0.3 - 0.1 * robot.config.brake_m_s2));
+}
+
+TEST_CASE("WalkPlan steps again when a push takes xi beyond the feet that stand, and stands again") {
+  for (const GroundPoint push_m_s : {GroundPoint{0.8, 0}, {-0.7, 0}, {0, 0.8}, {0, -0.8}}) {
+    Pendulum robot;
+    robot.wanted.velocity.turn_rad_s = 0.4;
+    robot.run(2);
+    robot.wanted.go = false;
+    robot.run(2);
+    REQUIRE(robot.state().phase == Phase::bears);
+    robot.velocity_m_s = {push_m_s.x_m, push_m_s.y_m};
+    robot.run(0.1);
+    CHECK(robot.state().phase == Phase::steps);
+    CHECK(robot.state().meant.turn_rad == 0);
+    robot.run(3);
+    CHECK(robot.state().phase == Phase::bears);
+    CHECK(std::hypot(robot.velocity_m_s.x_m, robot.velocity_m_s.y_m) < 0.05);
+  }
+}
+
+TEST_CASE("WalkPlan does not end its steps with xi beyond its feet") {
+  Pendulum robot;
+  robot.run(2);
+  robot.wanted.go = false;
+  robot.velocity_m_s.x_m += 1;
+  robot.next_step();
+  robot.next_step();
+  while (robot.state().phase == Phase::steps) robot.tick();
+  const GroundPoint &a = robot.foot[0], &b = robot.foot[1];
+  const double xi_x_m = robot.com.x_m + robot.velocity_m_s.x_m / rate_per_s;
+  CHECK(xi_x_m < std::max(a.x_m, b.x_m) + robot.config.sole.toe_m);
 }
 
 TEST_CASE("WalkPlan rests on both feet when the robot has sunk, and steps on when it is up") {

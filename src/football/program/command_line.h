@@ -13,15 +13,13 @@ struct Options {
 
   Command command = Command::match;
   std::vector<std::string> files;  // matches; of merge folders
-  std::vector<std::string> set, vary, listen;
-  std::string report, record, signals, out, shard, robots, referee;
+  std::vector<std::string> set, vary;
+  std::string listen, report, record, signals, out, shard, robots, referee;
   std::optional<std::uint64_t> seed, live, cases, jobs;
   bool json = false, verbose = false;
 };
 
-extern const char* const usage;
-
-// "": it was read into `options`; otherwise what is wrong.
-std::string read_options(int argc, char** argv, Options& options);
+// Nothing: it was read into `options`. Otherwise it was answered or refused, and this is the program's exit code.
+std::optional<int> read_options(int argc, char** argv, Options& options);
 
 }  // namespace kadans::football

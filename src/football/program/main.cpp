@@ -1,10 +1,10 @@
 // kadans-football: matches of robots on the SDK alone, as a program of anybody could be built.
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <sched.h>
 
@@ -30,11 +30,6 @@ void stop_when_told() {
   struct sigaction action {};
   action.sa_handler = [](int) { told_to_stop = 1; };
   for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
-}
-
-int refuse_usage(const std::string& why) {
-  std::fprintf(stderr, "error: %s\n%s", why.c_str(), usage);
-  return exit_usage;
 }
 
 // Goes on to the end. Returns what was said.
@@ -88,11 +83,11 @@ void take_priority() {
 int serve(const Options& options) {
   const MatchConfig match = read_match(options.files[0], options.set);
   const std::uint64_t seed = options.seed.value_or(match.seed);
-  const ServedPlaces places = ServedPlaces::of(options.listen[0], options.referee);
+  const ServedPlaces places = ServedPlaces::of(options.listen, options.referee);
   auto world = std::make_unique<ServedMatch>(match, seed, places);
   ServedMatch& served = *world;
   if (!options.robots.empty()) std::fprintf(stderr, "%s", write_robots(match, places, options.robots).c_str());
-  std::fprintf(stderr, "serves %zu robots from %s on\n", match.robots().size(), options.listen[0].c_str());
+  std::fprintf(stderr, "serves %zu robots from %s on\n", match.robots().size(), options.listen.c_str());
   stop_when_told();
   while (!stopped() && !served.await(50)) {
   }
@@ -150,10 +145,7 @@ int obey(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  if (argc == 2 && (std::strcmp(argv[1], "--help") == 0 || std::strcmp(argv[1], "-h") == 0))
-    return std::fputs(usage, stdout) < 0 ? exit_failed : exit_passed;
-  const std::string wrong = read_options(argc, argv, options);
-  if (!wrong.empty()) return refuse_usage(wrong);
+  if (const std::optional<int> code = read_options(argc, argv, options)) return *code;
   try {
     const int code = obey(options);
     return std::fflush(stdout) == 0 ? code : exit_failed;
