@@ -7,13 +7,10 @@ BallFilter::Track BallFilter::at_time(const Track& track, double time_s) const n
   Track later = track;
   if (!(passed_s > 0)) return later;
   later.time_s = time_s;
-  const double speed_m_s = norm(track.velocity_m_s);
-  if (speed_m_s > 0) {
-    const double rolls_s = std::min(passed_s, speed_m_s / config_.deceleration_m_s2);
-    const double way_m = speed_m_s * rolls_s - config_.deceleration_m_s2 * rolls_s * rolls_s / 2;
-    later.at = track.at + (way_m / speed_m_s) * track.velocity_m_s;
-    later.velocity_m_s = (1 - config_.deceleration_m_s2 * rolls_s / speed_m_s) * track.velocity_m_s;
-  }
+  const BallBelief rolled =
+      rolled_on({.at = track.at, .velocity_m_s = track.velocity_m_s}, passed_s, config_.deceleration_m_s2);
+  later.at = rolled.at;
+  later.velocity_m_s = rolled.velocity_m_s;
   // While nothing is seen, an error of the velocity ends as the ball does: it lasts for two seconds at most.
   const double t = std::min(passed_s, 2.0), q = config_.push_sd_m_s2 * config_.push_sd_m_s2;
   later.pp = track.pp + 2 * t * track.pv + t * t * track.vv + q * t * t * t / 3;
@@ -97,6 +94,18 @@ BallFilter::Estimate BallFilter::estimate(double time_s) const noexcept {
   const double age_s = time_s - track_->seen_s;
   const double probability = now.probability * std::max(1 - age_s / config_.forget_s, 0.0);
   return {now.at, now.velocity_m_s, std::sqrt(now.pp), age_s, probability, probability >= config_.lost_below};
+}
+
+BallBelief rolled_on(const BallBelief& ball, double time_s, double deceleration_m_s2) noexcept {
+  BallBelief later = ball;
+  later.age_s += time_s;
+  const double speed_m_s = norm(ball.velocity_m_s);
+  if (!(speed_m_s > 0) || !(time_s > 0)) return later;
+  const double rolling_s = std::min(time_s, speed_m_s / deceleration_m_s2);
+  const double way_m = speed_m_s * rolling_s - deceleration_m_s2 * rolling_s * rolling_s / 2;
+  later.at = ball.at + (way_m / speed_m_s) * ball.velocity_m_s;
+  later.velocity_m_s = (1 - deceleration_m_s2 * rolling_s / speed_m_s) * ball.velocity_m_s;
+  return later;
 }
 
 }  // namespace kadans::football

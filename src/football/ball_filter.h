@@ -74,4 +74,15 @@ class BallFilter {
   std::uint64_t beginnings_ = 0;
 };
 
+// What somebody believes of the ball.
+struct BallBelief {
+  Point at, velocity_m_s;
+  double sd_m = 0.1;
+  double age_s = 0;  // since it was seen
+};
+
+// Where a ball that rolls on grass is after a time: it slows down evenly.
+inline constexpr double ball_deceleration_m_s2 = 0.5;
+BallBelief rolled_on(const BallBelief& ball, double time_s, double deceleration_m_s2 = ball_deceleration_m_s2) noexcept;
+
 }  // namespace kadans::football

@@ -1,17 +1,15 @@
 #include "message_policy.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kadans::football {
 
-double MessagePolicy::worth(const TeamMessage& message, const Situation& situation) const noexcept {
+double MessagePolicy::worth(const Known& message, const Situation& situation) const noexcept {
   if (!last_) return 10;
-  const TeamMessage& known = *last_;
+  const Known& known = *last_;
   const double silent_s = situation.now_s - last_s_;
   double errors = silent_s / config_.heartbeat_s;
-  if (message.role != known.role) errors += 1;
-  if (message.intention != known.intention) errors += 0.7;
-  if (message.pass_to != known.pass_to) errors += 1;
   if (message.fallen != known.fallen) errors += 1;
   const double ball_factor = situation.mates_see_ball ? config_.known_ball_factor : 1;
   if (message.ball && known.ball) {
@@ -23,12 +21,11 @@ double MessagePolicy::worth(const TeamMessage& message, const Situation& situati
     errors += ball_factor;
   }
   if (message.pose && known.pose) {
-    errors += distance(message.pose->pose.at(), known.pose->pose.at()) / config_.pose_error_m;
-    errors += std::abs(wrapped(message.pose->pose.theta_rad - known.pose->pose.theta_rad)) / config_.pose_error_rad;
+    errors += distance(message.pose->at(), known.pose->at()) / config_.pose_error_m;
+    errors += std::abs(wrapped(message.pose->theta_rad - known.pose->theta_rad)) / config_.pose_error_rad;
   } else if (message.pose.has_value() != known.pose.has_value()) {
     errors += 1;
   }
-  if (message.target && known.target) errors += distance(*message.target, *known.target) / config_.target_error_m;
   return errors;
 }
 
@@ -47,7 +44,7 @@ double MessagePolicy::allowed(const Situation& situation) const noexcept {
   return (*situation.budget_left - under_way) / players;
 }
 
-bool MessagePolicy::spend(const TeamMessage& message, double now_s) noexcept {
+bool MessagePolicy::spend(const Known& message, double now_s) noexcept {
   last_ = message;
   last_s_ = now_s;
   return true;
@@ -58,14 +55,14 @@ bool MessagePolicy::counts(const Situation& situation) noexcept {
          situation.state != GameState::finished;
 }
 
-void MessagePolicy::sent(const TeamMessage& message, const Situation& situation) noexcept {
+void MessagePolicy::sent(const Known& message, const Situation& situation) noexcept {
   (void)spend(message, situation.now_s);
   if (!counts(situation)) return;
   tokens_ = std::max(tokens_ - 1, -config_.burst);
   ++counted_;
 }
 
-bool MessagePolicy::send(const TeamMessage& message, const Situation& situation) noexcept {
+bool MessagePolicy::send(const Known& message, const Situation& situation) noexcept {
   const double passed_s = seen_s_ ? std::max(situation.now_s - *seen_s_, 0.0) : 0;
   seen_s_ = situation.now_s;
   if (situation.phase == GamePhase::penalty_shoot_out) return false;  // a robot plays alone there

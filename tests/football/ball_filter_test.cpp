@@ -5,7 +5,6 @@
 
 #include <doctest/doctest.h>
 
-#include "football/team_message.h"
 #include "kadans/signal/random.h"
 
 using namespace kadans::football;

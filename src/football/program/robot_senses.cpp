@@ -107,9 +107,8 @@ void RobotSenses::step(const WorldTruth& world, double sign) {
   advise(world.robot(id_).upright);
 }
 
-TeamMessage RobotSenses::message(bool upright) const {
-  TeamMessage told{.team = team_number_, .player = id_.number, .fallen = !upright};
-  told.pose = PoseBelief{.pose = belief_.pose};
+MessagePolicy::Known RobotSenses::message(bool upright) const {
+  MessagePolicy::Known told{.fallen = !upright, .pose = belief_.pose};
   const BallFilter::Estimate seen = ball_.estimate(1e-9 * static_cast<double>(now_ns()));
   if (!seen.known || ways_.empty()) return told;
   const Pose2& way = ways_.back().second;

@@ -67,7 +67,7 @@ class RobotSenses {
   void tell_place();
   void tell_self();
   void advise(bool upright);
-  TeamMessage message(bool upright) const;
+  MessagePolicy::Known message(bool upright) const;
   MessagePolicy::Situation situation() const noexcept;
   std::int64_t now_ns() const noexcept { return played_in_.time_ns() - played_in_.period_ns(); }  // of the last tick
   void tell(std::uint32_t entry, std::initializer_list<double> fields);
