@@ -109,6 +109,8 @@ void Stance::declare_trunk(Declaration& d) {
   d.parameter({"arm_Nm_per_m", "Nm/m", 0, 1000, c.arm_Nm_per_m, "Torque of a shoulder, per pressure beyond the soles."},
               &c.arm_Nm_per_m);
   d.parameter({"arm_from_m", "m", 0, 1, c.arm_from_m, "How far beyond that begins."}, &c.arm_from_m);
+  d.parameter({"trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured."},
+              &c.trust_per_s);
   d.parameter({"smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
 }
 
@@ -136,11 +138,33 @@ void Stance::start(const ControlInput&) noexcept {
   for (Part& part : parts_) part.effort_Nm = 0;
 }
 
+// xi follows its law from the measured pressure, and the measurement as far as that is trusted: the velocity in it has
+// the noise of encoders.
+void Stance::look(const ControlInput& input) noexcept {
+  State& s = state_;
+  const double trust = config_.trust_per_s * input.dt_s;
+  const std::array<double, 2> measured{standing_.dcm_x_m(), standing_.dcm_y_m()};
+  if (!(trust < 1) || !s.follows) {
+    s.dcm_x_m = measured[0];
+    s.dcm_y_m = measured[1];
+    s.follows = true;
+    return;
+  }
+  const Vec3& left = standing_.kinematics().link(standing_.feet()[0]).position_m;
+  const Vec3& right = standing_.kinematics().link(standing_.feet()[1]).position_m;
+  const auto& feet = input.status.feet;
+  const double left_N = std::max(feet[0].force_N, 0.0), right_N = std::max(feet[1].force_N, 0.0);
+  const double share = left_N + right_N > 1 ? left_N / (left_N + right_N) : 0.5;
+  const double p_x_m = share * feet[0].cop_x_m + (1 - share) * feet[1].cop_x_m + (share - 0.5) * (left[0] - right[0]);
+  const double p_y_m = share * feet[0].cop_y_m + (1 - share) * feet[1].cop_y_m + (share - 0.5) * (left[1] - right[1]);
+  const double fall = input.dt_s * std::sqrt(gravity_of_balance_m_s2 / std::max(standing_.com_m()[2], lowest_com_m));
+  s.dcm_x_m += fall * (s.dcm_x_m - p_x_m - s.turn_y_Nm / weight_N_) + trust * (measured[0] - s.dcm_x_m);
+  s.dcm_y_m += fall * (s.dcm_y_m - p_y_m + s.turn_x_Nm / weight_N_) + trust * (measured[1] - s.dcm_y_m);
+}
+
 void Stance::find_pressure(const BaseStatus& base) noexcept {
   const Config& c = config_;
   State& s = state_;
-  s.dcm_x_m = standing_.dcm_x_m();
-  s.dcm_y_m = standing_.dcm_y_m();
   const Vec3& left = standing_.kinematics().link(standing_.feet()[0]).position_m;
   const Vec3& right = standing_.kinematics().link(standing_.feet()[1]).position_m;
   const double apart_m = std::max(left[1] - right[1], narrowest_m), ahead_m = left[0] - right[0];
@@ -207,7 +231,9 @@ void Stance::load(std::size_t side, double share) noexcept {
 void Stance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const bool stands = standing_.update(input);
   state_.share = faded_share(state_.share, config_.share, stands, input.dt_s);
+  state_.follows = state_.follows && stands;
   if (stands) {
+    look(input);
     find_pressure(input.status.base);
     find_force();
     load(0, state_.left);

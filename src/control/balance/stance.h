@@ -90,9 +90,11 @@ class Stance final : public ControlObject {
     double height_m = 0.55, height_N_per_m = 0, height_Ns_per_m = 0;
     double lift_N_per_m = 0, lift_max = 0.6;
     double arm_Nm_per_m = 0, arm_from_m = 0;
-    double smooth_s = 0;  // time constant of the torques' low pass
+    double trust_per_s = 1000;  // rate at which xi follows what is measured
+    double smooth_s = 0;        // time constant of the torques' low pass
   };
   struct State {
+    bool follows = false;  // xi is known from the tick before
     double dcm_x_m = 0, dcm_y_m = 0;
     double cop_x_m = 0, cop_y_m = 0;      // p
     double beyond_x_m = 0;                // how far beyond the soles p_x would have to be
@@ -127,6 +129,7 @@ class Stance final : public ControlObject {
   };
   Answer answer(double dcm_m, double rest_m, double pull, const std::array<double, 2>& sole_m,
                 double righting_Nm) const noexcept;
+  void look(const ControlInput& input) noexcept;
   void find_pressure(const BaseStatus& base) noexcept;
   void find_force() noexcept;
   void load(std::size_t side, double share) noexcept;

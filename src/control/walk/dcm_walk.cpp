@@ -104,6 +104,8 @@ void DcmWalk::declare_plan(Declaration& d) {
               &c.side_rate_share);
   d.parameter({"trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured."},
               &c.trust_per_s);
+  d.parameter({"both_trust_per_s", "1/s", 0, 1000, c.both_trust_per_s, "The same while both feet bear."},
+              &c.both_trust_per_s);
   d.parameter({"by_load", "", 0, 1, c.by_load, "How far the feet's loads decide which one's measured xi counts."},
               &c.by_load);
   d.parameter({"edge_share", "", 0, 2, c.edge_share, "Of the measured pressure across, for where xi will be."},
@@ -370,9 +372,16 @@ void DcmWalk::landed(const ControlInput& input) noexcept {
   }
 }
 
-// The torques of a leg that bears this share of the robot, by a force through the centre of mass. With no share, those
-// that bear the leg alone.
-DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_m, const ControlInput& input) noexcept {
+// From the pressure in a foot to the centre of mass.
+GroundPoint DcmWalk::lever(std::size_t i, double in_sole_x_m) const noexcept {
+  const Vec3& com_m = over_feet_.over(i).com_m;
+  return {com_m[0] - in_sole_x_m, com_m[1]};
+}
+
+// The torques of a leg that bears this share of the robot, by a force that points along the lever at the height of the
+// centre of mass. With no share, those that bear the leg alone.
+DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_m, const GroundPoint& lever_m,
+                                  const ControlInput& input) noexcept {
   Leg& leg = legs_[i];
   const DcmMeasure::OverFoot& over = over_feet_.over(i);
   const double lift_N =
@@ -382,8 +391,8 @@ DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_
   const double force_N = share * (weight_N_ + std::clamp(lift_N, -most_N, most_N));
   if (i == plan_.state().stance) com_height_m_ = over.com_m[2];
   const double grip_N = config_.grip * force_N;
-  const double x_N = (force_N * (over.com_m[0] - in_sole_x_m) - share * turn_Nm_[1]) / height_m;
-  const double y_N = (force_N * over.com_m[1] + share * turn_Nm_[0]) / height_m;
+  const double x_N = (force_N * lever_m.x_m - share * turn_Nm_[1]) / height_m;
+  const double y_N = (force_N * lever_m.y_m + share * turn_Nm_[0]) / height_m;
   const Vec3 force{std::clamp(x_N, -grip_N, grip_N), std::clamp(y_N, -grip_N, grip_N), force_N};
   leg.load.update(over_feet_.kinematics(), force,
                   {over.foot_m[0] + in_sole_x_m, over.foot_m[1], over.foot_m[2] - config_.sole_m});
@@ -439,12 +448,13 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   swing.aim(swing_rad, s.kick.kicks() ? kick_rate_max_rad_s : walk_rate_max_rad_s, input.dt_s);
   const Efforts swing_Nm = swing.spring(c.gains, 1, input);
   turn(swing_Nm, input);
-  const Efforts left_Nm = bearing(b, 1 - loaded, 0, input);
+  const Efforts left_Nm = bearing(b, 1 - loaded, 0, lever(b, 0), input);
 
   LegInverse::Angles stance_rad = stance.target_rad;
   stance_rad[hip_yaw] = over.yaw_rad;
   stance.aim(stance_rad, walk_rate_max_rad_s, input.dt_s);
-  const Efforts stance_Nm = stance.spring(c.gains, 1, input), borne_Nm = bearing(a, loaded, s.in_sole_x_m, input);
+  const Efforts stance_Nm = stance.spring(c.gains, 1, input), 
+                borne_Nm = bearing(a, loaded, s.in_sole_x_m, lever(a, s.in_sole_x_m), input);
 
   for (std::size_t j = 0; j < leg_joints; ++j) {
     swing.effort_Nm[j] = loaded * swing_Nm[j] + left_Nm[j];
@@ -464,13 +474,16 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
   const double gain = s.phase == WalkPlan::Phase::sways ? plan_config_.sway_gain : 1;
   const GroundPoint pressure{2 * s.dcm.x_m - goal.x_m, (1 + gain) * s.dcm.y_m - gain * goal.y_m};
   const LoadSplit split = split_load(plan_config_.sole, feet[0], feet[1], pressure);
+  const Vec3& com_m = over_feet_.over(a).com_m;
+  const GroundPoint lever_m{com_m[0] - split.at.x_m, com_m[1] - split.at.y_m};
   for (std::size_t i = 0; i < 2; ++i) {
     Leg& leg = legs_[i];
     LegInverse::Angles target_rad = leg.target_rad;
     target_rad[hip_yaw] = over_feet_.over(i).yaw_rad;
     leg.aim(target_rad, walk_rate_max_rad_s, input.dt_s);
     const double share = i == 1 ? split.right_share : 1 - split.right_share;
-    const Efforts held_Nm = leg.spring(config_.gains, 1, input), borne_Nm = bearing(i, share, split.in_sole.x_m, input);
+    const Efforts held_Nm = leg.spring(config_.gains, 1, input), 
+                  borne_Nm = bearing(i, share, split.in_sole.x_m, lever_m, input);
     leg.effort_Nm = borne_Nm;
     leg.effort_Nm[hip_yaw] = held_Nm[hip_yaw];
   }

@@ -13,7 +13,8 @@
 //               attitude; PD on its joints, and the leg's own weight. The leg lags on a long step: its length is
 //               right for where the foot is by now, and the sole level by what hip and knee are.
 //   a landing   moves the load from one leg to the other in shift_s.
-//   both bear   After the last step: the load is shared so that xi comes to rest in the middle.
+//   both bear   After the last step: the load is shared so that xi comes to rest in the middle. The forces of both legs
+//               are parallel, so that feet far apart need no friction to stay there.
 // clang-format on
 //
 // Joints      of both legs those about z, x and y at the hip, the knee and the ankle about y (leg_parts.h).
@@ -96,7 +97,9 @@ class DcmWalk final : public ControlObject {
   bool stands() const noexcept;
   void feel_ground(const ControlInput& input) noexcept;
   void landed(const ControlInput& input) noexcept;
-  Efforts bearing(std::size_t leg, double share, double in_sole_x_m, const ControlInput& input) noexcept;
+  GroundPoint lever(std::size_t leg, double in_sole_x_m) const noexcept;
+  Efforts bearing(std::size_t leg, double share, double in_sole_x_m, const GroundPoint& lever_m,
+                  const ControlInput& input) noexcept;
   void turn(const Efforts& swing_Nm, const ControlInput& input) noexcept;
   void swing_torques(const ControlInput& input) noexcept;
   void both_torques(const ControlInput& input) noexcept;

@@ -38,12 +38,17 @@ void WalkPlan::begin(const Config& c, const Sight& sight) noexcept {
 // The foot that is farther from xi will swing.
 void WalkPlan::sway(const Config& c, const Sight& sight) noexcept {
   State& s = state_;
+  if (s.phase == Phase::stands) s.dcm = {sight.over[s.stance].dcm_x_m, sight.over[s.stance].dcm_y_m};
   s.phase = Phase::sways;
   s.time_s = 0;
   s.meant.turn_rad = 0;
-  s.stance = std::abs(sight.over[0].dcm_y_m) <= std::abs(sight.over[1].dcm_y_m) ? 0 : 1;
+  const Vec3 &a = sight.over[s.stance].foot_m, &b = sight.over[1 - s.stance].foot_m;
+  const GroundPoint from_other{s.dcm.x_m - (b[0] - a[0]), s.dcm.y_m - (b[1] - a[1])};
+  if (std::abs(from_other.y_m) < std::abs(s.dcm.y_m)) {
+    s.stance = 1 - s.stance;
+    s.dcm = from_other;
+  }
   leave(sight);
-  s.dcm = {sight.over[s.stance].dcm_x_m, sight.over[s.stance].dcm_y_m};
   s.step_s = c.step_s;
   from_com_m_ = {sight.over[s.stance].com_m[0], sight.over[s.stance].com_m[1]};
 }
@@ -109,8 +114,9 @@ void WalkPlan::look(const Config& c, const Sight& sight, double dt_s) noexcept {
   const double of_other = c.by_load * share;
   const GroundPoint missed{seen.dcm_x_m + of_other * (beside.dcm_x_m + b[0] - a[0] - seen.dcm_x_m) - s.dcm.x_m,
                            seen.dcm_y_m + of_other * (beside.dcm_y_m + b[1] - a[1] - seen.dcm_y_m) - s.dcm.y_m};
-  s.dcm.x_m += dt_s * (sight.rate_per_s * (s.dcm.x_m - p_x_m) + c.trust_per_s * missed.x_m);
-  s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + c.trust_per_s * missed.y_m);
+  const double trust_per_s = s.phase == Phase::steps ? c.trust_per_s : c.both_trust_per_s;
+  s.dcm.x_m += dt_s * (sight.rate_per_s * (s.dcm.x_m - p_x_m) + trust_per_s * missed.x_m);
+  s.dcm.y_m += dt_s * (sight.rate_per_s * (s.dcm.y_m - p_y_m) + trust_per_s * missed.y_m);
   if (s.phase == Phase::steps && s.time_s > flat_s)
     s.in_sole_y_m += std::min(dt_s / smooth_s, 1.0) * (sight.cop_y_m[s.stance] - s.in_sole_y_m);
 }
@@ -228,15 +234,16 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   const double slow_m_s = 0.06, beside_m = 0.1;
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
       std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m &&
-      between_feet(c, safe_share))
+      between_feet(c, sight, safe_share))
     s.phase = Phase::bears;
-  if (sight.sunk_m > c.sunk_m && between_feet(c, safe_share)) s.phase = Phase::rests;
+  if (sight.sunk_m > c.sunk_m && between_feet(c, sight, safe_share)) s.phase = Phase::rests;
 }
 
 // Whether xi is between the feet, or over this share of a sole before or behind them.
-bool WalkPlan::between_feet(const Config& c, double share) const noexcept {
+bool WalkPlan::between_feet(const Config& c, const Sight& sight, double share) const noexcept {
   const State& s = state_;
-  const GroundPoint other{s.feet.from_m[0], s.feet.from_m[1]};
+  const Vec3 &a = sight.over[s.stance].foot_m, &b = sight.over[1 - s.stance].foot_m;
+  const GroundPoint other{b[0] - a[0], b[1] - a[1]};
   return s.dcm.x_m > std::min(other.x_m, 0.0) - share * c.sole.heel_m &&
          s.dcm.x_m < std::max(other.x_m, 0.0) + share * c.sole.toe_m &&
          s.dcm.y_m > std::min(other.y_m, 0.0) - c.sole.half_width_m &&
@@ -262,7 +269,7 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
   follow_wanted(c, wanted, dt_s);
   look(c, sight, dt_s);
   if (s.phase == Phase::bears || s.phase == Phase::rests) {
-    if (!between_feet(c, held_share)) return step_out(c, sight);
+    if (!between_feet(c, sight, held_share)) return step_out(c, sight);
     if (s.phase == Phase::rests) rest(c, wanted, sight);
     return false;
   }

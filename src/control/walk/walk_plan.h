@@ -46,6 +46,7 @@ class WalkPlan {
     double place_weight = 0.05, time_weight = 0.05;  // of place and time beside that of the offset, 1
     double side_rate_share = 0.9;  // w across of the one along: the ankle roll's spring carries a part
     double trust_per_s = 30;       // observer gain for the measured xi
+    double both_trust_per_s = 60;  // the same while both feet bear: none lands, and its velocity is right
     double by_load = 1;       // 1: each foot's measured xi counts by its load; 0: that of the stance foot alone does
     double edge_share = 0;    // how much of the measured pressure across counts for where xi will be
     double ankle_gain = 1.0;  // shift of the pressure per error of xi
@@ -135,7 +136,7 @@ class WalkPlan {
   void leave(const Sight& sight) noexcept;
   void land(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
   void trim(const Config& config, const Sight& sight) noexcept;
-  bool between_feet(const Config& config, double share) const noexcept;
+  bool between_feet(const Config& config, const Sight& sight, double share) const noexcept;
   void rest(const Config& config, const Wanted& wanted, const Sight& sight) noexcept;
   void sway(const Config& config, const Sight& sight) noexcept;
   bool swayed(const Config& config, const Sight& sight) noexcept;
