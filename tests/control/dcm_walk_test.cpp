@@ -149,6 +149,24 @@ TEST_CASE("DcmWalk comes to stand when it shall not go on, carries the robot the
   CHECK(bench.walk.plan().state().phase == Phase::steps);
 }
 
+TEST_CASE("DcmWalk bears on feet far apart by forces that push nothing to a side") {
+  Bench bench;
+  for (const std::size_t joint : legs) bench.joints.joints[joint].position_rad = 0;
+  bench.joints.joints[hip_roll].position_rad = 0.3;  // both feet outward
+  bench.joints.joints[5 + hip_roll].position_rad = -0.3;
+  bench.lead("go", 1);
+  bench.ticks(1);
+  REQUIRE(bench.walk.plan().state().phase == Phase::sways);
+  const double out_m = (kadans::test::thigh_m + kadans::test::shank_m) * std::sin(0.3);
+  const double upward_Nm = 9.81 * bench.model.mass_kg() / 2 * out_m;  // about the hip; the legs' own weight is 2 Nm of it
+  bench.set("fade_s", 0);
+  bench.set("height_N_per_m", 0);
+  bench.set("height_Ns_per_m", 0);
+  bench.ticks(1);
+  CHECK(std::abs(bench.computed.joints[hip_roll].effort_Nm) > 0.8 * upward_Nm);
+  CHECK(bench.computed.joints[hip_roll].effort_Nm == doctest::Approx(-bench.computed.joints[5 + hip_roll].effort_Nm));
+}
+
 TEST_CASE("DcmWalk gives up a robot that falls, or is not measured, until it is told to stop and to go again") {
   Bench bench;
   bench.lead("go", 1);

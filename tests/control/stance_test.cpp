@@ -54,6 +54,29 @@ TEST_CASE("Stance never presses before the toes or behind the heels, whatever th
   CHECK(bench.ankle_Nm() == doctest::Approx(-weight_N / 2 * 0.05));
 }
 
+TEST_CASE("Stance follows xi by its law, and by what is measured as far as that is trusted") {
+  Bench bench;
+  bench.set("turn_max_Nm", 0);
+  bench.set("trust_per_s", 80);
+  bench.lean(0.05);
+  const double at_m = com_height_m * std::sin(0.05);
+  CHECK(bench.state().dcm_x_m == doctest::Approx(at_m));  // at first as it is measured
+  bench.status.foot_count = 2;
+  for (FootStatus& foot : bench.status.feet) foot = {.contact = true, .force_N = 60, .cop_x_m = at_m};
+  for (int i = 0; i < 200; ++i) {  // velocities that shake by 0.07 m of xi
+    bench.status.base.angular_velocity_rad_s[1] = i % 2 == 0 ? 0.5 : -0.5;
+    bench.step();
+    REQUIRE(std::abs(bench.state().dcm_x_m - at_m) < 0.006);
+  }
+  bench.status.base.angular_velocity_rad_s[1] = 0;
+  bench.set("trust_per_s", 0);
+  for (FootStatus& foot : bench.status.feet) foot.cop_x_m = 0;
+  const double before_m = bench.state().dcm_x_m;
+  for (int i = 0; i < 100; ++i) bench.step();
+  CHECK(bench.state().dcm_x_m ==
+        doctest::Approx(before_m * std::exp(0.1 * std::sqrt(9.81 / com_height_m))).epsilon(0.01));
+}
+
 TEST_CASE("Stance bows the trunk with what the soles cannot do, and pushes the hips back with it") {
   Bench bench;
   bench.set("toe_m", 0.05);

@@ -241,6 +241,40 @@ TEST_CASE("WalkPlan steps again when a push takes xi beyond the feet that stand,
   }
 }
 
+TEST_CASE("WalkPlan trusts a measured xi more while both feet bear") {
+  const auto left_over = [](bool goes) {
+    Pendulum robot;
+    robot.config.trust_per_s = 5;
+    robot.run(2);
+    robot.wanted.go = goes;
+    robot.run(2);
+    REQUIRE((robot.state().phase == Phase::steps) == goes);
+    while (goes && robot.state().time_s > 0.05) robot.tick();
+    robot.velocity_m_s.x_m += 0.1;
+    robot.run(0.03);
+    return (robot.sight().over[robot.state().stance].dcm_x_m - robot.state().dcm.x_m) / (0.1 / rate_per_s);
+  };
+  CHECK(left_over(true) > 0.8);
+  CHECK(left_over(false) < 0.3);
+}
+
+TEST_CASE("WalkPlan keeps what it knows of xi when a step begins out of standing") {
+  Pendulum robot;
+  robot.config.both_trust_per_s = 8;
+  robot.run(2);
+  robot.wanted.go = false;
+  robot.run(2);
+  const auto known_m = [&] { return robot.foot[robot.state().stance].x_m + robot.state().dcm.x_m; };
+  robot.velocity_m_s.x_m += 1;  // is measured at once, and known late
+  double before_m = 0;
+  while (robot.state().phase == Phase::bears) {
+    before_m = known_m();
+    robot.tick();
+  }
+  CHECK(std::abs(known_m() - before_m) < 0.01);
+  CHECK(robot.com.x_m + robot.velocity_m_s.x_m / rate_per_s > known_m() + 0.03);
+}
+
 TEST_CASE("WalkPlan does not end its steps with xi beyond its feet") {
   Pendulum robot;
   robot.run(2);

@@ -471,7 +471,7 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
   std::array<GroundPoint, 2> feet;
   feet[1 - a] = {other_m[0] - at_m[0], other_m[1] - at_m[1]};
   const GroundPoint goal = plan_.goal(plan_config_, sight(input));
-  const double gain = s.phase == WalkPlan::Phase::sways ? plan_config_.sway_gain : 1;
+  const double gain = s.phase == WalkPlan::Phase::sways ? plan_config_.sway_gain : s.phase == WalkPlan::Phase::rests ? 0.4 : 1;
   const GroundPoint pressure{2 * s.dcm.x_m - goal.x_m, (1 + gain) * s.dcm.y_m - gain * goal.y_m};
   const LoadSplit split = split_load(plan_config_.sole, feet[0], feet[1], pressure);
   const Vec3& com_m = over_feet_.over(a).com_m;
