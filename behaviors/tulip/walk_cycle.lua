@@ -129,7 +129,7 @@ return k.behavior "walk_cycle" {
   k.state "stop" {
     controls = "walking",
     run = function(m)
-      m.walk:set_gains("catch")
+      m.walk:set_gains("usual")
       m.posture:move("set_out", { time_s = 0.5 })
       walk.go(m, { forward_m_s = P.forward_m_s })
       m:wait(1)

@@ -234,7 +234,7 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   const double slow_m_s = 0.06, beside_m = 0.1;
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
       std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m &&
-      between_feet(c, sight, safe_share))
+      between_feet(c, sight, held_share))
     s.phase = Phase::bears;
   if (sight.sunk_m > c.sunk_m && between_feet(c, sight, safe_share)) s.phase = Phase::rests;
 }
