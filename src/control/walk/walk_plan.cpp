@@ -14,6 +14,7 @@ constexpr double smooth_s = 0.02;  // of the measured pressure
 
 // A robot that sank rests while xi is over the feet, and steps on when it is up again and xi near the middle.
 constexpr double safe_share = 0.5, held_share = 0.9;  // of a sole before and behind: to begin to rest, to go on with it
+constexpr double stop_share = 0.7;                    // likewise, to end the steps
 constexpr double up_share = 0.3;                      // of sunk_m: what counts as up
 constexpr double still_m = 0.03;
 
@@ -234,7 +235,7 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   const double slow_m_s = 0.06, beside_m = 0.1;
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
       std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m &&
-      between_feet(c, sight, held_share))
+      between_feet(c, sight, stop_share))
     s.phase = Phase::bears;
   if (sight.sunk_m > c.sunk_m && between_feet(c, sight, safe_share)) s.phase = Phase::rests;
 }
