@@ -115,7 +115,7 @@ constexpr std::array<Breakage, 76> breakages = {{
     {"walk_two_steps", "config/tulip/robot.json", "\"trim_per_s\": 0.7,", "\"trim_per_s\": 0.7, \"brake_m_s2\": 0.5,",
      "steps no more than two times after it is told to stop"},
     {"walk_two_steps", "", "m_s=0.4", "m_s=0.3", "walks so after two steps"},
-    {"walk", robot, "\"lift_m\": 0.03279", "\"lift_m\": 0", "stays up"},
+    {"walk", robot, "\"trust_per_s\": 12.88", "\"trust_per_s\": 0", "stays up"},
     {"walk", "", "for_s=6", "for_s=60", "stands still at the end"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},
     {"whole_body", "behaviors/reaching/reach.lua", "weight = 30", "weight = 0", "stretches the arm, rad"},

@@ -61,7 +61,8 @@ Played play_game(std::uint64_t seed, Network network, Decide&& decide, double se
     if (tick % 10 == 0) told = budget, told_s = now_s;
     for (std::size_t i = 0; i < robots.size(); ++i) {
       Robot& robot = robots.at(i);
-      if (random.uniform() < step_s * (lively ? 0.4 : 0.03)) robot.goal = {random.uniform(-6, 6), random.uniform(-4, 4)};
+      if (random.uniform() < step_s * (lively ? 0.4 : 0.03))
+        robot.goal = {random.uniform(-6, 6), random.uniform(-4, 4)};
       const Point way = robot.goal - robot.at;
       if (norm(way) > 0.05) robot.at = robot.at + (0.4 * step_s / norm(way)) * way;
       const MessagePolicy::Known message{.pose = Pose2{robot.at.x_m, robot.at.y_m, 0}, .ball = ball};

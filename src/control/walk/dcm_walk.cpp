@@ -453,7 +453,7 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   LegInverse::Angles stance_rad = stance.target_rad;
   stance_rad[hip_yaw] = over.yaw_rad;
   stance.aim(stance_rad, walk_rate_max_rad_s, input.dt_s);
-  const Efforts stance_Nm = stance.spring(c.gains, 1, input), 
+  const Efforts stance_Nm = stance.spring(c.gains, 1, input),
                 borne_Nm = bearing(a, loaded, s.in_sole_x_m, lever(a, s.in_sole_x_m), input);
 
   for (std::size_t j = 0; j < leg_joints; ++j) {
@@ -471,7 +471,9 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
   std::array<GroundPoint, 2> feet;
   feet[1 - a] = {other_m[0] - at_m[0], other_m[1] - at_m[1]};
   const GroundPoint goal = plan_.goal(plan_config_, sight(input));
-  const double gain = s.phase == WalkPlan::Phase::sways ? plan_config_.sway_gain : s.phase == WalkPlan::Phase::rests ? 0.4 : 1;
+  const double gain = s.phase == WalkPlan::Phase::sways   ? plan_config_.sway_gain
+                      : s.phase == WalkPlan::Phase::rests ? 0.4
+                                                          : 1;
   const GroundPoint pressure{2 * s.dcm.x_m - goal.x_m, (1 + gain) * s.dcm.y_m - gain * goal.y_m};
   const LoadSplit split = split_load(plan_config_.sole, feet[0], feet[1], pressure);
   const Vec3& com_m = over_feet_.over(a).com_m;
@@ -482,7 +484,7 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
     target_rad[hip_yaw] = over_feet_.over(i).yaw_rad;
     leg.aim(target_rad, walk_rate_max_rad_s, input.dt_s);
     const double share = i == 1 ? split.right_share : 1 - split.right_share;
-    const Efforts held_Nm = leg.spring(config_.gains, 1, input), 
+    const Efforts held_Nm = leg.spring(config_.gains, 1, input),
                   borne_Nm = bearing(i, share, split.in_sole.x_m, lever_m, input);
     leg.effort_Nm = borne_Nm;
     leg.effort_Nm[hip_yaw] = held_Nm[hip_yaw];

@@ -41,8 +41,7 @@ void add_play(CLI::App& command, Options& o) {
                   "Seed of all random numbers (default: the file's); of many matches the first one's (default: 1)")
       ->type_name("N")
       ->check(whole_within(0, 9'007'199'254'740'992));
-  command
-      .add_option("--set", o.set, "In place of what the file says: network.lost=0.3, home.team=behaviors/football")
+  command.add_option("--set", o.set, "In place of what the file says: network.lost=0.3, home.team=behaviors/football")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->take_all();
@@ -71,7 +70,9 @@ void add_match(CLI::App& app, Options& o) {
       .add_option("--signals", o.signals,
                   "Record these signals: \"joint.*, base.*@100\" (default: what shows the match)")
       ->type_name("PATTERNS");
-  match.add_flag("--live{8765}", o.live, "Show the match while it goes on, at the pace of the clock (default port: 8765)")
+  match
+      .add_flag("--live{8765}", o.live,
+                "Show the match while it goes on, at the pace of the clock (default port: 8765)")
       ->type_name("PORT")
       ->check(whole_within(0, 65'535));
 }

@@ -43,6 +43,14 @@ Json peer(const fs::path& project, const std::string& what) {
   return Json::parse(read(project / "peer.json"));
 }
 
+// What a run on the wall clock tells at its end. On a busy machine it may have been late, and then it ends with 1.
+Json driven_to_its_end(const Outcome& outcome) {
+  const Json told = Json::parse(outcome.out, nullptr, false);
+  REQUIRE_MESSAGE(told.is_object(), outcome.out << outcome.err);
+  CHECK_MESSAGE(told.at("ended") == "duration over", outcome.out << outcome.err);
+  return told;
+}
+
 // What the emulator says of its session.
 Json session(Running& plant) {
   CHECK(plant.end() == 0);
@@ -71,8 +79,7 @@ TEST_CASE("A quadruped stands up over DDS, is held, and at the end damps and is 
   const Outcome outcome = run("run config/dog/robot.json --plant unitree --peer " + place +
                                   " --soft --no-ctl --json --play get_up --duration 3",
                               project);
-  REQUIRE_MESSAGE(outcome.exit_code == 0, outcome.out << outcome.err);
-  const Json driven = Json::parse(outcome.out);
+  const Json driven = driven_to_its_end(outcome);
   CHECK(driven.at("link").at("corrupt") == 0);
   CHECK(driven.at("link").at("foreign") == 0);
   CHECK(driven.at("link").at("commands") > 100);
@@ -90,9 +97,9 @@ TEST_CASE("A run that only reads commands nothing") {
   const Outcome outcome = run("run config/dog/robot.json --plant unitree --peer " + place +
                                   " --soft --no-ctl --json --read-only --duration 0.5",
                               project);
-  REQUIRE_MESSAGE(outcome.exit_code == 0, outcome.out << outcome.err);
-  CHECK(Json::parse(outcome.out).at("link").at("states") > 0);
-  CHECK(Json::parse(outcome.out).at("link").at("commands") == 0);
+  const Json driven = driven_to_its_end(outcome);
+  CHECK(driven.at("link").at("states") > 0);
+  CHECK(driven.at("link").at("commands") == 0);
   CHECK(session(plant).at("link").at("commands") == 0);
 }
 
@@ -145,7 +152,7 @@ TEST_CASE("The other family's messages go the same ways, and mode_machine is tol
   const Outcome outcome = run("run config/dog/robot.json --plant unitree --peer " + place +
                                   " --soft --no-ctl --json --play get_up --duration 1",
                               project);
-  REQUIRE_MESSAGE(outcome.exit_code == 0, outcome.out << outcome.err);
+  (void)driven_to_its_end(outcome);
   CHECK(session(plant).at("link").at("foreign") == 0);
 }
 
