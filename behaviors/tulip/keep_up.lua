@@ -1,7 +1,7 @@
 -- Stays up, whatever pushes it, and does the least that helps. Ankles, trunk and arms hold what they can ("stance"), and
--- to the sides that is much, because the feet are far apart. What takes the weight beyond the soles, forward or backward,
--- is caught by steps ("walk"), as many as it takes; then the robot stands again. When it falls nevertheless, it falls
--- softly and gets up. With `go` it walks meanwhile, or steps in place.
+-- to the sides that is much, because the feet are far apart. What takes the weight further is caught by steps ("walk"), as
+-- few as it takes; then the robot stands again. When it falls nevertheless, it falls softly and gets up. With `go` it
+-- walks meanwhile, or steps in place.
 local k = require "kadans"
 local floor = require "floor"
 local walk = require "walking"

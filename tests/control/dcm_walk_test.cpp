@@ -159,8 +159,7 @@ TEST_CASE("DcmWalk bears on feet far apart by forces that push nothing to a side
   bench.ticks(1);
   REQUIRE(bench.walk.plan().state().phase == Phase::sways);
   const double out_m = (kadans::test::thigh_m + kadans::test::shank_m) * std::sin(0.3);
-  const double upward_Nm =
-      9.81 * bench.model.mass_kg() / 2 * out_m;  // about the hip; the legs' own weight is 2 Nm of it
+  const double upward_Nm = 9.81 * bench.model.mass_kg() / 2 * out_m;  // about the hip
   bench.set("fade_s", 0);
   bench.set("height_N_per_m", 0);
   bench.set("height_Ns_per_m", 0);

@@ -13,7 +13,8 @@ namespace {
 constexpr double walk_rate_max_rad_s = 7;
 constexpr double kick_rate_max_rad_s = 15;
 constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
-constexpr double within = 0.8;  // of the sole: a pressure farther out is at its edge
+constexpr double rest_gain = 0.4;  // shift of the load per error of xi while it rests: both knees are to push it up
+constexpr double within = 0.8;     // of the sole: a pressure farther out is at its edge
 enum Channel : std::uint32_t {
   forward_channel,
   left_channel,
@@ -472,7 +473,7 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
   feet[1 - a] = {other_m[0] - at_m[0], other_m[1] - at_m[1]};
   const GroundPoint goal = plan_.goal(plan_config_, sight(input));
   const double gain = s.phase == WalkPlan::Phase::sways   ? plan_config_.sway_gain
-                      : s.phase == WalkPlan::Phase::rests ? 0.4
+                      : s.phase == WalkPlan::Phase::rests ? rest_gain
                                                           : 1;
   const GroundPoint pressure{2 * s.dcm.x_m - goal.x_m, (1 + gain) * s.dcm.y_m - gain * goal.y_m};
   const LoadSplit split = split_load(plan_config_.sole, feet[0], feet[1], pressure);
