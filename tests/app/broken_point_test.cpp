@@ -30,6 +30,9 @@ constexpr const char* stand = "behaviors/tulip/stand.lua";
 constexpr const char* getting_up = "behaviors/tulip/get_up.lua";
 constexpr const char* rises = "set_gains(\"rise\")";
 constexpr const char* sinks = "set_gains(\"soft\")";
+constexpr const char* keeping_up = "behaviors/tulip/keep_up.lua";
+constexpr const char* steps = "c.walk:set(\"go\", 1)";
+constexpr const char* rests = "c.walk:set(\"go\", 0)";
 constexpr const char* squat = "behaviors/tulip/squat.lua";
 constexpr const char* stiff = "set_gains(\"stiff\")";
 constexpr const char* soft = "set_gains(\"soft\")";  // the joints still hold their pose, the robot does not stand
@@ -58,6 +61,10 @@ constexpr std::array<Breakage, 76> breakages = {{
     {"jiwiy_switched", "config/jiwiy/robot.json", "\"velocity_gain_Nms_per_rad\": 0.28",
      "\"velocity_gain_Nms_per_rad\": 28", "no torque steps by 5 % of its limit"},
     {"jiwiy_unplugged", "", "\"lost_at_s\": 2.4", "\"lost_at_s\": 24", "comes to rest"},
+    {"keep_up_backward", keeping_up, steps, rests, "stays up"},
+    {"keep_up_forward", keeping_up, steps, rests, "stays up"},
+    {"keep_up_forward", "", "[8, 0, 0]", "[3, 0, 0]", "steps, as it has to"},
+    {"keep_up_left", keeping_up, steps, rests, "stays up"},
     {"knee_sensor_jumps", "", "\"size\": 0.5", "\"size\": 0.005", "found at once"},
     {"late_drives", "", "0.002", "0.02", "stays up"},
     {"list_of_behaviors", squat, "outcome = \"done\"", "outcome = \"failed\"", "the arm is raised"},
@@ -86,9 +93,9 @@ constexpr std::array<Breakage, 76> breakages = {{
     {"slope_up", "", "0.035", "0.25", "stays up"},
     {"soft_get_up_prone", getting_up, rises, sinks, "leans less than 0.2 rad"},
     {"soft_get_up_supine", getting_up, rises, sinks, "leans less than 0.2 rad"},
+    {"soft_keep_up_forward", keeping_up, steps, rests, "stays up"},
     {"soft_squat", "config/tulip/soft.json", "\"*_hip_pitch.damping_ratio\": 0.44",
      "\"*_hip_pitch.damping_ratio\": 0.01", "torso upright, rad"},
-    {"soft_step_forward", "config/tulip/soft.json", "\"swing_s\": 0.217", "\"swing_s\": 1", "stays up"},
     {"squat", squat, "P.depth_m)", "0.01)", "crouches, lowest height in m"},
     {"squat", squat, stiff, soft, "height follows, m"},
     {"squat_varied", "", "[0.9, 1.0]", "[0.05, 0.1]", "torso upright, rad"},
@@ -96,10 +103,6 @@ constexpr std::array<Breakage, 76> breakages = {{
     {"stay_up_forward", robot, "\"pull_x\": 6", "\"pull_x\": 0", "stays up"},
     {"stay_up_left", robot, "\"pull_x\": 6", "\"pull_x\": 0", "stays up"},
     {"stay_up_right", "behaviors/tulip/stay_up.lua", "(\"share\", 1)", "(\"share\", 0)", "stays up"},
-    {"step_forward", robot, "\"swing_s\": 0.325", "\"swing_s\": 1", "stays up"},
-    {"step_forward", "", "[10, 0, 0]", "[2, 0, 0]", "steps: a foot goes by"},
-    {"step_forward_less", robot, "\"extra_x_m\": -0.05", "\"extra_x_m\": 0.073", "stays up"},
-    {"step_forward_less", "", "[8, 0, 0]", "[2, 0, 0]", "steps: a foot goes by"},
     {"ticks_missed", "", "\"size\": 3", "\"size\": 8", "all three are counted"},
     {"touched_feet", "behaviors/hanging/touched.lua", "c:use(\"held\")", "c:use(\"loose\")",
      "held in the tick of a contact, loose in the tick after the last one"},
@@ -111,10 +114,10 @@ constexpr std::array<Breakage, 76> breakages = {{
     {"dribble", "behaviors/lib/dribbling.lua", "walk.kick(m, soon, rad,", "walk.kick(m, soon, rad + 0.4,",
      "along its line, m"},
     {"dribble", "behaviors/lib/ball.lua", "seen.x_m, seen.y_m)", "seen.x_m, -seen.y_m)",
-     "4 m in 16 s, set out included: 0.25 m/s"},
+     "3.9 m in 15.6 s, set out included: 0.25 m/s"},
     {"walk_two_steps", "config/tulip/robot.json", "\"trim_per_s\": 0.7,", "\"trim_per_s\": 0.7, \"brake_m_s2\": 0.5,",
      "steps no more than two times after it is told to stop"},
-    {"walk_two_steps", "", "m_s=0.4", "m_s=0.3", "walks so after two steps"},
+    {"walk_two_steps", "", "m_s=0.4", "m_s=0.2", "walks so after two steps"},
     {"walk", robot, "\"trust_per_s\": 12.88", "\"trust_per_s\": 0", "stays up"},
     {"walk", "", "for_s=6", "for_s=60", "stands still at the end"},
     {"weak_knees", "", "0.6 }", "0.15 }", "stays up"},

@@ -48,7 +48,7 @@ TEST_CASE("check names the parameter of a behavior that a robot's file has wrong
   CHECK(has(outcome.err, "config/tulip/soft.json:"));
   const std::string problem = "behavior 'get_up' has no parameter 'roll_wya', did you mean 'roll_way'?";
   CHECK(has(outcome.err, problem));
-  CHECK(outcome.err.find(problem) == outcome.err.rfind(problem));  // though step_out calls get_up, too
+  CHECK(outcome.err.find(problem) == outcome.err.rfind(problem));  // though keep_up and stay_up call get_up, too
 }
 
 TEST_CASE("check names a signal that nobody declares, with the nearest that somebody does") {

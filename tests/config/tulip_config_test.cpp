@@ -42,16 +42,14 @@ TEST_CASE("TULip's configuration drives its twelve motors and leaves the ankle r
   const RobotConfig config = tulip();
   CHECK(config.name == "tulip");
   CHECK(config.model.joints.size() == 14);
-  REQUIRE(config.objects.size() == 12);  // the last seven are those of walk_cycle
+  REQUIRE(config.objects.size() == 11);  // the last seven are those of walk_cycle
   CHECK(config.objects[0].joints.size() == 12);
   CHECK(config.objects[1].type.name == "dcm_balance");
   CHECK(config.objects[1].joints.size() == 8);
   CHECK(config.objects[2].type.name == "stance");
   CHECK(config.objects[2].joints.size() == 10);
-  CHECK(config.objects[3].type.name == "dcm_step");
+  CHECK(config.objects[3].type.name == "dcm_walk");
   CHECK(config.objects[3].joints.size() == 10);
-  CHECK(config.objects[4].type.name == "dcm_walk");
-  CHECK(config.objects[4].joints.size() == 10);
   const std::size_t ankle = config.model.find_joint("r_ankle_roll").value();
   const std::size_t knee = config.model.find_joint("r_knee").value();
   CHECK(config.plant.drives[ankle].torque_max_Nm == 0);
@@ -88,14 +86,13 @@ TEST_CASE("TULip's gains and presets fit the parameters that joint_pid declares"
   CHECK(objects.value("posture.l_knee.kp_Nm_per_rad") == 300);
   CHECK(objects.value("posture.r_shoulder_pitch.ki_Nm_per_rads") == 20);
   const std::vector<Preset>& presets = objects.catalog.objects[0].presets;
-  REQUIRE(presets.size() == 6);
+  REQUIRE(presets.size() == 5);
   CHECK(presets[0].name == "stiff");
   CHECK(presets[1].name == "get_up");
   CHECK(presets[2].name == "rise");
   CHECK(presets[3].name == "balance");
-  CHECK(presets[4].name == "step");
-  CHECK(presets[5].name == "soft");
-  CHECK(presets[5].values.size() == 24);
+  CHECK(presets[4].name == "soft");
+  CHECK(presets[4].values.size() == 24);
 }
 
 }  // namespace kadans::tulip_config_test
