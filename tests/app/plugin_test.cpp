@@ -41,7 +41,7 @@ TEST_CASE("Shipped control objects out of a plug-in end a run with the same stat
   const std::string built_in = state_hash(project);
   const fs::path tulip = project / "config/tulip/robot.json", soft = project / "config/tulip/soft.json";
   list_plugin(tulip, built("shipped"));
-  for (const std::string type : {"joint_pid", "dcm_balance", "stance", "dcm_step", "dcm_walk"})
+  for (const std::string type : {"joint_pid", "dcm_balance", "stance", "dcm_walk"})
     REQUIRE(edit(tulip, "\"type\": \"" + type + "\"", "\"type\": \"plugged_" + type + "\""));
   REQUIRE(edit(soft, "\"type\": \"spring_torque\"", "\"type\": \"plugged_spring_torque\""));
   CHECK(state_hash(project) == built_in);
