@@ -29,7 +29,7 @@ constexpr const char* reaching = "config/reaching/robot.json";
 constexpr const char* stand = "behaviors/tulip/stand.lua";
 constexpr const char* getting_up = "behaviors/tulip/get_up.lua";
 constexpr const char* rises = "set_gains(\"rise\")";
-constexpr const char* sinks = "set_gains(\"soft\")";
+constexpr const char* sinks = "set_gains(\"balance\")";
 constexpr const char* keeping_up = "behaviors/tulip/keep_up.lua";
 constexpr const char* steps = "c.walk:set(\"go\", 1)";
 constexpr const char* rests = "c.walk:set(\"go\", 0)";
@@ -64,7 +64,7 @@ constexpr std::array<Breakage, 76> breakages = {{
     {"keep_up_backward", keeping_up, steps, rests, "stays up"},
     {"keep_up_forward", keeping_up, steps, rests, "stays up"},
     {"keep_up_forward", "", "[8, 0, 0]", "[3, 0, 0]", "steps, as it has to"},
-    {"keep_up_left", keeping_up, steps, rests, "stays up"},
+    {"keep_up_left", keeping_up, steps, rests, "steps, as it has to"},
     {"knee_sensor_jumps", "", "\"size\": 0.5", "\"size\": 0.005", "found at once"},
     {"late_drives", "", "0.002", "0.02", "stays up"},
     {"list_of_behaviors", squat, "outcome = \"done\"", "outcome = \"failed\"", "the arm is raised"},

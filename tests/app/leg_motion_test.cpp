@@ -23,7 +23,8 @@ constexpr Swing swings[] = {{"l_hip_pitch", 0.2, -0.8}, {"l_knee", 0.2, 1.2}, {"
 Robot tulip_on_a_stand() {
   Robot robot = read_robot(KADANS_SOURCE_DIR "/config/tulip/robot.json");
   robot.config.plant.fixed_base = true;
-  for (DriveSettings& drive : robot.config.plant.drives) drive.coulomb_Nm = 0;  // computed_torque knows the viscous alone
+  // computed_torque knows viscous friction alone
+  for (DriveSettings& drive : robot.config.plant.drives) drive.coulomb_Nm = 0;
   robot.config.plant.base.position_m[2] = 1.5;
   return robot;
 }
