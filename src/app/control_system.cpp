@@ -25,7 +25,6 @@ void add_shipped_types(ControlObjectTypes& types) {
   ADD_TYPE(feedforward_player);
   ADD_TYPE(computed_torque);
   ADD_TYPE(dcm_balance);
-  ADD_TYPE(dcm_step);
   ADD_TYPE(dcm_walk);
   ADD_TYPE(stance);
   ADD_TYPE(stance_leg);

@@ -35,7 +35,6 @@ std::vector<Row> rows() {
   const ObjectOptions feet{{{"left_foot", "l_foot"}, {"right_foot", "r_foot"}}};
   std::vector<Row> rows{{"computed_torque", leg_robot, {2, 3, 4}},
                         {"dcm_balance", leg_robot, {1, 2, 4, 6, 7, 9}, feet},
-                        {"dcm_step", leg_robot, all, feet},
                         {"dcm_walk", leg_robot, all, feet},
                         {"stance", leg_robot, all, feet},
                         {"stance_leg", leg_robot, {1, 2, 3, 4}, {{{"foot", "l_foot"}}}},
@@ -55,7 +54,7 @@ struct Played {
   static constexpr int tuned = 44;
 
   Played(const Row& row, const ControlObjectTypes& types)
-      : model(row.model()), steps(std::string(row.type) == "dcm_step" || std::string(row.type) == "dcm_walk") {
+      : model(row.model()), steps(std::string(row.type) == "dcm_walk") {
     const std::vector<DriveLaw> drives(model.joints.size(),
                                        DriveLaw{.spring_Nm_per_rad = 300, .rotor_inertia_kg_m2 = 0.02});
     object = (*types.find(row.type))(ObjectSetup{model, row.joints, row.options, drives});

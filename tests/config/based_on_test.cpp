@@ -84,8 +84,8 @@ TEST_CASE("A base that is not there, and files based on each other, are refused 
 }
 
 TEST_CASE("TULip with its soft springs is TULip but for the springs and their loop") {
-  const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance",          "dcm_step",
-                                       "dcm_walk",  "stance_leg",  "joint_impedance", "spring_torque"};
+  const std::vector<std::string> types{"joint_pid",  "dcm_balance",     "stance",       "dcm_walk",
+                                       "stance_leg", "joint_impedance", "spring_torque"};
   const fs::path folder = fs::path(KADANS_SOURCE_DIR) / "config/tulip";
   const RobotConfig stiff = read_robot_config(folder / "robot.json", types);
   const RobotConfig soft = read_robot_config(folder / "soft.json", types);

@@ -8,7 +8,6 @@
 
 #include "config/robot/robot_config.h"
 #include "control/balance/dcm_balance.h"
-#include "control/balance/dcm_step.h"
 #include "control/balance/stance.h"
 #include "control/made_objects.h"
 #include "control/walk/dcm_walk.h"
@@ -30,7 +29,6 @@ struct ControlObjects {
       const std::string& type = object.type.name;
       owners.push_back(type == "joint_pid"         ? make_joint_pid(setup)
                        : type == "stance"          ? make_stance(setup)
-                       : type == "dcm_step"        ? make_dcm_step(setup)
                        : type == "dcm_walk"        ? make_dcm_walk(setup)
                        : type == "stance_leg"      ? make_stance_leg(setup)
                        : type == "joint_impedance" ? make_joint_impedance(setup)

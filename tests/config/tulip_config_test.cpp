@@ -12,8 +12,7 @@
 namespace kadans::tulip_config_test {
 namespace {
 
-const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance",         "dcm_step",
-                                     "dcm_walk",  "stance_leg",  "joint_impedance"};
+const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance", "dcm_walk", "stance_leg", "joint_impedance"};
 const std::string robot_file = KADANS_SOURCE_DIR "/config/tulip/robot.json";
 
 RobotConfig tulip() { return read_robot_config(robot_file, types); }

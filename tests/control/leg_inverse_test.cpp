@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "control/balance/dcm_step.h"
+#include "control/walk/led_leg.h"
 #include "kadans/model/kinematics.h"
 #include "leg_robot.h"
 

@@ -1,4 +1,4 @@
-// A biped as dcm_step.h means it: two legs of five joints, 0.25 m thighs and 0.3 m shanks, under a torso of 10 kg.
+// A biped as led_leg.h means it: two legs of five joints, 0.25 m thighs and 0.3 m shanks, under a torso of 10 kg.
 #pragma once
 
 #include <string>

@@ -1,8 +1,8 @@
+#include "control/walk/step_geometry.h"
+
 #include <cmath>
 
 #include <doctest/doctest.h>
-
-#include "control/balance/step_plan.h"
 
 using namespace kadans;
 
@@ -27,19 +27,10 @@ TEST_CASE("a load between the soles is shared, and both are pressed at the same 
   CHECK(split.at.y_m == doctest::Approx(0));
 }
 
-TEST_CASE("what lies beyond the soles is brought to their edge, and its distance told") {
+TEST_CASE("what lies beyond the soles is brought to their edge") {
   const LoadSplit split = split_load(sole, left, right, {0.4, 0.1});
   CHECK(split.right_share == 0);
   CHECK(split.at.x_m == doctest::Approx(0.1 + sole.toe_m));
-  CHECK(beyond_soles(sole, left, right, {0.4, 0.1}) == doctest::Approx(0.4 - 0.1 - sole.toe_m));
-  CHECK(beyond_soles(sole, left, right, {-0.26, -0.1}) == doctest::Approx(0.26 - 0.1 - sole.heel_m));
-  CHECK(beyond_soles(sole, left, right, {0.02, 0.01}) == doctest::Approx(0));
-}
-
-TEST_CASE("xi runs away from the pressure by e in the pendulum's time") {
-  const GroundPoint then = run_away({0.15, -0.02}, {0.1, 0.03}, 4, 0.25);
-  CHECK(then.x_m == doctest::Approx(0.1 + 0.05 * std::exp(1)));
-  CHECK(then.y_m == doctest::Approx(0.03 - 0.05 * std::exp(1)));
 }
 
 TEST_CASE("a swing begins and ends at rest on the ground") {

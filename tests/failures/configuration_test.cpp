@@ -15,8 +15,7 @@ using namespace kadans;
 
 namespace {
 
-const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance",         "dcm_step",
-                                     "dcm_walk",  "stance_leg",  "joint_impedance"};
+const std::vector<std::string> types{"joint_pid", "dcm_balance", "stance", "dcm_walk", "stance_leg", "joint_impedance"};
 
 const FieldInfo* field(const FieldInfo& in, const std::string& name) {
   // The elements of a map are described once, whatever their keys.

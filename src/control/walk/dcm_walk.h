@@ -34,10 +34,10 @@
 #include <vector>
 
 #include "control/balance/dcm_measure.h"
-#include "control/balance/dcm_step.h"
 #include "control/balance/stance.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/joint_axis.h"
+#include "led_leg.h"
 #include "walk_plan.h"
 
 namespace kadans {

@@ -8,8 +8,8 @@
 // Positions are of the foot's frame, relative to the foot that stands, in the heading frame. Mathematics only.
 #pragma once
 
-#include "control/balance/step_plan.h"
 #include "kadans/signal/frames.h"
+#include "step_geometry.h"
 
 namespace kadans {
 

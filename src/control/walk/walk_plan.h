@@ -26,8 +26,8 @@
 #include <cstdint>
 
 #include "control/balance/dcm_measure.h"
-#include "control/balance/step_plan.h"
 #include "kick_swing.h"
+#include "step_geometry.h"
 
 namespace kadans {
 

@@ -1,7 +1,6 @@
 // Shipped control objects as a plug-in, under other names: "plugged_joint_pid".
 #include "../made_objects.h"
 #include "control/balance/dcm_balance.h"
-#include "control/balance/dcm_step.h"
 #include "control/balance/stance.h"
 #include "control/balance/support_forces.h"
 #include "control/drive/spring_torque.h"
@@ -14,6 +13,6 @@
 
 KADANS_PLUGIN(PLUGGED(joint_pid), PLUGGED(joint_cascade), PLUGGED(joint_impedance), PLUGGED(joint_integrator),
               PLUGGED(joint_velocity), PLUGGED(trajectory_list), PLUGGED(profile_position), PLUGGED(feedforward_player),
-              PLUGGED(computed_torque), PLUGGED(dcm_balance), PLUGGED(dcm_step), PLUGGED(dcm_walk), PLUGGED(stance),
-              PLUGGED(stance_leg), PLUGGED(gravity_compensation), PLUGGED(gaze), PLUGGED(spring_torque),
-              PLUGGED(support_forces), PLUGGED(task_impedance), PLUGGED(whole_body))
+              PLUGGED(computed_torque), PLUGGED(dcm_balance), PLUGGED(dcm_walk), PLUGGED(stance), PLUGGED(stance_leg),
+              PLUGGED(gravity_compensation), PLUGGED(gaze), PLUGGED(spring_torque), PLUGGED(support_forces),
+              PLUGGED(task_impedance), PLUGGED(whole_body))
