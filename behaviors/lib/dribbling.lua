@@ -11,13 +11,14 @@ local elsewhere_m, pictures = 0.5, 2  -- a ball that far off is another one, whe
 
 -- What a kick is asked for. Its speed is that of the foot that swings anyhow: a foot that is led more slowly to where
 -- the ball lies is faster before, and a ball that lies nearer than it is thought to flies off.
-local kick = { far_m = 1.5, roll_m_s2 = 0.28, ahead_m = 0.3, rad = 0.3 }
+local kick = { far_m = 2.2, roll_m_s2 = 0.28, ahead_m = 0.3, rad = 0.3 }
 local strike_s, landed_s = 0.2, 0.1  -- from lift-off to the strike, and from there to the landing
-local leaves_m_s = 1                 -- how fast the ball rolls after it
+local leaves_m_s = 1.2               -- how fast the ball rolls after it
 
 -- How the walk is while it dribbles: kicks reach less far ahead, as the foot is slower there, and a foot that touches the
--- ball late in its swing has not landed.
-local meanwhile = { ["kick.near_m"] = -0.08, ["kick.far_m"] = 0.09, early_share = 0.85 }
+-- ball late in its swing has not landed. Feet far apart slide, and a robot that goes to a side to have the ball before a
+-- foot has them far apart.
+local meanwhile = { ["kick.near_m"] = -0.08, ["kick.far_m"] = 0.09, early_share = 0.85, apart_max_m = 0.28 }
 
 -- Moves the ball on by dt_s; the ground slows it.
 local function roll(b, dt_s, roll_m_s2)
