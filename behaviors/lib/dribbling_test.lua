@@ -3,7 +3,7 @@ local dribble = require "dribbling"
 -- A robot that stands at the origin, whose walk keeps its set-points and parameters, and a camera.
 local function stage()
   local points = { x_m = 0, y_m = 0, heading_rad = 0, go = 0, kick_m_s = 0 }
-  local parameters = { ["kick.near_m"] = -0.04, ["kick.far_m"] = 0.15, early_share = 0.6 }
+  local parameters = { ["kick.near_m"] = -0.04, ["kick.far_m"] = 0.15, early_share = 0.6, apart_max_m = 0.36 }
   local object = {
     set = function(_, name, value) points[name] = value end,
     setpoint = function(_, name) return points[name] end,
@@ -90,7 +90,7 @@ describe("dribbling", function()
     expect(parameters.early_share).to_be_near(0.85, 1e-9)
     points.kick_m_s = 1
     dribble.finish(m, kept)
-    expect(parameters).to_equal { ["kick.near_m"] = -0.04, ["kick.far_m"] = 0.15, early_share = 0.6 }
+    expect(parameters).to_equal { ["kick.near_m"] = -0.04, ["kick.far_m"] = 0.15, early_share = 0.6, apart_max_m = 0.36 }
     expect(points.kick_m_s).to_equal(0)
   end)
 end)

@@ -8,7 +8,7 @@ describe("keep_up", function()
   it("stands on feet that are apart, on and on", function()
     run:advance(0.6)
     expect(run.state).to_equal "stand"
-    expect(run.joints.l_hip_roll.position_rad).to_be_above(0.1)
+    expect(run.joints.l_hip_roll.position_rad).to_be_above(0.05)
     run:advance(20)
     expect(run.state).to_equal "stand"
   end)
