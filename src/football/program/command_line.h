@@ -15,7 +15,8 @@ struct Options {
   std::vector<std::string> files;  // matches; of merge folders
   std::vector<std::string> set, vary;
   std::string listen, report, record, signals, out, shard, robots, referee;
-  std::optional<std::uint64_t> seed, live, cases, jobs;
+  std::string live;  // "": not shown; else the port, 0: any free one
+  std::optional<std::uint64_t> seed, cases, jobs;
   bool json = false, verbose = false;
 };
 

@@ -51,7 +51,7 @@ int play(const Options& options) {
   PlayedMatch played(match, seed);
   if (!options.record.empty())
     played.record(options.record, options.signals, command_of({options.files[0], options.set}, seed));
-  if (options.live) played.show(static_cast<std::uint16_t>(*options.live));
+  if (!options.live.empty()) played.show(static_cast<std::uint16_t>(std::stoul(options.live)));
   stop_when_told();
   const std::clock_t began = std::clock();
   const std::string said = play_out(played, options);
