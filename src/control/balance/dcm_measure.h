@@ -111,7 +111,6 @@ class DcmMeasure {
 
   const OverFoot& over(std::size_t foot) const noexcept { return over_[foot]; }  // 0 left, 1 right
   const Quat& upright() const noexcept { return upright_; }                      // of the base in the heading frame
-  const Vec3& com_m() const noexcept { return body_.com_m(); }                   // from the base's origin
   const std::array<std::size_t, 2>& feet() const noexcept { return feet_; }      // links, left and right
   const Kinematics& kinematics() const noexcept { return body_.kinematics(); }   // the base's origin at 0
   double rate_per_s() const noexcept { return rate_per_s_; }                     // w0

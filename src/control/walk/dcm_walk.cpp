@@ -447,14 +447,14 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
                          joints[swing.inverse.axis(knee).joint].position_rad - swing_rad[knee];
   swing_rad[ankle_pitch] -= by_now * lag_rad + base.pitch_rad + slope_.x_m;
   swing.aim(swing_rad, s.kick.kicks() ? kick_rate_max_rad_s : walk_rate_max_rad_s, input.dt_s);
-  const Efforts swing_Nm = swing.spring(c.gains, 1, input);
+  const Efforts swing_Nm = swing.spring(c.gains, input);
   turn(swing_Nm, input);
   const Efforts left_Nm = bearing(b, 1 - loaded, 0, lever(b, 0), input);
 
   LegInverse::Angles stance_rad = stance.target_rad;
   stance_rad[hip_yaw] = over.yaw_rad;
   stance.aim(stance_rad, walk_rate_max_rad_s, input.dt_s);
-  const Efforts stance_Nm = stance.spring(c.gains, 1, input),
+  const Efforts stance_Nm = stance.spring(c.gains, input),
                 borne_Nm = bearing(a, loaded, s.in_sole_x_m, lever(a, s.in_sole_x_m), input);
 
   for (std::size_t j = 0; j < leg_joints; ++j) {
@@ -485,7 +485,7 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
     target_rad[hip_yaw] = over_feet_.over(i).yaw_rad;
     leg.aim(target_rad, walk_rate_max_rad_s, input.dt_s);
     const double share = i == 1 ? split.right_share : 1 - split.right_share;
-    const Efforts held_Nm = leg.spring(config_.gains, 1, input),
+    const Efforts held_Nm = leg.spring(config_.gains, input),
                   borne_Nm = bearing(i, share, split.in_sole.x_m, lever_m, input);
     leg.effort_Nm = borne_Nm;
     leg.effort_Nm[hip_yaw] = held_Nm[hip_yaw];

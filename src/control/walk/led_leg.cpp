@@ -43,10 +43,6 @@ LegInverse::LegInverse(const RobotModel& model, const std::vector<JointAxis>& ax
   shortest_m_ = distance_m(thigh_m_, shank_m_, most_bent_knee_rad);
 }
 
-LegInverse::Angles LegInverse::angles(const Vec3& ankle_m, double yaw_rad) const noexcept {
-  return angles(ankle_m, yaw_rad, longest_m_);
-}
-
 LegInverse::Angles LegInverse::angles(const Vec3& ankle_m, double yaw_rad, double longest_m) const noexcept {
   const double x_m = std::cos(yaw_rad) * ankle_m[0] + std::sin(yaw_rad) * ankle_m[1];
   const double y_m = std::cos(yaw_rad) * ankle_m[1] - std::sin(yaw_rad) * ankle_m[0];
@@ -85,11 +81,11 @@ void LedLeg::aim(const LegInverse::Angles& new_target_rad, double rate_max_rad_s
   }
 }
 
-LegInverse::Angles LedLeg::spring(const LegGains& gains, double share, const ControlInput& input) const noexcept {
+LegInverse::Angles LedLeg::spring(const LegGains& gains, const ControlInput& input) const noexcept {
   LegInverse::Angles torque_Nm{};
   for (std::size_t i = 0; i < leg_joints; ++i) {
     const JointState& joint = input.joints.joints[inverse.axis(i).joint];
-    torque_Nm[i] = share * gains.kp_Nm_per_rad[i] * (target_rad[i] - joint.position_rad) +
+    torque_Nm[i] = gains.kp_Nm_per_rad[i] * (target_rad[i] - joint.position_rad) +
                    gains.kd_Nms_per_rad[i] * (rate_rad_s[i] - joint.velocity_rad_s);
   }
   return torque_Nm;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "kadans/control/control_object.h"
@@ -28,13 +29,12 @@ class LegInverse {
   LegInverse(const RobotModel& model, const std::vector<JointAxis>& axes, std::size_t foot);
 
   // The angles that put the ankle at ankle_m, from the hip in the base frame, with the hip turned by yaw_rad and the
-  // foot parallel to the base. A place that is too far or too near is moved into reach, along the line from the hip.
-  Angles angles(const Vec3& ankle_m, double yaw_rad) const noexcept;
-  // Points the leg there, but makes it no longer than that from hip to ankle.
-  Angles angles(const Vec3& ankle_m, double yaw_rad, double longest_m) const noexcept;
+  // foot parallel to the base. A place that is too far or too near is moved into reach, along the line from the hip;
+  // the leg is no longer than longest_m from hip to ankle.
+  Angles angles(const Vec3& ankle_m, double yaw_rad,
+                double longest_m = std::numeric_limits<double>::infinity()) const noexcept;
 
-  const Vec3& hip_m() const noexcept { return hip_m_; }  // in the base frame
-  double thigh_m() const noexcept { return thigh_m_; }
+  const Vec3& hip_m() const noexcept { return hip_m_; }     // in the base frame
   double longest_m() const noexcept { return longest_m_; }  // from hip to ankle with the knee almost straight
   const JointAxis& axis(std::size_t joint) const noexcept { return axes_[joint]; }
 
@@ -58,8 +58,7 @@ struct LedLeg {
 
   void declare_signals(Declaration& declaration);  // <joint>.target_rad, <joint>.effort_Nm
   void aim(const LegInverse::Angles& target_rad, double rate_max_rad_s, double dt_s) noexcept;
-  // Torques to the targets, with this share of kp.
-  LegInverse::Angles spring(const LegGains& gains, double share, const ControlInput& input) const noexcept;
+  LegInverse::Angles spring(const LegGains& gains, const ControlInput& input) const noexcept;  // torques to the targets
 };
 
 }  // namespace kadans
