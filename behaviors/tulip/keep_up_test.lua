@@ -5,10 +5,14 @@ describe("keep_up", function()
   local run
   before_each(function() run = k.play "keep_up.lua" end)
 
-  it("stands on feet that are apart, on and on", function()
+  it("takes a pose with its feet apart", function()
+    run:set_parameter("bear_s", 0.5)  -- so that the pose is taken before it gives way to nothing: here is no ground
     run:advance(0.6)
     expect(run.state).to_equal "stand"
-    expect(run.joints.l_hip_roll.position_rad).to_be_above(0.05)
+    expect(run.joints.l_hip_roll.position_rad).to_be_above(0.1)
+  end)
+
+  it("stands on and on", function()
     run:advance(20)
     expect(run.state).to_equal "stand"
   end)

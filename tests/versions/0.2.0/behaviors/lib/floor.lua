@@ -2,13 +2,9 @@
 --
 -- The way up needs little speed, and no momentum at its end. Lying on its face, the robot pulls its legs in until it is
 -- folded on feet and head, with the thighs beside the waist. The arms, which came round over the back, lift the head.
--- The feet hop in until they are under the centre of mass. Where they are not yet, because arms are weak, drives rub or the
--- ground falls away ahead, the robot hauls itself back: it sets the soles flat and pushes with the arms, again and again.
--- From there the torso rises with the centre of mass over the soles all the way: the ankle angle of each point of `rise`
--- was solved for that. From its back the robot first rolls over one side: the leg of the other side pushes off.
---
--- Ground that slopes is felt when the robot lies flat on its face. All that follows is turned by so much in the ankles,
--- and in the hips to the side.
+-- The feet hop in until they are under the centre of mass. From there the torso rises with the centre of mass over the
+-- soles all the way: the ankle angle of each point of `rise` was solved for that. From its back the robot first rolls
+-- over one side: the leg of the other side pushes off.
 --
 -- Found within the URDF's limits by CMA-ES over random friction, gains, torque, masses, delay and noise.
 local poses = require "poses"
@@ -53,7 +49,6 @@ local rolls = {
   },
 }
 
-local level = { ahead = 0, left = 0 }
 local shoulder_max = 4.65  -- inside the limit of 4.7 rad
 local turn = 2 * math.pi
 
@@ -63,53 +58,8 @@ function floor.up(base)
   return { x = -math.sin(base.pitch_rad), y = flat * math.sin(base.roll_rad), z = flat * math.cos(base.roll_rad) }
 end
 
--- How steep the ground rises ahead and to the left, while the robot lies flat on its face; else nil.
-function floor.slope(base)
-  local up = floor.up(base)
-  if up.x > -0.98 then return nil end
-  return { ahead = math.max(-0.1, math.min(0.1, up.z)), left = math.max(-0.1, math.min(0.1, up.y)) }
-end
-
--- Both sides' mean, by the angles of the two joints.
-local function mean(joints, joint)
-  return (joints["l_" .. joint].position_rad + joints["r_" .. joint].position_rad) / 2
-end
-
--- How far the torso, the thighs, the shanks, the soles and the arms are pitched forward from upright, in the mean.
-local function pitches(s)
-  local up = floor.up(s.base)
-  local torso = math.atan2(-up.x, up.z)
-  local thigh = torso + mean(s.joints, "hip_pitch")
-  local shank = thigh + mean(s.joints, "knee")
-  return torso, thigh, shank, shank + mean(s.joints, "ankle_pitch"), torso + mean(s.joints, "shoulder_pitch")
-end
-
--- Where the centre of mass is, ahead of the ankles and over them, in m, by the nominal masses of torso (6 kg), hips (1.6),
--- thighs (2.7), shanks (1.7), feet (1) and arms (1).
-function floor.centre(s)
-  local torso, thigh, shank, _, arm = pitches(s)
-  local x, z = 0, 0
-  for _, part in ipairs {
-    { 0.275 * 11.3 + 0.155 * 1.7, shank }, { 0.275 * 8.6 + 0.155 * 2.7, thigh }, { 0.258 * 7 + 0.132, torso }, { -0.18, arm },
-  } do
-    x, z = x + part[1] * math.sin(part[2]) / 14, z + part[1] * math.cos(part[2]) / 14
-  end
-  return x, z
-end
-
--- Whether it is over flat soles, no more than `near` m ahead of the ankles, and stays there: 0.2 s is what the pendulum
--- that stands on them needs.
-function floor.over_soles(s, slope, near)
-  local x, z = floor.centre(s)
-  local to = x + 0.2 * z * s.base.angular_velocity_rad_s.y
-  local _, _, _, sole = pitches(s)
-  return floor.up(s.base).z < 0 and x < near and to < near + 0.01 and to > -0.1 and math.abs(sole + slope.ahead) < 0.15
-end
-
 -- Whether the torso lies, on whichever side.
 function floor.lies(base) return base.posture ~= "upright" and base.posture ~= "falling" end
-
-local function timed(pose, time_s) return { pose, time_s = time_s } end
 
 -- The whole turn to add to a shoulder's `target` so that it is nearest to where the arm is, within its limits.
 function floor.nearest_turn(target, position)
@@ -137,16 +87,6 @@ local function arms(pose, joints)
   return turns
 end
 
--- The feet a little apart, and the legs swung so that the hips stay over them on ground that slopes to the side. With the
--- torso upright that is the hips' roll; when it is head down, it is their yaw.
-local function apart(pose, torso, slope)
-  local roll, yaw = math.cos(torso), math.sin(torso)
-  local left, right = 0.06 - 1.4 * slope.left, -0.06 - 1.4 * slope.left
-  return poses.with(pose, {
-    l_hip_roll = left * roll, r_hip_roll = right * roll, l_hip_yaw = left * yaw, r_hip_yaw = right * yaw,
-  })
-end
-
 local function even(frame)
   return poses.both {
     l_hip_yaw = 0, l_hip_roll = 0,
@@ -161,50 +101,17 @@ local function side(letter, v)
   }
 end
 
+local function timed(pose, time_s) return { pose, time_s = time_s } end
+
 -- Straight legs; the arms stay where they are.
 function floor.lying() return poses.with(lie, {}) end
-
--- On the face: the legs a little apart, and the arms beside the body, or overhead when they lie there.
-function floor.prone(joints)
-  local pose = poses.with(lie, { l_hip_roll = 0.25, r_hip_roll = -0.25 })
-  for _, joint in ipairs { "l_shoulder_pitch", "r_shoulder_pitch" } do
-    local whole = turn * math.floor(joints[joint].position_rad / turn + 0.5)
-    local rest = joints[joint].position_rad - whole
-    if rest < -math.pi / 2 then
-      pose[joint] = whole - math.pi
-    else
-      pose[joint] = whole + (whole == 0 and 0.2 or math.pi)
-    end
-  end
-  return pose
-end
-
--- Whether a leg lies otherwise than in that pose, under the other one for example.
-function floor.caught(joints)
-  for joint, target in pairs(floor.prone(joints)) do
-    local far = joint:find("ankle", 1, true) and 0.3 or 0.15
-    if not joint:find("shoulder", 1, true) and math.abs(joints[joint].position_rad - target) > far then return true end
-  end
-  return false
-end
-
--- Frees it: feet off the ground and apart, then straight again.
-function floor.freeing(joints)
-  return {
-    timed(poses.with(floor.prone(joints), { l_knee = 1.3, r_knee = 1.3 }), 0.4), timed(floor.prone(joints), 0.3),
-  }
-end
 
 -- From the face onto hands and feet: { pose, time_s = }, one motion each, in `pace` times their time, and the turns of
 -- the arms.
 function floor.fold(joints, pace)
   local turns = arms(even(fold[1]), joints)
   local steps = {}
-  for i, frame in ipairs(fold) do
-    local pose = turned(even(frame), turns)
-    if i > 2 then pose = apart(pose, 2.3, level) end
-    steps[i] = timed(pose, frame[1] * (pace or 1))
-  end
+  for i, frame in ipairs(fold) do steps[i] = timed(turned(even(frame), turns), frame[1] * (pace or 1)) end
   return steps, turns
 end
 
@@ -213,35 +120,19 @@ local function leaning(frame, lean)
 end
 
 -- Weight over the feet, the hands just bear; `lean` rad further back in the ankles.
-function floor.bear(turns, lean, slope)
-  return timed(apart(turned(leaning(bear, lean), turns), 2.1, slope or level), bear[1])
-end
-
--- Back over the feet, from the pose of `bear` with the weight too far ahead: the soles flat on the ground, which mostly
--- lifts them and lets them come nearer; then both arms upright, which pushes the shoulders up and back.
-function floor.haul(pose, s, slope)
-  local _, _, shank = pitches(s)
-  local ankle = math.max(-0.9, math.min(0.7, -shank - slope.ahead))
-  local flat = poses.with(pose, poses.both { l_hip_pitch = -2.38, l_knee = 0.15, l_ankle_pitch = ankle })
-  local push = poses.with(flat, {
-    l_ankle_pitch = 0.15, r_ankle_pitch = 0.15,
-    l_shoulder_pitch = pose.l_shoulder_pitch - 0.4, r_shoulder_pitch = pose.r_shoulder_pitch - 0.4,
-  })
-  return { timed(flat, 0.25), timed(push, 0.5) }
-end
+function floor.bear(turns, lean) return timed(turned(leaning(bear, lean), turns), bear[1]) end
 
 -- From there to standing: points of one smooth curve, the last one without `lean`, in `pace` times its time. An arm that
 -- came the other way round goes down in front.
-function floor.rise(turns, lean, pace, slope)
+function floor.rise(turns, lean, pace)
   local points = {}
-  slope = slope or level
   for i, frame in ipairs(rise) do
-    local pose = leaning(frame, (i < #rise and lean or 0) - slope.ahead)
+    local pose = leaning(frame, i < #rise and lean or 0)
     for joint, offset in pairs(turns) do
       local first, last = bear[5] + offset, rise[#rise][5]
       pose[joint] = first + (last - first) * i / #rise
     end
-    points[i] = timed(apart(pose, -(frame[2] + frame[3] + frame[4]), slope), frame[1] * (pace or 1))
+    points[i] = timed(pose, frame[1] * (pace or 1))
   end
   return points
 end

@@ -1,38 +1,28 @@
 -- Gets up from any position: waits until the robot lies still, finds out how it lies, rolls onto the face if needed,
--- folds onto hands and feet, and rises as soon as its centre of mass is over its soles. When something goes wrong, it lies
--- down again and begins anew, a few times. The ground may slope: it is felt when the robot lies on its face.
---
--- A joint that is knocked faster than its drive is a fault, and the safety layer only damps it from then on. So each phase
--- begins with clear_faults.
+-- folds onto hands and feet, and rises. When something goes wrong, it lies down again and begins anew, a few times.
 --
 -- When the first try succeeds, it passes through "at_once" on its way to "up": sweeps count that state, number 1.
 local k = require "kadans"
 local floor = require "floor"
 
 local P = k.params {
-  tries       = { 5, min = 1, max = 10, doc = "how often it tries" },
-  rolls       = { 4, min = 1, max = 10, doc = "how often it rolls in one try" },
-  still_s     = { 0.35, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins" },
-  least_s     = { 0.75, min = 0, max = 5, unit = "s", doc = "least time to lie: torque is back by then" },
-  still_rad_s = { 0.16, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
+  tries       = { 3, min = 1, max = 10, doc = "how often it tries" },
+  rolls       = { 2, min = 1, max = 10, doc = "how often it rolls in one try" },
+  still_s     = { 0.35, min = 0, max = 5, unit = "s", doc = "time to lie still before it begins: torque is back by then" },
+  still_rad_s = { 0.5, min = 0.05, max = 5, unit = "rad/s", doc = "turning rate below which it lies still" },
   patience_s  = { 2.0, min = 0.1, max = 20, unit = "s", doc = "longest wait to lie still" },
-  calm_s      = { 0.04, min = 0, max = 2, unit = "s", doc = "time to lie still on its face after a roll" },
-  flat_max_s  = { 0.8, min = 0, max = 5, unit = "s", doc = "longest wait for that" },
-  frees       = { 2, min = 0, max = 10, doc = "how often it frees a leg that lies under the other one" },
-  bear_s      = { 0, min = 0, max = 2, unit = "s", doc = "time to come to rest on hands and feet" },
-  haul_s      = { 3.0, min = 0, max = 10, unit = "s", doc = "longest time on hands and feet until it rises anyway" },
-  near_m      = { 0.06, min = -0.05, max = 0.2, unit = "m", doc = "how far ahead of the ankles the mass may be to rise" },
+  bear_s      = { 0.05, min = 0, max = 2, unit = "s", doc = "time to come to rest on hands and feet" },
   steady_s    = { 2.0, min = 0.1, max = 10, unit = "s", doc = "time to stand before it counts" },
   tilt_rad    = { 0.2, min = 0.05, max = 1, unit = "rad", doc = "most that it may lean then" },
   height_m    = { 0.75, min = 0.3, max = 1, unit = "m", doc = "least height of the torso then" },
   lean_rad    = { 0.0, min = -0.2, max = 0.2, unit = "rad", doc = "how far back it leans in the ankles while it rises" },
   learn_rad   = { 0.03, min = 0, max = 0.2, unit = "rad", doc = "change of that after a fall, away from where it fell" },
   folded      = { -1, min = -1, max = 1, doc = "up, along its height, below which it is still folded when it falls" },
-  straight_s  = { 0.25, min = 0.02, max = 2, unit = "s", doc = "time to stretch the legs after a roll" },
+  straight_s  = { 0.22, min = 0.02, max = 2, unit = "s", doc = "time to stretch the legs after a roll" },
   turn_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "time to come round onto its face after a roll" },
   face        = { -0.85, min = -1, max = -0.3, doc = "up, along its front, when it lies on its face" },
   flat_s      = { 0.3, min = 0, max = 2, unit = "s", doc = "from then on in the rise the ankles keep the balance" },
-  roll_way    = { 1, min = 1, max = 2, doc = "how it rolls first in a try, 2: as soft springs want it; then in turn" },
+  roll_way    = { 1, min = 1, max = 2, doc = "how it rolls first in a try, 2: as soft springs want it; then as 1" },
   fold_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it folds onto hands and feet in" },
   rise_pace   = { 1, min = 0.5, max = 3, doc = "times the time that it rises in; soft springs want more" },
   sway_s      = { 1.5, min = 0.1, max = 10, unit = "s", doc = "time it may sway before it stands" },
@@ -59,14 +49,6 @@ local function fell_forward(s)
   return up.x < 0 and up.z > P.folded
 end
 
--- It has fallen over on its way onto hands and feet.
-local function tipped(s)
-  local up = floor.up(s.base)
-  return up.z > 0 or math.abs(up.y) > 0.75
-end
-
-local function on_face(s) return floor.up(s.base).x < -0.97 end
-
 local function is(posture) return function(s) return s.base.posture == posture end end
 
 local function play(m, steps)
@@ -76,16 +58,14 @@ end
 local function roll(over)
   return {
     run = function(m, s)
-      m:clear_faults()
       m.vars.rolls = m.vars.rolls + 1
       m.vars.turned = false
-      local second = (P.roll_way > 1.5) == (m.vars.rolls % 2 == 1)
-      play(m, floor.roll(over, s.joints, second and 2 or 1))
+      play(m, floor.roll(over, s.joints, m.vars.rolls == 1 and P.roll_way > 1.5 and 2 or 1))
       m.posture:move(floor.lying(), { time_s = P.straight_s }):wait()
       m.vars.turned = true
       m:wait(P.turn_s)
     end,
-    { when = function(s, m) return m.vars.turned and floor.up(s.base).x < P.face end, to = "face" },
+    { when = function(s, m) return m.vars.turned and floor.up(s.base).x < P.face end, to = "fold" },
     { on = "run.done", when = function(_, m) return m.vars.rolls < P.rolls end, to = "look", why = "did not roll over" },
     { on = "run.done", to = "again", why = "did not roll over" },
   }
@@ -93,25 +73,25 @@ end
 
 return k.behavior "get_up" {
   controls = "balanced",
-  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, slope = { ahead = 0, left = 0 }, rolls = 0, turned = false },
+  vars     = { tried = 0, still_s = 0, arms = {}, learnt_rad = 0, rolls = 0, turned = false },
   initial  = "lie",
 
   k.state "at_once" { { after = 0, to = "up" } },
   k.final "up"      { outcome = "done" },
 
   k.state "lie" {
-    enter = function(m, s)
+    enter = function(m)
       m:clear_faults()
       m.vars.still_s, m.vars.rolls = 0, 0
       m.posture:set_gains("get_up")
       m.balance:set_parameter("share", 0)
       m.stance:set_parameter("share", 0)
-      m.posture:move(on_face(s) and floor.prone(s.joints) or floor.lying(), { time_s = 0.4 })
+      m.posture:move(floor.lying(), { time_s = 0.4 })
     end,
     during = function(m, s)
       m.vars.still_s = rate(s) < P.still_rad_s and m.vars.still_s + 0.01 or 0
     end,
-    { when = function(_, m) return m.vars.still_s >= P.still_s and m.time_s >= P.least_s end, to = "look" },
+    { when = function(_, m) return m.vars.still_s >= P.still_s end, to = "look" },
     { after = P.patience_s, to = "look" },
   },
   k.state "look" {
@@ -119,58 +99,27 @@ return k.behavior "get_up" {
       if m.vars.rolls == 0 then m.vars.tried = m.vars.tried + 1 end
     end,
     { when = stands, to = "steady" },
-    { when = function(s) return on_face(s) and not floor.caught(s.joints) end, to = "fold" },
-    { when = is "prone", to = "face" },
+    { when = is "prone", to = "fold" },
     { when = function(s) return s.base.posture == "left" or floor.up(s.base).y <= 0 end, to = "roll_left" },
     { after = 0, to = "roll_right" },
   },
   k.state "roll_left"  (roll "left"),
   k.state "roll_right" (roll "right"),
-  k.state "face" {
-    run = function(m, s)
-      m:clear_faults()
-      for tries = 0, P.frees do
-        m.posture:move(floor.prone(s.joints), { time_s = 0.2 })
-        local waited_s, calm_s = 0, 0
-        while waited_s < P.flat_max_s and calm_s < P.calm_s do
-          m:wait(0.02)
-          waited_s, calm_s = waited_s + 0.02, on_face(s) and rate(s) < P.still_rad_s and calm_s + 0.02 or 0
-        end
-        if tries == P.frees or not floor.caught(s.joints) then return end
-        play(m, floor.freeing(s.joints))
-      end
-    end,
-    { on = "run.done", to = "fold" },
-  },
   k.state "fold" {
     run = function(m, s)
-      m:clear_faults()
-      m.vars.slope = floor.slope(s.base) or m.vars.slope
       local steps, turns = floor.fold(s.joints, P.fold_pace)
       m.vars.arms = turns
       play(m, steps)
       m:wait(P.bear_s)
+      play(m, { floor.bear(turns, P.lean_rad + m.vars.learnt_rad) })
     end,
-    { on = "run.done", to = "bear" },
-  },
-  k.state "bear" {
-    run = function(m, s)
-      m:clear_faults()
-      local bear = floor.bear(m.vars.arms, P.lean_rad + m.vars.learnt_rad, m.vars.slope)
-      play(m, { bear })
-      while true do play(m, floor.haul(bear[1], s, m.vars.slope)) end
-    end,
-    { when = function(s, m) return bears(s) and floor.over_soles(s, m.vars.slope, P.near_m) end, to = "rise" },
-    { when = function(s, m) return m.time_s > 0.3 and tipped(s) end, to = "again", why = "tipped over" },
-    { after = P.haul_s, when = bears, to = "rise" },
-    { after = P.haul_s, to = "again", why = "not on hands and feet" },
+    { on = "run.done", when = bears, to = "rise" },
+    { on = "run.done", to = "again", why = "not on hands and feet" },
   },
   k.state "rise" {
     run = function(m)
-      m:clear_faults()
       m.posture:set_gains("rise")
-      local lean_rad = P.lean_rad + m.vars.learnt_rad
-      local motion = m.posture:move_through(floor.rise(m.vars.arms, lean_rad, P.rise_pace, m.vars.slope))
+      local motion = m.posture:move_through(floor.rise(m.vars.arms, P.lean_rad + m.vars.learnt_rad, P.rise_pace))
       m:wait(P.flat_s)
       m.balance:set_parameter("share", 1)
       motion:wait()
