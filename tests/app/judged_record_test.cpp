@@ -112,7 +112,7 @@ TEST_CASE("A record goes on in the world of a scenario, which judges what become
   const Outcome stands = run(replay + "0.8", project);
   CHECK_MESSAGE(stands.exit_code == 0, (stands.out + stands.err));
   CHECK(has(stands.out, "stands"));
-  scenario("tulip", R"("set": {"joint.*.torque_scale": 0.05},)");
+  scenario("tulip", R"("set": {"joint.*.torque_scale": 0.05, "joint.*.coulomb_Nm": 0},)");
   CHECK(run(replay + "0.8", project).exit_code != 0);
   scenario("tulip", R"("pushes": [{"link": "torso", "at_s": 0.1, "impulse_Ns": [0, 9, 0]}],)");
   CHECK(has(run(replay + "0.8", project).err, "has events, pushes, faults or a robot"));

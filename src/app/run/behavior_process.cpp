@@ -91,7 +91,9 @@ int run_behavior_process(const RunOptions& options) {
   die_with_parent();
   be_first_victim();
   const SharedMemory memory(child_memory_descriptor, sizeof(BehaviorLink));
-  Doorbell bell(child_doorbell_descriptor);
+  // Open until the process has ended: the runtime takes a closed doorbell for its end, and what went wrong is told
+  // later.
+  static Doorbell bell(child_doorbell_descriptor);
   auto& link = *static_cast<BehaviorLink*>(memory.get());
   if (link.setup.cpu_to_leave >= 0) (void)leave_cpu(link.setup.cpu_to_leave);
   const KeptState& kept = link.setup.kept;
