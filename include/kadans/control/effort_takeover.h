@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kadans/control/handover.h"
+#include "kadans/control/takeover.h"
 
 namespace kadans {
 

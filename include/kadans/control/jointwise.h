@@ -4,7 +4,7 @@
 //   explicit Law(const JointAxis& axis);
 //   static constexpr std::uint32_t channels;                               // its set-points, numbered from 0
 //   void declare(AxisTables& tables);
-//   void start(const Handover& handover) noexcept;                         // takes over from the measured state
+//   void start(const Takeover& takeover) noexcept;                         // takes over from the measured state
 //   JointActuation step(const JointState& state, double dt_s) noexcept;
 //   double remaining_s() const noexcept;
 //   void pass_state(StateBytes& bytes) noexcept;                           // all that changes (state_bytes.h)
@@ -39,8 +39,8 @@
 #include <vector>
 
 #include "kadans/control/control_object.h"
-#include "kadans/control/handover.h"
 #include "kadans/control/joint_axis.h"
+#include "kadans/control/takeover.h"
 
 namespace kadans {
 

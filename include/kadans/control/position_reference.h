@@ -2,9 +2,9 @@
 // which a joint that is taken over comes to rest.
 #pragma once
 
-#include "kadans/control/handover.h"
 #include "kadans/control/joint_axis.h"
 #include "kadans/control/minimum_jerk.h"
+#include "kadans/control/takeover.h"
 
 namespace kadans {
 
@@ -22,8 +22,8 @@ class PositionReference {
  protected:
   explicit PositionReference(const JointAxis& axis) : axis_(axis) {}
   // The reference continues with the joint's velocity and comes to rest.
-  void take_over(const Handover& handover) noexcept {
-    continue_motion(reference_, handover.state.position_rad, handover.state.velocity_rad_s, axis_);
+  void take_over(const Takeover& takeover) noexcept {
+    continue_motion(reference_, takeover.state.position_rad, takeover.state.velocity_rad_s, axis_);
   }
 
   JointAxis axis_;

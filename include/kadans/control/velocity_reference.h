@@ -2,8 +2,8 @@
 // acceleration and brakes before the joint's limits (VelocityRamp). The torque from before the start fades away.
 #pragma once
 
-#include "kadans/control/handover.h"
 #include "kadans/control/joint_axis.h"
+#include "kadans/control/takeover.h"
 
 namespace kadans {
 

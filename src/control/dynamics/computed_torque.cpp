@@ -180,10 +180,10 @@ void ComputedTorque::take_over(Part& part, const ControlInput& input) noexcept {
   const JointState& joint = input.joints.joints[part.axis.joint];
   part.running = part.fresh = std::isfinite(joint.position_rad) && std::isfinite(joint.velocity_rad_s);
   if (!part.running) return;
-  const Handover handover{joint, input.last.joints[part.axis.joint], input.dt_s};
+  const Takeover takeover{joint, input.last.joints[part.axis.joint], input.dt_s};
   continue_motion(part.reference, joint.position_rad, joint.velocity_rad_s, part.axis);
   part.state.integral_Nm = 0;
-  part.takeover.start(effort_before_Nm(handover));
+  part.takeover.start(effort_before_Nm(takeover));
 }
 
 // The acceleration to ask of the joint.

@@ -46,9 +46,9 @@
 #include "control/option_link.h"
 #include "gaze_solver.h"
 #include "kadans/control/control_object.h"
-#include "kadans/control/handover.h"
 #include "kadans/control/joint_axis.h"
 #include "kadans/control/minimum_jerk.h"
+#include "kadans/control/takeover.h"
 
 namespace kadans {
 

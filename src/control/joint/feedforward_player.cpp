@@ -60,7 +60,7 @@ class PlayerLaw {
   explicit PlayerLaw(const JointAxis& axis) : axis_(axis) {}
   void follow(const PlayerPhase& phase) noexcept { phase_ = &phase; }  // before start
   void declare(AxisTables& tables);
-  void start(const Handover& handover) noexcept;
+  void start(const Takeover& takeover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
   void set_point(std::uint32_t, double value, double duration_s) noexcept { amplitude_.move(value, duration_s); }
   void cancel(std::uint32_t) noexcept { amplitude_.move(0, cancel_time_s); }
@@ -154,12 +154,12 @@ void PlayerLaw::declare(AxisTables& tables) {
   tables.signal("feedforward_Nm", "Nm", "Torque played, and that taken over.", &state_.feedforward_Nm);
 }
 
-void PlayerLaw::start(const Handover& handover) noexcept {
+void PlayerLaw::start(const Takeover& takeover) noexcept {
   state_ = {};
-  effort_before_Nm_ = effort_before_Nm(handover);
+  effort_before_Nm_ = effort_before_Nm(takeover);
   law_.start(effort_before_Nm_);
   amplitude_.reset(0);
-  continue_motion(posture_, handover.state.position_rad, handover.state.velocity_rad_s, axis_);
+  continue_motion(posture_, takeover.state.position_rad, takeover.state.velocity_rad_s, axis_);
 }
 
 JointActuation PlayerLaw::step(const JointState& joint, double dt_s) noexcept {

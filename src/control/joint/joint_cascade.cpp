@@ -45,7 +45,7 @@ class CascadeLaw : public PositionReference {
 
   explicit CascadeLaw(const JointAxis& axis) : PositionReference(axis) {}
   void declare(AxisTables& tables);
-  void start(const Handover& handover) noexcept;
+  void start(const Takeover& takeover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
   void pass_state(StateBytes& bytes) noexcept {
     PositionReference::pass_state(bytes);
@@ -95,11 +95,11 @@ double CascadeLaw::velocity_command(const SetpointState& reference, double posit
   return s.velocity_command_rad_s;
 }
 
-void CascadeLaw::start(const Handover& handover) noexcept {
-  const JointState& joint = handover.state;
+void CascadeLaw::start(const Takeover& takeover) noexcept {
+  const JointState& joint = takeover.state;
   state_ = {};
-  take_over(handover);
-  state_.effort_Nm = effort_before_Nm(handover);
+  take_over(takeover);
+  state_.effort_Nm = effort_before_Nm(takeover);
   const double velocity_error_rad_s = velocity_command(reference_.state(), joint.position_rad) - joint.velocity_rad_s;
   const double wanted_Nm = state_.effort_Nm - config_.feedforward_Nm - config_.kv_Nms_per_rad * velocity_error_rad_s;
   state_.integral_Nm = std::clamp(wanted_Nm, -config_.integral_max_Nm, config_.integral_max_Nm);

@@ -25,7 +25,7 @@ class ImpedanceLaw : public PositionReference {
   explicit ImpedanceLaw(const JointAxis& axis) : PositionReference(axis) {}
   void declare(AxisTables& tables);
   void compute_in_drive(bool in_drive) noexcept { law_.compute_in_drive(in_drive); }
-  void start(const Handover& handover) noexcept;
+  void start(const Takeover& takeover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
   bool setpoint_state(std::uint32_t which, SetpointState& state) const noexcept;
   void follow(std::uint32_t which, const SetpointState& state) noexcept;
@@ -47,9 +47,9 @@ void ImpedanceLaw::declare(AxisTables& tables) {
   tables.signal("reference_effort_Nm", "Nm", "Torque beside spring and damper.", &effort_.value);
 }
 
-void ImpedanceLaw::start(const Handover& handover) noexcept {
-  const double effort_Nm = effort_before_Nm(handover);
-  take_over(handover);
+void ImpedanceLaw::start(const Takeover& takeover) noexcept {
+  const double effort_Nm = effort_before_Nm(takeover);
+  take_over(takeover);
   law_.start(effort_Nm);
   effort_ = {.value = effort_Nm};
 }

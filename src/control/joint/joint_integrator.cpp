@@ -32,7 +32,7 @@ class IntegratorLaw : public VelocityReference {
 
   explicit IntegratorLaw(const JointAxis& axis) : VelocityReference(axis) {}
   void declare(AxisTables& tables);
-  void start(const Handover& handover) noexcept;
+  void start(const Takeover& takeover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
   void pass_state(StateBytes& bytes) noexcept {
     VelocityReference::pass_state(bytes);
@@ -53,8 +53,8 @@ void IntegratorLaw::declare(AxisTables& tables) {
   tables.signal("effort_Nm", "Nm", "What is left of the torque taken over.", &state_.effort_Nm);
 }
 
-void IntegratorLaw::start(const Handover& handover) noexcept {
-  const PositionStart before = position_before(handover);
+void IntegratorLaw::start(const Takeover& takeover) noexcept {
+  const PositionStart before = position_before(takeover);
   state_ = {.reference_rad = before.position_rad, .effort_Nm = before.effort_Nm};
   lowest_rad_ = std::min(axis_.lower_rad, before.position_rad);
   highest_rad_ = std::max(axis_.upper_rad, before.position_rad);

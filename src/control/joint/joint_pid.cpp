@@ -17,7 +17,7 @@ class PidLaw : public PositionReference {
  public:
   explicit PidLaw(const JointAxis& axis) : PositionReference(axis) {}
   void declare(AxisTables& tables);
-  void start(const Handover& handover) noexcept;
+  void start(const Takeover& takeover) noexcept;
   JointActuation step(const JointState& joint, double dt_s) noexcept {
     const SetpointState& reference = reference_.step(dt_s);
     return {.effort_Nm = pid_.step(reference.value, reference.velocity, joint.position_rad, joint.velocity_rad_s, dt_s),
@@ -45,9 +45,9 @@ void PidLaw::declare(AxisTables& tables) {
   tables.position_setpoint(0);
 }
 
-void PidLaw::start(const Handover& handover) noexcept {
-  take_over(handover);
-  pid_.start(handover.state.position_rad, handover.state.velocity_rad_s, effort_before_Nm(handover),
+void PidLaw::start(const Takeover& takeover) noexcept {
+  take_over(takeover);
+  pid_.start(takeover.state.position_rad, takeover.state.velocity_rad_s, effort_before_Nm(takeover),
              reference_.state().velocity);
 }
 

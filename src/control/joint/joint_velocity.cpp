@@ -30,7 +30,7 @@ class VelocityLaw : public VelocityReference {
 
   explicit VelocityLaw(const JointAxis& axis) : VelocityReference(axis) {}
   void declare(AxisTables& tables);
-  void start(const Handover& handover) noexcept;
+  void start(const Takeover& takeover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
   void pass_state(StateBytes& bytes) noexcept {
     VelocityReference::pass_state(bytes);
@@ -55,8 +55,8 @@ void VelocityLaw::declare(AxisTables& tables) {
   tables.signal("saturated", "", "Whether the torque added was limited.", &state_.saturated);
 }
 
-void VelocityLaw::start(const Handover& handover) noexcept {
-  const VelocityStart before = velocity_before(handover);
+void VelocityLaw::start(const Takeover& takeover) noexcept {
+  const VelocityStart before = velocity_before(takeover);
   state_ = {.effort_Nm = before.effort_Nm};
   take_over(before.velocity_rad_s, before.effort_Nm);
 }

@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <memory>
 
-#include "kadans/control/handover.h"
 #include "kadans/control/joint_axis.h"
 #include "kadans/control/jointwise.h"
 #include "kadans/control/motion_profile.h"
+#include "kadans/control/takeover.h"
 
 namespace kadans {
 
@@ -33,7 +33,7 @@ class ProfileLaw {
 
   explicit ProfileLaw(const JointAxis& axis) : axis_(axis) {}
   void declare(AxisTables& tables);
-  void start(const Handover& handover) noexcept;
+  void start(const Takeover& takeover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
   void cancel(std::uint32_t which) noexcept;
@@ -89,8 +89,8 @@ void ProfileLaw::stop_within_limits() noexcept {
   if (inside_rad != profile_.target()) (void)profile_.move(inside_rad, limits());
 }
 
-void ProfileLaw::start(const Handover& handover) noexcept {
-  const PositionStart before = position_before(handover);
+void ProfileLaw::start(const Takeover& takeover) noexcept {
+  const PositionStart before = position_before(takeover);
   state_ = {};
   lowest_rad_ = std::min(axis_.lower_rad, before.position_rad);
   highest_rad_ = std::max(axis_.upper_rad, before.position_rad);

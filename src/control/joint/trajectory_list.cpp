@@ -142,14 +142,14 @@ void TrajectoryLaw::advance(double dt_s) noexcept {
   }
 }
 
-void TrajectoryLaw::start(const Handover& handover) noexcept {
-  const JointState& joint = handover.state;
+void TrajectoryLaw::start(const Takeover& takeover) noexcept {
+  const JointState& joint = takeover.state;
   clear();
   state_ = {};
   reference_rad_ = joint.position_rad;
   reference_rad_s_ = joint.velocity_rad_s;
   stop();
-  pid_.start(joint.position_rad, joint.velocity_rad_s, effort_before_Nm(handover), reference_rad_s_);
+  pid_.start(joint.position_rad, joint.velocity_rad_s, effort_before_Nm(takeover), reference_rad_s_);
 }
 
 JointActuation TrajectoryLaw::step(const JointState& joint, double dt_s) noexcept {

@@ -49,7 +49,7 @@ class TrajectoryLaw {
 
   explicit TrajectoryLaw(const JointAxis& axis) : axis_(axis) {}
   void declare(AxisTables& tables);
-  void start(const Handover& handover) noexcept;
+  void start(const Takeover& takeover) noexcept;
   JointActuation step(const JointState& state, double dt_s) noexcept;
   void set_point(std::uint32_t which, double value, double duration_s) noexcept;
   void cancel(std::uint32_t which) noexcept;

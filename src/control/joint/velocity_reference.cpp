@@ -55,7 +55,7 @@ void VelocityReference::declare(AxisTables& tables) {
 
 void VelocityReference::take_over(double velocity_rad_s, double effort_Nm) noexcept {
   motion_ = {};
-  ramp_.start(velocity_rad_s, handover_stop_s);
+  ramp_.start(velocity_rad_s, takeover_stop_s);
   fading_.start(effort_Nm);
 }
 

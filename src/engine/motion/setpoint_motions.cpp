@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kadans/control/handover.h"
+#include "kadans/control/takeover.h"
 
 namespace kadans {
 

@@ -1,4 +1,4 @@
-#include "kadans/control/handover.h"
+#include "kadans/control/takeover.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,28 +6,27 @@
 namespace kadans {
 namespace {
 
-constexpr double stop_s = handover_stop_s;
 constexpr double stop_shortest_s = 0.02;  // close to the joint's limit
-constexpr double still_rad_s = 1e-6;
+constexpr double resting_rad_s = 1e-6;
 
 }  // namespace
 
-double effort_before_Nm(const Handover& handover) noexcept {
-  switch (handover.last.mode) {
+double effort_before_Nm(const Takeover& takeover) noexcept {
+  switch (takeover.last.mode) {
     case ActuationMode::off:
       return 0;
     case ActuationMode::effort:
-      return handover.last.effort_Nm;
+      return takeover.last.effort_Nm;
     case ActuationMode::position:
     case ActuationMode::velocity:
     case ActuationMode::impedance:
-      return handover.state.effort_Nm;
+      return takeover.state.effort_Nm;
   }
   return 0;
 }
 
-PositionStart position_before(const Handover& handover) noexcept {
-  const auto& [state, last, dt_s] = handover;
+PositionStart position_before(const Takeover& takeover) noexcept {
+  const auto& [state, last, dt_s] = takeover;
   const double ahead_rad = state.position_rad + 2 * dt_s * state.velocity_rad_s;
   switch (last.mode) {
     case ActuationMode::off:
@@ -44,18 +43,21 @@ PositionStart position_before(const Handover& handover) noexcept {
   return {ahead_rad, state.velocity_rad_s, 0};
 }
 
-VelocityStart velocity_before(const Handover& handover) noexcept {
-  if (handover.last.mode == ActuationMode::velocity) return {handover.last.velocity_rad_s, handover.last.effort_Nm};
-  return {handover.state.velocity_rad_s, effort_before_Nm(handover)};
+VelocityStart velocity_before(const Takeover& takeover) noexcept {
+  if (takeover.last.mode == ActuationMode::velocity) return {takeover.last.velocity_rad_s, takeover.last.effort_Nm};
+  return {takeover.state.velocity_rad_s, effort_before_Nm(takeover)};
 }
 
 void continue_motion(MinimumJerk& reference, double position_rad, double velocity_rad_s,
                      const JointAxis& axis) noexcept {
-  const double target_rad = std::clamp(position_rad + 0.5 * stop_s * velocity_rad_s, axis.lower_rad, axis.upper_rad);
+  const double target_rad =
+      std::clamp(position_rad + 0.5 * takeover_stop_s * velocity_rad_s, axis.lower_rad, axis.upper_rad);
   const double way_rad = target_rad - position_rad;
-  if (std::abs(velocity_rad_s) < still_rad_s && std::abs(way_rad) < still_rad_s) return reference.reset(position_rad);
+  if (std::abs(velocity_rad_s) < resting_rad_s && std::abs(way_rad) < resting_rad_s)
+    return reference.reset(position_rad);
   const bool towards = way_rad * velocity_rad_s > 0;
-  const double duration_s = towards ? std::clamp(2 * way_rad / velocity_rad_s, stop_shortest_s, stop_s) : stop_s;
+  const double duration_s =
+      towards ? std::clamp(2 * way_rad / velocity_rad_s, stop_shortest_s, takeover_stop_s) : takeover_stop_s;
   reference.start(position_rad, velocity_rad_s, target_rad, duration_s);
 }
 

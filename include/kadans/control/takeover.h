@@ -14,34 +14,34 @@
 
 namespace kadans {
 
-struct Handover {
+struct Takeover {
   const JointState& state;     // measured in this tick
   const JointActuation& last;  // written in this tick
   double dt_s;
 };
 
 // The drive's torque before: the commanded one if the drive was in effort mode, 0 if it was off, else the measured one.
-double effort_before_Nm(const Handover& handover) noexcept;
+double effort_before_Nm(const Takeover& takeover) noexcept;
 
 // The position mode's fields for the actuation that this tick computes. The drive uses it until the end of the next
 // tick, two ticks after the measurement, so a moving reference is moved on to that time.
 struct PositionStart {
   double position_rad, velocity_rad_s, effort_Nm;
 };
-PositionStart position_before(const Handover& handover) noexcept;
+PositionStart position_before(const Takeover& takeover) noexcept;
 
 // The velocity mode's fields for the actuation that this tick computes.
 struct VelocityStart {
   double velocity_rad_s, effort_Nm;
 };
-VelocityStart velocity_before(const Handover& handover) noexcept;
+VelocityStart velocity_before(const Takeover& takeover) noexcept;
 
 // How long a reference that is taken over in motion takes to come to rest.
-inline constexpr double handover_stop_s = 0.2;
+inline constexpr double takeover_stop_s = 0.2;
 // How long a motion that is cancelled takes to come to rest.
 inline constexpr double cancel_time_s = 0.1;
 
-// Lets the reference continue with the joint's position and velocity and come to rest within handover_stop_s, before
+// Lets the reference continue with the joint's position and velocity and come to rest within takeover_stop_s, before
 // the joint's limit if possible. A joint beyond its limit is led back to the limit.
 void continue_motion(MinimumJerk& reference, double position_rad, double velocity_rad_s,
                      const JointAxis& axis) noexcept;
