@@ -43,18 +43,23 @@ function field.robots(s, pose)
   return all
 end
 
--- The place before a goal's post that is in the way from the robot to `goal`, or nil: on the field, beside the post.
-local post_m, before_post_m = 0.4, 0.55
+-- The place beside a goal's post that is in the way from the robot to `goal`, on the field's side of it, or nil. It goes
+-- on around the post as the robot comes nearer; a fixed place before the post was left by none whose way passed it again.
+local post_m, beside_post_m = 0.4, 0.55
 function field.past_posts(me, pose, goal)
   local x_m, y_m = goal.x_m - pose.x_m, goal.y_m - pose.y_m
   local far_m = math.max(math.sqrt(x_m ^ 2 + y_m ^ 2), 0.01)
+  local ux, uy = x_m / far_m, y_m / far_m
   for _, end_m in ipairs { -me.length_m / 2, me.length_m / 2 } do
     for _, side_m in ipairs { -me.goal_m / 2 - 0.05, me.goal_m / 2 + 0.05 } do
       local px_m, py_m = end_m - pose.x_m, side_m - pose.y_m
-      local ahead_m = (x_m * px_m + y_m * py_m) / far_m
-      local beside_m = math.abs(x_m * py_m - y_m * px_m) / far_m
-      if ahead_m > 0 and ahead_m < far_m and beside_m < post_m then
-        return { x_m = end_m + (end_m > 0 and -before_post_m or before_post_m), y_m = side_m }
+      local ahead_m = ux * px_m + uy * py_m
+      local left_m = ux * py_m - uy * px_m  -- of the way
+      if ahead_m > 0 and ahead_m < far_m and math.abs(left_m) < post_m then
+        local to_left = left_m < 0
+        if math.abs(uy) > 0.2 then to_left = uy * end_m > 0 end
+        local aside_m = to_left and beside_post_m or -beside_post_m
+        return { x_m = end_m - aside_m * uy, y_m = side_m + aside_m * ux }
       end
     end
   end

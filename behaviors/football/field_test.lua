@@ -35,12 +35,32 @@ describe("field", function()
 
   it("goes around a goal's post on the field's side, and only around one that is in its way", function()
     local me = { length_m = 9, goal_m = 2.6 }
-    local behind_line = { x_m = -4.62, y_m = 1.4, heading_rad = 0 }
-    local past = field.past_posts(me, behind_line, { x_m = -4, y_m = 1.17 })
-    expect(past.x_m).to_be_near(-3.95, 1e-9)
-    expect(past.y_m).to_be_near(1.35, 1e-9)
+    local past = field.past_posts(me, { x_m = -4.2, y_m = 2, heading_rad = 0 }, { x_m = -4.3, y_m = 0.6 })
+    expect(past.x_m).to_be_near(-3.95, 0.02)
     expect(field.past_posts(me, { x_m = -3.5, y_m = 1.4, heading_rad = 0 }, { x_m = -4, y_m = 1.17 })).to_be_nil()
     expect(field.past_posts(me, { x_m = 4, y_m = 0, heading_rad = 0 }, { x_m = 4.7, y_m = 0 })).to_be_nil()
+  end)
+
+  it("comes to any place past the goals' posts, and near none of them", function()
+    local me = { length_m = 9, goal_m = 2.6 }
+    for from_y_m = -3, 3, 0.25 do
+      for _, goal in ipairs { { x_m = -4.2, y_m = 0.5 }, { x_m = -4.3, y_m = 1 }, { x_m = 4.4, y_m = -0.9 }, { x_m = 3.9, y_m = 1.9 } } do
+        local pose = { x_m = goal.x_m > 0 and 4 or -4, y_m = from_y_m }
+        local steps, nearest_m = 0, math.huge
+        while field.distance(goal, pose) > 0.05 and steps < 400 do
+          local to = field.past_posts(me, pose, goal) or goal
+          local way_m = math.max(field.distance(to, pose), 0.01)
+          pose.x_m = pose.x_m + 0.02 * (to.x_m - pose.x_m) / way_m
+          pose.y_m = pose.y_m + 0.02 * (to.y_m - pose.y_m) / way_m
+          steps = steps + 1
+          for _, post_y_m in ipairs { -1.35, 1.35 } do
+            nearest_m = math.min(nearest_m, field.distance(pose, { x_m = goal.x_m > 0 and 4.5 or -4.5, y_m = post_y_m }))
+          end
+        end
+        expect(steps).to_be_below(400)
+        expect(nearest_m).to_be_above(0.25)
+      end
+    end
   end)
 
   it("goes around a place that it shall keep away from, and leaves it first when it is there", function()
