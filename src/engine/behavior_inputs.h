@@ -1,6 +1,6 @@
-// What the behavior thread takes from outside of its own state, in the order in which it takes it. One implementation
-// writes it into the record of a run (telemetry), the other gives it to a run that repeats the record (app). Without
-// either, nothing is asked.
+// What the behavior thread, or the supervisor's with its decisions, takes from outside of its own state, in the order
+// in which it takes it. One implementation writes it into the record of a run (telemetry), the other gives it to a run
+// that repeats the record (app). Without either, nothing is asked.
 //
 // A behavior tick sees the snapshot of one control tick, so the number of that tick says all of it. What people ask
 // comes between two ticks. Four things come in the middle of a tick, by the moment: values that low levels of control
@@ -22,8 +22,11 @@ namespace kadans {
 
 class BehaviorInputs {
  public:
-  // Kinds of what people ask of the host, which knows how to read the bytes.
-  enum class Asked : std::uint8_t { order, question, note };
+  // Kinds of what people ask of the host, which knows how to read the bytes. Decisions are asked questions, too, and
+  // take more: what is seen of the world and what plays, in each tick; the files again; a message of another robot; and
+  // what they decided in the tick, by which a repetition is compared.
+  enum class Asked : std::uint8_t { order, question, note, seen, plays, reload, heard, decided };
+  static constexpr Asked last_asked = Asked::decided;
 
   virtual ~BehaviorInputs() = default;
   BehaviorInputs() = default;

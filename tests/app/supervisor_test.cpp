@@ -94,6 +94,47 @@ TEST_CASE("kadans run plays what the decisions want, on threads, and its record 
   const Outcome outcome = run("replay run.mcap --json", project);
   CHECK_MESSAGE(outcome.exit_code == 0, (outcome.out + outcome.err));
   CHECK(nlohmann::json::parse(outcome.out)["same"] == true);
+  CHECK_MESSAGE(has(outcome.out, " ticks of the decisions"), outcome.out);
+}
+
+TEST_CASE("Decisions of a run are repeated from its record, and what they ask for otherwise is told with its time") {
+  const fs::path project = supervised_project("repeated_decisions");
+  write(project / "behaviors/tulip/decide.lua", R"(local k = require "kadans"
+local P = k.params { depth_m = { 0.05, min = 0, max = 0.1, unit = "m", doc = "how deep" } }
+return k.decisions "decide" {
+  vars = { seen = 0 },
+  initial = "wave",
+  k.state "wave" {
+    enter = function(m) m:replace("wave") end,
+    { on = "play.done", to = "squat" },
+  },
+  k.state "squat" {
+    enter = function(m) m:replace("squat", { repeats = 1, depth_m = P.depth_m }) end,
+    { on = "play.done", to = "over" },
+  },
+  k.final "over" { outcome = "done" },
+}
+)");
+  Running robot(
+      project,
+      "run config/tulip/decides.json --plant ideal --duration 1000 --threads-on-virtual-time --record run.mcap "
+      "--flight 0 --ctl ctl -v 2>&1");
+  REQUIRE(robot.says("decide: "));
+  CHECK(edit(project / "behaviors/tulip/decide.lua", "return k.decisions", "-- again\nreturn k.decisions"));
+  for (const char* order : {"why decide", "reload decide"})
+    (void)run(std::string("ctl --socket ctl ") + order, project);
+  REQUIRE(robot.says("squat: settle -> squat"));
+  robot.end(SIGTERM);
+  const Outcome same = run("replay run.mcap", project);
+  CHECK_MESSAGE(same.exit_code == 0, (same.out + same.err));
+  CHECK_MESSAGE(has(same.out, " ticks of the decisions"), same.out);
+  REQUIRE(edit(project / "behaviors/tulip/decide.lua", "depth_m = P.depth_m", "depth_m = 0.06"));
+  const Outcome other = run("replay run.mcap --with behaviors/tulip/decide.lua", project);
+  CHECK_MESSAGE(has(other.out,
+                    "of the decisions: they ask for replace squat{\"depth_m\":0.06,\"repeats\":1.0}, recorded was "
+                    "replace squat{\"depth_m\":0.05,\"repeats\":1.0}"),
+                (other.out + other.err));
+  check_damaged(project / "run.mcap");
 }
 
 TEST_CASE("A simulation with decisions is repeated from its record alone, which holds what they may play") {

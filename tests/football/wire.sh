@@ -36,7 +36,9 @@ until grep -q "^serves" "$work/serve.txt"; do
   kill -0 "$serve" 2>/dev/null || { cat "$work/serve.txt"; exit 1; }
   sleep 0.1
 done
+recorded=""
 while read -r _ _ file rest; do
+  if [ -z "$recorded" ]; then recorded=$(basename "$file" .json); rest="$rest --record $work/$recorded.mcap"; fi
   "$build/kadans" run "$file" $rest --no-ctl --flight 0 --verbose >"$work/$(basename "$file" .json).txt" 2>&1 &
   pids+=($!)
 done < <(grep "^kadans run" "$work/serve.txt")
@@ -49,6 +51,9 @@ wait "$serve" || code=$?
 for pid in "${pids[@]:1}"; do kill -INT "$pid" 2>/dev/null || true; done
 for pid in "${pids[@]:1}"; do wait "$pid" || true; done
 cat "$work/serve.txt"
+# Its decisions, too, from the packets, messages and observations that came over the wire.
+"$build/kadans" replay "$work/$recorded.mcap" | tee "$work/replay.txt"
+grep -q "ticks of the decisions" "$work/replay.txt"
 python3 - "$work" "$code" "${elsewhere[@]}" <<'END'
 import json, pathlib, sys
 

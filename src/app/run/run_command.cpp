@@ -318,6 +318,10 @@ class WallClockRun {
     plan.inputs = {.pieces = std::make_unique<InputPieces>(parts_.control, layout, down),
                    .behaviors = &*taken_,
                    .in_files = recorded};
+    if (taken_to_decide_) {
+      plan.inputs.decisions = &*taken_to_decide_;
+      assembly_.supervisor()->take_inputs_by(&*taken_to_decide_);
+    }
     parts_.behaviors.take_inputs_by(&*taken_, recorded ? hand_overs.up : std::vector<UpStorage*>{});
     if (process_ == nullptr && recorded) assembly_.host().take_inputs_by(&*taken_);
     if (plan.flight.kept_s > 0) {
@@ -339,9 +343,14 @@ class WallClockRun {
   void take_inputs(const RunInputs& inputs) {
     std::vector<std::string> private_files;
     for (const PlacedName& pattern : assembly_.robot().record.private_files) private_files.push_back(pattern.name);
-    taken_.emplace(project_root(scenario_.file).string(), std::move(private_files));
+    const std::string root = project_root(scenario_.file).string();
+    taken_.emplace(root, private_files);
+    if (assembly_.supervisor() != nullptr && assembly_.supervisor()->decisions() != nullptr)
+      taken_to_decide_.emplace(root, std::move(private_files));
     for (const InputFile& file : inputs.files) {
-      if (file.text) taken_->knows(file.path, *file.text);
+      if (!file.text) continue;
+      taken_->knows(file.path, *file.text);
+      if (taken_to_decide_) taken_to_decide_->knows(file.path, *file.text);
     }
   }
 
@@ -512,7 +521,7 @@ class WallClockRun {
     ControlEngine& control;
     BehaviorEngine& behaviors;
   } parts_;
-  std::optional<RecordedInputs> taken_;
+  std::optional<RecordedInputs> taken_, taken_to_decide_;
   std::optional<EngineStates> states_;
   std::unique_ptr<TruthTask> truth_;  // of a model, or nullptr
   std::unique_ptr<PlantTask> plant_;  // of a model, or nullptr

@@ -454,6 +454,7 @@ UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& rec
       fs::remove(folder_ / name, error);  // also a plug-in's link
       replace({name, "", read_input_file(fs::absolute(file), input_max_bytes)});
     }
+    for (const auto& [name, file] : given) given_.insert(name);
     const std::string name = recorded.fact("scenario_input");
     const auto scenario = std::ranges::find(recorded.files, name, &InputFile::path);
     if (scenario == recorded.files.end() || !(scenario->text || scenario->left_out) || fs::path(name).is_absolute())
@@ -522,6 +523,7 @@ void UnpackedInputs::replace(const InputFile& file) const {
   const fs::path name = fs::path(file.path).lexically_normal(), place = folder_ / name;
   const auto refuse = [&](const std::string& why) { throw InputError({.file = file.path, .message = why}); };
   if (name.empty() || name.is_absolute() || *name.begin() == "..") refuse("leads out of the record's files");
+  if (given_.contains(name.generic_string())) return;
   try {
     if (fs::is_symlink(fs::symlink_status(place)))
       refuse("is a plug-in, and native code does not come out of a record");

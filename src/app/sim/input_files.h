@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -75,8 +76,8 @@ class UnpackedInputs {
   // Adds the behaviors of the project around the working directory that the record lacks, so that they can be played.
   // They become inputs of the run.
   void add_behaviors(RunInputs& inputs) const;
-  // Another text of a file, or one that came later. Throws InputError when the path leads out of the folder, or when a
-  // plug-in stands there.
+  // Another text of a file, or one that came later; those of `with` stay. Throws InputError when the path leads out of
+  // the folder, or when a plug-in stands there.
   void replace(const InputFile& file) const;
   // A private file of the record: from the project around the working directory. Throws InputError when it is not there
   // or differs.
@@ -92,6 +93,7 @@ class UnpackedInputs {
   void link_plugin(const InputFile& file, const std::string& record, bool any_plugins);
 
   std::filesystem::path folder_, scenario_;
+  std::set<std::string> given_;  // names of `with`
   PluginGate plugins_;
   int owner_;  // process that removes the folder; a process that split off later does not
 };

@@ -96,7 +96,9 @@ class JudgedRun : public RunObserver {
       const std::string text =
           text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = verbose});
       std::fputs(text.c_str(), stdout);
-      if (!run_.parting().empty()) std::printf("  differs from the record %s\n", run_.parting().c_str());
+      for (const std::string& differs : {run_.parting(), run_.decided_otherwise()}) {
+        if (!differs.empty()) std::printf("  differs from the record %s\n", differs.c_str());
+      }
     }
     if (result.interrupted) return exit_interrupted;
     return result.passed ? exit_passed : exit_failed;

@@ -79,11 +79,18 @@ RepeatedRun::RepeatedRun(const std::string& record, const ScenarioConfig& scenar
   for (DownStorage* storage : hand_overs_.down) storage->hold();
   engine_.take_inputs_by(this, hand_overs_.up);
   assembly_.host().take_inputs_by(this);
+  Supervisor* const supervisor = assembly_.supervisor();
+  if (!repeats_flight() && supervisor != nullptr && supervisor->decisions() != nullptr)
+    decisions_ = std::make_unique<RepeatedDecisions>(record, *supervisor,
+                                                     [this](const BehaviorInput& input) { write_file(input); });
 }
 
 void RepeatedRun::go(const std::function<bool()>& stop, const std::vector<RunObserver*>& observers) {
   for (bool more = begin(); more && !stop(); more = ticks_read_.next(taken_)) {
-    if (!repeats_flight()) repeat_behaviors(taken_.tick);
+    if (!repeats_flight()) {
+      repeat_behaviors(taken_.tick);
+      repeat_decisions();
+    }
     if (!repeat_tick(taken_)) return;
     show(observers);
     if (repeats_flight() && !parting_.empty()) return;
@@ -363,7 +370,7 @@ bool RepeatedRun::feed_next() {
 void RepeatedRun::repeat_behaviors(std::uint64_t until_tick) {
   while (parting_.empty() || leads()) {
     if (!next_behaviors_ && (behaviors_end_ || !read_behavior_tick())) return;
-    if (next_behaviors_->snapshot > until_tick) return;
+    if (next_behaviors_->snapshot() > until_tick) return;
     repeat_behavior_tick();
     next_behaviors_.reset();
   }
@@ -371,16 +378,9 @@ void RepeatedRun::repeat_behaviors(std::uint64_t until_tick) {
 
 bool RepeatedRun::read_behavior_tick() {
   next_behaviors_.emplace();
-  bool begun = false;
-  for (BehaviorInput input; behaviors_read_.next(input);) {
-    if (input.kind == BehaviorInput::Kind::tick_begins) {
-      next_behaviors_->snapshot = input.snapshot;
-      begun = true;
-    }
-    next_behaviors_->inputs.push_back(std::move(input));
-    if (next_behaviors_->inputs.back().kind == BehaviorInput::Kind::tick_ends) return true;
-  }
+  if (next_behaviors_->read(behaviors_read_)) return true;
   behaviors_end_ = true;
+  const bool begun = next_behaviors_->begun();
   if (!begun) next_behaviors_.reset();
   return begun;
 }
@@ -395,8 +395,8 @@ void RepeatedRun::repeat_behavior_tick() {
     return all;
   };
   waiting = take_all();
-  moment_ = sent_ = 0;
-  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
+  sent_ = 0;
+  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs();
   for (const BehaviorInput& input : inputs) {
     if (input.kind == BehaviorInput::Kind::newer && input.number < hand_overs_.up.size() &&
         !hand_overs_.up[input.number]->feed(input.bytes))
@@ -428,12 +428,24 @@ void RepeatedRun::repeat_behavior_tick() {
 }
 
 void RepeatedRun::write_files() {
-  for (const BehaviorInput& input : next_behaviors_->inputs) {
-    if (std::filesystem::path(input.path).is_absolute()) continue;  // those of this machine
-    if (input.kind == BehaviorInput::Kind::file) unpacked_.replace({input.path, "", input.text});
-    if (input.kind == BehaviorInput::Kind::private_file)
-      unpacked_.fetch({input.path, input.text, std::nullopt, true}, compared_.file());
+  for (const BehaviorInput& input : next_behaviors_->inputs()) write_file(input);
+}
+
+void RepeatedRun::write_file(const BehaviorInput& input) {
+  if (std::filesystem::path(input.path).is_absolute()) return;  // those of this machine
+  if (input.kind == BehaviorInput::Kind::file) unpacked_.replace({input.path, "", input.text});
+  if (input.kind == BehaviorInput::Kind::private_file)
+    unpacked_.fetch({input.path, input.text, std::nullopt, true}, compared_.file());
+}
+
+// They saw snapshots that behaviors had passed on, so their ticks come after those.
+void RepeatedRun::repeat_decisions() {
+  if (!decisions_ || !parting_.empty()) return;
+  {
+    const auto snapshot = assembly_.control().exchange().snapshot.read(0);
+    decisions_->repeat(*snapshot);
   }
+  if (!leads()) parting_ = decisions_->parting();  // behaviors that lead do not answer to decisions that differ
 }
 
 void RepeatedRun::ask_again(const BehaviorInput& input) {
@@ -469,18 +481,6 @@ void RepeatedRun::send_again(const BehaviorInput& input) {
   (void)sender.commit();
 }
 
-// The next one of this kind that the tick has not used up.
-const BehaviorInput* RepeatedRun::next_moment(BehaviorInput::Kind kind) {
-  if (!next_behaviors_) return nullptr;
-  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
-  for (std::size_t i = moment_; i < inputs.size(); ++i) {
-    if (inputs[i].kind != kind) continue;
-    moment_ = i;
-    return &inputs[i];
-  }
-  return nullptr;
-}
-
 std::string RepeatedRun::place() const {
   return "in tick " + std::to_string(taken_.tick) + printed(", at %.3f s", 1e-9 * static_cast<double>(taken_.time_ns));
 }
@@ -489,7 +489,7 @@ void RepeatedRun::part(const std::string& what) {
   if (parting_.empty()) parting_ = place() + ": " + what;
 }
 
-// But for those of the decisions, which are not repeated.
+// But for those of the decisions, of which only what they ask for is compared.
 bool RepeatedRun::next_event(std::string& text) {
   const Supervisor* const supervisor = assembly_.supervisor();
   const Decider* const decider = supervisor == nullptr ? nullptr : supervisor->decider();
@@ -521,6 +521,7 @@ std::string RepeatedRun::shortened() const {
   if (!ticks_read_.problem().empty()) return ticks_read_.problem();
   if (commands_read_.damaged() || behaviors_read_.damaged())
     return "what its behaviors took is damaged or not complete";
+  if (decisions_ && decisions_->damaged()) return "what its decisions took is damaged or not complete";
   if (handed_read_.damaged()) return "what came down to its control engine is damaged or not complete";
   if (out_of_commands_) return "its last commands are missing";
   return "";
@@ -528,7 +529,7 @@ std::string RepeatedRun::shortened() const {
 
 void RepeatedRun::sent(std::span<const Command> batch, bool) noexcept {
   if (!next_behaviors_ || !plays()) return;
-  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
+  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs();
   while (sent_ < inputs.size() && inputs[sent_].kind != BehaviorInput::Kind::sent) ++sent_;
   if (sent_ == inputs.size()) {
     if (!behaviors_end_) part("the behaviors also send " + command_text(batch.back(), assembly_.catalog()));
@@ -548,22 +549,12 @@ void RepeatedRun::sent(std::span<const Command> batch, bool) noexcept {
 }
 
 double RepeatedRun::parameter(double newest) noexcept {
-  const BehaviorInput* const input = next_moment(BehaviorInput::Kind::parameter);
-  if (input == nullptr) return newest;
-  ++moment_;
-  return input->value;
+  return next_behaviors_ ? next_behaviors_->parameter(newest) : newest;
 }
 
 bool RepeatedRun::time_is_over(bool (*)(void*) noexcept, void*) noexcept {
   ++looks_;
-  if (!next_behaviors_) return false;
-  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs;
-  for (std::size_t i = moment_; i < inputs.size() && inputs[i].kind != BehaviorInput::Kind::parameter; ++i) {
-    if (inputs[i].kind != BehaviorInput::Kind::time_over || inputs[i].number != looks_) continue;
-    moment_ = i + 1;
-    return true;
-  }
-  return false;
+  return next_behaviors_ && next_behaviors_->time_is_over(looks_);
 }
 
 }  // namespace kadans

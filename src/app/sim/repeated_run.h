@@ -26,17 +26,12 @@
 #include "app/commands.h"
 #include "input_files.h"
 #include "kadans/signal/state_hash.h"
+#include "repeated_decisions.h"
 #include "telemetry/reading/input_reader.h"
 #include "telemetry/reading/record_comparison.h"
 #include "telemetry/record/event_log.h"
 
 namespace kadans {
-
-// What the behavior thread took up to the end of one of its ticks.
-struct TakenByBehaviors {
-  std::vector<BehaviorInput> inputs;
-  std::uint64_t snapshot = 0;
-};
 
 // Repeats the record that the scenario names, and judges it by the scenario's checks; returns the program's exit code.
 int run_record_test(const SimOptions& options, const ScenarioConfig& test);
@@ -75,7 +70,7 @@ class RepeatedRun final : private BehaviorInputs {
   const RecordComparison& comparison() const noexcept { return *comparison_; }
   bool same() const;
   std::uint64_t compared_ticks() const noexcept { return compared_before_ + comparison_->ticks(); }
-  // What differs beside signals: the first command, event or storage. "": nothing.
+  // What differs beside signals: the first command, event or storage, or what decisions ask for. "": nothing.
   const std::string& parting() const noexcept { return parting_; }
   // Why not all of the record was repeated; "": all was.
   std::string shortened() const;
@@ -83,6 +78,10 @@ class RepeatedRun final : private BehaviorInputs {
   std::uint64_t behavior_ticks() const noexcept { return behavior_ticks_; }
   std::uint64_t commands() const noexcept { return commands_; }
   std::uint64_t events() const noexcept { return events_; }
+  // Of the supervisor, when they ran in its thread; nullptr: none are repeated.
+  const RepeatedDecisions* decisions() const noexcept { return decisions_.get(); }
+  // What these ask for otherwise than recorded; "": nothing. With behaviors that lead it is no parting.
+  std::string decided_otherwise() const { return decisions_ ? decisions_->parting() : ""; }
   bool repeats_flight() const noexcept { return behaviors_ == Behaviors::saved; }
   std::uint64_t states() const noexcept { return states_; }  // that were saved, and are the same
   std::int64_t begun_ns() const noexcept { return begun_ns_; }
@@ -117,10 +116,11 @@ class RepeatedRun final : private BehaviorInputs {
   bool read_behavior_tick();
   void repeat_behavior_tick();
   void write_files();
+  void write_file(const BehaviorInput& input);
+  void repeat_decisions();
   void ask_again(const BehaviorInput& input);
   std::filesystem::path moved(const std::filesystem::path& file) const;
   void send_again(const BehaviorInput& input);
-  const BehaviorInput* next_moment(BehaviorInput::Kind kind);
   bool next_event(std::string& text);
   void compare_events();
   void part(const std::string& what);
@@ -139,6 +139,7 @@ class RepeatedRun final : private BehaviorInputs {
   Assembly assembly_;
   BehaviorEngine engine_;
   HandOvers hand_overs_;
+  std::unique_ptr<RepeatedDecisions> decisions_;
   std::vector<double> foreign_;
   TickReader ticks_read_;
   std::vector<std::pair<SignalId, std::uint32_t>> foreign_signals_;  // of this run, of the record
@@ -156,10 +157,9 @@ class RepeatedRun final : private BehaviorInputs {
   std::int64_t begun_ns_ = 0;
   TopicReader events_read_;
   TickTaken taken_;
-  std::optional<TakenByBehaviors> next_behaviors_;
+  std::optional<TakenTick> next_behaviors_;
   bool behaviors_end_ = false, out_of_commands_ = false;
-  std::size_t moment_ = 0;  // in the inputs of next_behaviors_: those before are used up
-  std::size_t sent_ = 0;    // the same for what was sent
+  std::size_t sent_ = 0;  // in the inputs of next_behaviors_: what was sent before has been compared
   // Batches of the record's commands: given to the control engine, and sent in the behavior ticks before.
   std::uint64_t fed_ = 0, sent_before_ = 0;
   JoystickState joystick_{};

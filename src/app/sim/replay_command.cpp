@@ -256,6 +256,10 @@ std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& input
   }
   notes.push_back("repeated from its inputs: " + plural(run.behavior_ticks(), "tick") + " of the behaviors, " +
                   plural(run.commands(), "command") + ", " + plural(run.events(), "event"));
+  if (run.decisions() != nullptr && run.decisions()->ticks() > 0)
+    notes.back() += ", " + plural(run.decisions()->ticks(), "tick") + " of the decisions";
+  if (with && !run.decided_otherwise().empty())
+    notes.push_back(run.decided_otherwise() + "; behaviors got the recorded orders nevertheless");
   if (with)
     notes.emplace_back(
         "with other files: what they command counts, the sensors are those of the record, so the robot does not "

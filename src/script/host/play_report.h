@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
@@ -34,6 +37,15 @@ template <std::size_t room>
 void put_text(std::array<char, room>& to, std::string_view text) noexcept {
   to.fill('\0');
   std::copy_n(text.begin(), std::min(text.size(), room - 1), to.begin());
+}
+
+// As bytes from outside. False: damaged.
+[[nodiscard]] inline bool take_report(std::span<const std::byte> bytes, PlayReport& report) noexcept {
+  if (bytes.size() != sizeof report) return false;
+  std::memcpy(&report, bytes.data(), sizeof report);
+  report.refusal.back() = '\0';
+  for (PlayReport::Playing& one : report.playing) one.name.back() = one.state.back() = '\0';
+  return report.count <= PlayReport::behaviors_max;
 }
 
 }  // namespace kadans

@@ -4,6 +4,7 @@
 // Supervisor thread, but for what is said to be before the loop.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "kadans/signal/status.h"
 #include "script/bindings/signal_expressions.h"
 #include "script/host/play_report.h"
+#include "signal/byte_order.h"
 
 namespace kadans {
 
@@ -25,6 +27,7 @@ class Decider {
     std::string who;  // sent the message
     std::string why;  // the decisions did not get it; "": they did
   };
+  static constexpr std::size_t orders_max = 64, messages_max = 64;  // of a tick
   // What came of the last tick. The caller takes it.
   struct Decided {
     std::vector<PlayOrder> orders;      // for what plays
@@ -56,5 +59,10 @@ class Decider {
  protected:
   Decided decided_;
 };
+
+// As bytes: whether an error ended them, then the orders, then the messages.
+void put_decided(bool failed, const Decider::Decided& decided, ByteWriter& bytes);
+// Adds to what is there. False: damaged, or more than a tick may ask for.
+[[nodiscard]] bool take_decided(ByteReader& bytes, bool& failed, Decider::Decided& decided);
 
 }  // namespace kadans

@@ -16,15 +16,6 @@ using Severity = BehaviorLog::Severity;
 
 bool is_event(const PlayedEvent& event) { return is_event_name(event.name) && out_of_bounds(event.data).empty(); }
 
-// As bytes: whether an error ended them, then the orders, then the messages.
-void put_decided(bool failed, const Decider::Decided& decided, ByteWriter& bytes) {
-  bytes.put<std::uint8_t>(failed);
-  bytes.put(static_cast<std::uint32_t>(decided.orders.size()));
-  for (const PlayOrder& order : decided.orders) put_order(order, bytes);
-  bytes.put(static_cast<std::uint32_t>(decided.messages.size()));
-  for (const PlayedEvent& message : decided.messages) put_event(message, bytes);
-}
-
 }  // namespace
 
 DecisionProcess::DecisionProcess(const Behavior::Settings& settings, Catalog& catalog, BehaviorLog& log,
@@ -71,22 +62,14 @@ bool DecisionProcess::tick(const Snapshot& snapshot, const PlayReport& report) n
 // Nothing of it is believed: kinds, counts, and files within the project, which are then read as any others.
 bool DecisionProcess::take_decided() {
   ByteReader bytes(process_->decided());
-  failed_ = bytes.take<std::uint8_t>() != 0;
-  const auto orders = bytes.take<std::uint32_t>();
-  if (orders > orders_max) return false;
-  for (std::uint32_t i = 0; i < orders && bytes.ok(); ++i) {
-    decided_.orders.push_back(take_order(bytes));
-    for (PlayItem& item : decided_.orders.back().list) item.source = "m:play";
-    if (!may_play(decided_.orders.back())) return false;
+  if (!kadans::take_decided(bytes, failed_, decided_)) return false;
+  for (PlayOrder& order : decided_.orders) {
+    for (PlayItem& item : order.list) item.source = "m:play";
+    if (!may_play(order)) return false;
   }
-  const auto messages = bytes.take<std::uint32_t>();
-  if (messages > messages_max) return false;
-  for (std::uint32_t i = 0; i < messages && bytes.ok(); ++i) {
-    decided_.messages.push_back(take_event(bytes));
-    const PlayedEvent& message = decided_.messages.back();
-    if (!is_event(message) || !message.name.starts_with(message_event_prefix)) return false;
-  }
-  return bytes.ok() && bytes.left() == 0;
+  return std::ranges::all_of(decided_.messages, [](const PlayedEvent& message) {
+    return is_event(message) && message.name.starts_with(message_event_prefix);
+  });
 }
 
 bool DecisionProcess::may_play(const PlayOrder& order) const {

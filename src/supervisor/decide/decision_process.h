@@ -25,7 +25,6 @@ class DecisionProcess final : public Decider {
  public:
   // Starts the process, which reads the same files, and logs to this log. A tick comes once in this period.
   using Start = std::function<std::unique_ptr<ProcessHost>(BehaviorLog& log, std::int64_t period_ns)>;
-  static constexpr std::size_t orders_max = 64, messages_max = 64;  // of a tick; the process breaks the rules with more
 
   // Reads the files, too: throws InputError with what is wrong in them, or when the process does not start.
   DecisionProcess(const Behavior::Settings& settings, Catalog& catalog, BehaviorLog& log, const Start& start,

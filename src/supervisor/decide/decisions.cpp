@@ -17,6 +17,25 @@ bool plays(const PlayOrder& order) noexcept {
 
 }  // namespace
 
+void put_decided(bool failed, const Decider::Decided& decided, ByteWriter& bytes) {
+  bytes.put<std::uint8_t>(failed);
+  bytes.put(static_cast<std::uint32_t>(decided.orders.size()));
+  for (const PlayOrder& order : decided.orders) put_order(order, bytes);
+  bytes.put(static_cast<std::uint32_t>(decided.messages.size()));
+  for (const PlayedEvent& message : decided.messages) put_event(message, bytes);
+}
+
+bool take_decided(ByteReader& bytes, bool& failed, Decider::Decided& decided) {
+  failed = bytes.take<std::uint8_t>() != 0;
+  const auto orders = bytes.take<std::uint32_t>();
+  if (orders > Decider::orders_max) return false;
+  for (std::uint32_t i = 0; i < orders && bytes.ok(); ++i) decided.orders.push_back(take_order(bytes));
+  const auto messages = bytes.take<std::uint32_t>();
+  if (messages > Decider::messages_max) return false;
+  for (std::uint32_t i = 0; i < messages && bytes.ok(); ++i) decided.messages.push_back(take_event(bytes));
+  return bytes.ok() && bytes.left() == 0;
+}
+
 Decisions::Decisions(Behavior::Settings settings, const Catalog& catalog, BehaviorLog& log)
     : settings_(std::move(settings)), catalog_(catalog), log_(log), behavior_(load()) {}
 

@@ -41,12 +41,13 @@ Supervisor::Supervisor(const Settings& settings, Catalog& catalog, SupervisorLin
       message_channel_(settings.messages),
       perception_channel_(settings.perception) {
   if (!settings.config.decisions.empty()) {
-    const Behavior::Settings decides =
+    Behavior::Settings decides =
         decision_settings(settings.config, settings.root, settings.folders, settings.seed, settings.on_wall_clock);
     if (settings.start) {
       process_ = std::make_unique<DecisionProcess>(decides, catalog, log, settings.start, period_ns_);
       decider_ = process_.get();
     } else {
+      decides.limits.inputs = &inputs_;
       decisions_ = std::make_unique<Decisions>(decides, catalog, log);
       decider_ = decisions_.get();
     }
@@ -88,6 +89,17 @@ void Supervisor::warn_once(std::string_view about, const std::string& text) {
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::warning, "supervisor", text + " (told once)");
 }
 
+void Supervisor::tell(BehaviorInputs::Asked kind, std::span<const std::byte> bytes) {
+  if (inputs_ != nullptr) inputs_->asked(kind, bytes);
+}
+
+void Supervisor::tell_bytes(BehaviorInputs::Asked kind, auto put) {
+  if (inputs_ == nullptr) return;
+  told_.clear();
+  put(told_);
+  inputs_->asked(kind, told_.bytes());
+}
+
 void Supervisor::take_perception(std::int64_t time_ns) {
   std::string_view datagram;
   std::int64_t came_ns = time_ns;
@@ -111,6 +123,7 @@ void Supervisor::take_messages(std::int64_t time_ns) {
     const RobotMessages::Answer answer = messages_.decode(datagram, came_ns, event, why);
     if (answer == RobotMessages::Answer::own) continue;
     if (answer == RobotMessages::Answer::taken) {
+      tell_bytes(BehaviorInputs::Asked::heard, [&](ByteWriter& bytes) { put_event(event, bytes); });
       decider_->hear(std::move(event));
     } else {
       tell_heard({event.who, why});
@@ -174,9 +187,6 @@ bool Supervisor::step(std::int64_t time_ns) {
 bool Supervisor::decide() {
   if (decider_ == nullptr) return true;
   show_seen(world_.entries(), snapshot_.status.odometry, snapshot_.time_ns, snapshot_.seen);
-  reload_saved();
-  if (message_channel_ != nullptr) take_messages(snapshot_.time_ns);
-  while (auto asked = link_.questions.take()) decider_->ask(std::move(asked), snapshot_);
   {
     const auto report = link_.report.read();
     report_ = *report;
@@ -185,7 +195,19 @@ bool Supervisor::decide() {
   report_.orders += lost_;
   report_.orders_refused += lost_;
   if (std::exchange(lost_now_, false)) put_text(report_.refusal, no_room);
+  if (inputs_ != nullptr) inputs_->tick_begins(snapshot_, snapshot_.time_ns);
+  tell(BehaviorInputs::Asked::seen, std::as_bytes(std::span(&world_.entries(), 1)));
+  tell(BehaviorInputs::Asked::plays, std::as_bytes(std::span(&report_, 1)));
+  reload_saved();
+  if (message_channel_ != nullptr) take_messages(snapshot_.time_ns);
+  while (auto asked = link_.questions.take()) {
+    tell_bytes(BehaviorInputs::Asked::question, [&](ByteWriter& bytes) { put_question(asked->question, bytes); });
+    decider_->ask(std::move(asked), snapshot_);
+  }
   const bool decides = decider_->tick(snapshot_, report_);
+  tell_bytes(BehaviorInputs::Asked::decided,
+             [&](ByteWriter& bytes) { put_decided(decider_->failed(), decider_->decided(), bytes); });
+  if (inputs_ != nullptr) inputs_->tick_ends();
   for (const Decider::Heard& heard : decider_->decided().heard) tell_heard(heard);
   decider_->decided().heard.clear();
   for (auto& replied : decider_->decided().replies) link_.questions.answer(std::move(replied));
@@ -207,7 +229,9 @@ void Supervisor::send_orders() {
 }
 
 void Supervisor::reload_saved() {
-  if (watch_ != nullptr && watch_->poll()) decider_->reload(snapshot_);
+  if (watch_ == nullptr || !watch_->poll()) return;
+  tell(BehaviorInputs::Asked::reload, {});
+  decider_->reload(snapshot_);
 }
 
 }  // namespace kadans

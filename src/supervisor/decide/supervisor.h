@@ -17,12 +17,14 @@
 #include <functional>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "config/robot/supervisor_config.h"
 #include "decision_process.h"
+#include "engine/behavior_inputs.h"
 #include "engine/behavior_log.h"
 #include "engine/supervising.h"
 #include "engine/tick/control_engine.h"
@@ -67,6 +69,10 @@ class Supervisor final : public Supervising, public ObservationSink {
   // Before the loop: saved files of the decisions are reloaded. Throws std::runtime_error when nothing can be watched.
   void watch();
 
+  // Before the loop: what decisions that run here take is told, so that they can be repeated; nullptr: to nobody. In
+  // each of their ticks what is seen and what plays come first, and what was decided last.
+  void take_inputs_by(BehaviorInputs* inputs) noexcept { inputs_ = inputs; }
+
   std::int64_t period_ns() const noexcept override { return period_ns_; }
   void tick(std::int64_t time_ns) noexcept override;
   // Waits for the next tick; what finds no place is counted.
@@ -75,6 +81,7 @@ class Supervisor final : public Supervising, public ObservationSink {
   const WorldModel& world() const noexcept { return world_; }
   const Decider* decider() const noexcept { return decider_; }              // nullptr: nothing decides
   const Decisions* decisions() const noexcept { return decisions_.get(); }  // that run here
+  Decisions* decisions() noexcept { return decisions_.get(); }              // the same, of a run that is repeated
   const ProcessHost* process() const noexcept { return process_ ? &process_->process() : nullptr; }
 
  private:
@@ -91,6 +98,8 @@ class Supervisor final : public Supervising, public ObservationSink {
   void take_observations(std::int64_t time_ns) noexcept;
   bool step(std::int64_t time_ns);
   bool decide();
+  void tell(BehaviorInputs::Asked kind, std::span<const std::byte> bytes);
+  void tell_bytes(BehaviorInputs::Asked kind, auto put);  // put(ByteWriter&) writes them, if they are told at all
   void send_orders();
   void reload_saved();
 
@@ -104,6 +113,8 @@ class Supervisor final : public Supervising, public ObservationSink {
   MessageChannel *message_channel_, *perception_channel_;
   std::vector<Observation> perceived_;
   std::set<std::string, std::less<>> warned_;  // what is told only once
+  BehaviorInputs* inputs_ = nullptr;
+  ByteWriter told_;
   std::unique_ptr<Decisions> decisions_;
   std::unique_ptr<DecisionProcess> process_;
   Decider* decider_ = nullptr;  // one of the two

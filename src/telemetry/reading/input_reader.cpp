@@ -187,4 +187,35 @@ std::span<const std::byte> BehaviorInputReader::bytes() const noexcept {
   return std::span(message_).subspan(began_, at_ - began_);
 }
 
+bool TakenTick::read(BehaviorInputReader& reader) {
+  *this = {};
+  for (BehaviorInput input; reader.next(input);) {
+    if (input.kind == BehaviorInput::Kind::tick_begins) {
+      snapshot_ = input.snapshot;
+      begun_ = true;
+    }
+    inputs_.push_back(std::move(input));
+    if (inputs_.back().kind == BehaviorInput::Kind::tick_ends) return true;
+  }
+  return false;
+}
+
+double TakenTick::parameter(double newest) noexcept {
+  for (std::size_t i = moment_; i < inputs_.size(); ++i) {
+    if (inputs_[i].kind != BehaviorInput::Kind::parameter) continue;
+    moment_ = i + 1;
+    return inputs_[i].value;
+  }
+  return newest;
+}
+
+bool TakenTick::time_is_over(std::uint32_t look) noexcept {
+  for (std::size_t i = moment_; i < inputs_.size() && inputs_[i].kind != BehaviorInput::Kind::parameter; ++i) {
+    if (inputs_[i].kind != BehaviorInput::Kind::time_over || inputs_[i].number != look) continue;
+    moment_ = i + 1;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace kadans

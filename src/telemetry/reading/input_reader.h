@@ -100,12 +100,13 @@ class StateReader {
   bool read_ = false, there_ = false;
 };
 
-// What the behavior thread took, event by event.
+// What the behavior thread took, or the one that decides, event by event.
 class BehaviorInputReader {
  public:
   // `any_first`: of a flight record, whose events begin with any number.
-  explicit BehaviorInputReader(const std::string& record, bool any_first = false)
-      : reader_(record, {behavior_inputs_topic}), any_first_(any_first) {}
+  explicit BehaviorInputReader(const std::string& record, bool any_first = false,
+                               const char* topic = behavior_inputs_topic)
+      : reader_(record, {topic}), any_first_(any_first) {}
   [[nodiscard]] bool next(BehaviorInput& input);
   std::span<const std::byte> bytes() const noexcept;  // of the event that next() gave, as it is stored
   bool damaged() const noexcept { return damaged_; }
@@ -116,6 +117,26 @@ class BehaviorInputReader {
   std::size_t began_ = 0, at_ = 0;
   std::uint32_t expected_ = 0;
   bool any_first_, damaged_ = false;
+};
+
+// What such a thread took up to the end of one of its ticks, and how far a repetition of the tick has used it up.
+class TakenTick {
+ public:
+  // Replaces it by the next one. False: the record ends before that tick does; begun() says whether it began.
+  [[nodiscard]] bool read(BehaviorInputReader& reader);
+  bool begun() const noexcept { return begun_; }
+  std::uint64_t snapshot() const noexcept { return snapshot_; }  // as BehaviorInput has it
+  const std::vector<BehaviorInput>& inputs() const noexcept { return inputs_; }
+
+  // What scripts get in the repetition, in their order: a parameter, and whether their time ended at this look.
+  double parameter(double newest) noexcept;
+  bool time_is_over(std::uint32_t look) noexcept;
+
+ private:
+  std::vector<BehaviorInput> inputs_;
+  std::uint64_t snapshot_ = 0;
+  bool begun_ = false;
+  std::size_t moment_ = 0;  // those before are used up
 };
 
 }  // namespace kadans

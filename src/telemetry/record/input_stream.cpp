@@ -64,26 +64,33 @@ std::optional<std::uint32_t> count_in(const TextMap& facts, const char* name, st
 constexpr std::uint32_t down_max = 1024, state_bytes_max = 1U << 24U;
 
 // Bytes from outside become values that these types have.
+void make_sound(auto& value, std::uint8_t last) noexcept {
+  std::uint8_t byte = 0;
+  std::memcpy(&byte, &value, 1);
+  byte = std::min(byte, last);
+  std::memcpy(&value, &byte, 1);
+}
+
+void make_sound(SeenEntries& seen) noexcept {
+  constexpr std::int64_t time_max_ns = std::int64_t{1} << 62U;  // an age is a difference of two
+  for (SeenEntry& entry : seen.entries) {
+    entry.time_ns = std::clamp(entry.time_ns, -time_max_ns, time_max_ns);
+    make_sound(entry.places, 3);
+    make_sound(entry.source, seen_sources - 1);
+    make_sound(entry.carried, 1);
+  }
+}
+
 void make_sound(TickTaken& taken) noexcept {
-  const auto sound = [](auto& value, std::uint8_t last) {
-    std::uint8_t byte = 0;
-    std::memcpy(&byte, &value, 1);
-    byte = std::min(byte, last);
-    std::memcpy(&value, &byte, 1);
-  };
   for (JointSample& joint : taken.sensors.joints) {
-    sound(joint.drive, static_cast<std::uint8_t>(DriveState::fault));
-    sound(joint.homed, 1);
-    sound(joint.braked, 1);
+    make_sound(joint.drive, static_cast<std::uint8_t>(DriveState::fault));
+    make_sound(joint.homed, 1);
+    make_sound(joint.braked, 1);
   }
-  sound(taken.sensors.emergency, 1);
-  for (SeenEntry& entry : taken.seen.entries) {
-    sound(entry.places, 3);
-    sound(entry.source, seen_sources - 1);
-    sound(entry.carried, 1);
-  }
-  for (bool& button : taken.joystick.buttons) sound(button, 1);
-  sound(taken.joystick.connected, 1);
+  make_sound(taken.sensors.emergency, 1);
+  make_sound(taken.seen);
+  for (bool& button : taken.joystick.buttons) make_sound(button, 1);
+  make_sound(taken.joystick.connected, 1);
 }
 
 // Multiples of a step by numbers that differ for the two zeros: -2 steps are -3, one is -2, -0.0 is -1, 0.0 is 0.
@@ -162,6 +169,14 @@ void unpack(std::span<const std::uint64_t> words, const InputLayout& layout, Tic
   taken.sensors.joint_count = std::min(taken.sensors.joint_count, layout.joints);
   taken.sensors.foot_count = std::min(taken.sensors.foot_count, layout.feet);
   taken.sensors.channel_count = std::min(taken.sensors.channel_count, layout.channels);
+}
+
+bool take_seen(std::span<const std::byte> bytes, SeenEntries& seen) noexcept {
+  if (bytes.size() != sizeof seen) return false;
+  std::memcpy(&seen, bytes.data(), sizeof seen);
+  if (seen.count > seen.entries.size()) return false;
+  make_sound(seen);
+  return true;
 }
 
 InputPieces::InputPieces(const ControlEngine& engine, const InputLayout& layout, std::vector<const DownStorage*> down)

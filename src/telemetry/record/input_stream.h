@@ -14,7 +14,8 @@
 //   alike     grows as a word before it does: all readings of a frame are counted alike
 //
 // So a message is read after the rows of its ticks, and after the messages before it. Channel /inputs/behaviors: a
-// message holds events one after the other, each with a number, so that one that is missing is noticed.
+// message holds events one after the other, each with a number, so that one that is missing is noticed. Channel
+// /inputs/decisions: the same of the supervisor's thread, when decisions run there.
 //
 // A flight record begins in the middle of a run and may lack any part before. Each of its messages therefore also holds
 // the words of its first tick as they are, and its layout says so. Channel /inputs/states: a message holds the state of
@@ -41,6 +42,7 @@ namespace kadans {
 
 inline constexpr const char* inputs_topic = "/inputs";
 inline constexpr const char* behavior_inputs_topic = "/inputs/behaviors";
+inline constexpr const char* decision_inputs_topic = "/inputs/decisions";
 inline constexpr const char* states_topic = "/inputs/states";
 inline constexpr const char* inputs_metadata = "tick_inputs";  // the layout, and all signals by their numbers
 inline constexpr const char* inputs_format = "2";
@@ -72,6 +74,8 @@ struct TickTaken {
   SensorFrame sensors;
   std::vector<std::uint64_t> words;  // all of it, as it is stored
 };
+// The world model as bytes, as it was recorded. False: damaged.
+[[nodiscard]] bool take_seen(std::span<const std::byte> bytes, SeenEntries& seen) noexcept;
 void unpack(std::span<const std::uint64_t> words, const InputLayout& layout, TickTaken& taken);
 
 // Where a tick's inputs are read, in pieces, by the control thread.

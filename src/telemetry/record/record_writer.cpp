@@ -183,6 +183,12 @@ bool RecordWriter::behavior_inputs(std::span<const std::byte> message, std::int6
   return file_.write(behavior_inputs_, 0, time_ns, message);
 }
 
+bool RecordWriter::decision_inputs(std::span<const std::byte> message, std::int64_t time_ns) {
+  if (decision_inputs_ == 0)
+    decision_inputs_ = file_.add_channel(decision_inputs_topic, "", file_.add_schema("kadans.DecisionInputs", "", ""));
+  return file_.write(decision_inputs_, 0, time_ns, message);
+}
+
 bool RecordWriter::state(std::span<const std::byte> message, std::int64_t time_ns) {
   return file_.write(states_, 0, time_ns, message);
 }

@@ -63,6 +63,7 @@ class RecordWriter {
   void add_inputs(const InputLayout& layout);
   [[nodiscard]] bool inputs(std::span<const std::byte> message, std::int64_t time_ns);
   [[nodiscard]] bool behavior_inputs(std::span<const std::byte> message, std::int64_t time_ns);
+  [[nodiscard]] bool decision_inputs(std::span<const std::byte> message, std::int64_t time_ns);
   [[nodiscard]] bool state(std::span<const std::byte> message, std::int64_t time_ns);  // in a flight record
   [[nodiscard]] bool timing(const std::string& json, std::int64_t time_ns);
   [[nodiscard]] bool close();
@@ -98,7 +99,7 @@ class RecordWriter {
   std::uint64_t stride_ = 0;
   McapWriter file_;
   std::uint16_t log_ = 0, transitions_ = 0, active_ = 0, emitted_ = 0, faults_ = 0, timing_ = 0,
-                parameters_channel_ = 0, inputs_ = 0, behavior_inputs_ = 0, states_ = 0;
+                parameters_channel_ = 0, inputs_ = 0, behavior_inputs_ = 0, decision_inputs_ = 0, states_ = 0;
   std::vector<double> parameters_;  // the values that were last written
   ByteWriter message_;
 };

@@ -103,15 +103,6 @@ void RecordedInputs::file_read(const std::string& path, std::string_view text) {
   push();
 }
 
-void RecordedInputs::asked(Asked kind, std::span<const std::byte> bytes) {
-  BehaviorInputs::asked(kind, bytes);
-  if (flight_ != nullptr) return;
-  begin(BehaviorInput::Kind::asked);
-  event_.put(static_cast<std::uint8_t>(kind));
-  event_.put(bytes);
-  push();
-}
-
 namespace {
 
 // Values are as large as the largest robot and mostly zeros: how many zeros, how many others, these; in words.
@@ -158,7 +149,23 @@ std::vector<std::byte> take_value(ByteReader& message) {
   return value;
 }
 
+bool is_value(BehaviorInputs::Asked kind) noexcept {
+  return kind == BehaviorInputs::Asked::seen || kind == BehaviorInputs::Asked::plays;
+}
+
 }  // namespace
+
+void RecordedInputs::asked(Asked kind, std::span<const std::byte> bytes) {
+  BehaviorInputs::asked(kind, bytes);
+  if (flight_ != nullptr) return;
+  begin(BehaviorInput::Kind::asked);
+  event_.put(static_cast<std::uint8_t>(kind));
+  if (is_value(kind))
+    put_value(bytes, event_);
+  else
+    event_.put(bytes);
+  push();
+}
 
 void RecordedInputs::handed_down(std::uint32_t storage, std::int64_t number,
                                  std::span<const std::byte> value) noexcept {
@@ -256,9 +263,9 @@ bool take_behavior_input(ByteReader& message, std::uint32_t& expected, BehaviorI
       break;
     case BehaviorInput::Kind::asked: {
       const auto how = bytes.take<std::uint8_t>();
-      if (how > static_cast<std::uint8_t>(BehaviorInputs::Asked::note)) return false;
+      if (how > static_cast<std::uint8_t>(BehaviorInputs::last_asked)) return false;
       input.how = static_cast<BehaviorInputs::Asked>(how);
-      input.bytes = rest();
+      input.bytes = is_value(input.how) ? take_value(bytes) : rest();
       break;
     }
   }

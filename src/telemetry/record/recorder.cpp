@@ -162,6 +162,10 @@ void Recorder::take_behavior_inputs() {
   sorter_.sort(message_.bytes(), inputs_.in_files ? &for_file_ : nullptr, flies ? &for_flight_ : nullptr);
   if (for_file_.size() > 0 && is_open()) (void)file_->behavior_inputs(for_file_.bytes(), last_time_ns_);
   if (for_flight_.size() > 0) flight_->behavior_inputs(for_flight_.bytes());
+  if (inputs_.decisions == nullptr) return;
+  message_.clear();
+  inputs_.decisions->take(message_);
+  if (message_.size() > 0 && is_open()) (void)file_->decision_inputs(message_.bytes(), last_time_ns_);
 }
 
 void Recorder::take_events(std::int64_t until_ns) {

@@ -43,11 +43,12 @@ class Recorder final : public RecordSink {
   explicit Recorder(SignalTable&&, const RecorderSettings& = {}, const FlightSettings& = {},
                     Wait = Wait::in_ring) = delete;
 
-  // Before the first row, of a recorder with a ring: the inputs of the run are kept, too. `behaviors` and `states` must
-  // outlive the recorder.
+  // Before the first row, of a recorder with a ring: the inputs of the run are kept, too. They must outlive the
+  // recorder.
   struct Inputs {
     std::unique_ptr<InputPieces> pieces = {};  // nullptr: they are not kept
     RecordedInputs* behaviors = nullptr;
+    RecordedInputs* decisions = nullptr;  // of the supervisor's thread, for files alone
     bool in_files = true;
     EngineStates* states = nullptr;  // for the flight recorder, if its settings want inputs
   };
