@@ -6,24 +6,6 @@
 
 namespace kadans {
 
-// v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector part: exact when q is the identity.
-Vec3 rotate(const Quat& q, const Vec3& v) noexcept {
-  const Vec3 u{q[1], q[2], q[3]};
-  const Vec3 first = cross(u, v);
-  const Vec3 second = cross(u, first);
-  return {v[0] + 2 * (q[0] * first[0] + second[0]), v[1] + 2 * (q[0] * first[1] + second[1]),
-          v[2] + 2 * (q[0] * first[2] + second[2])};
-}
-
-Vec3 rotate_inverse(const Quat& q, const Vec3& v) noexcept { return rotate(conjugate(q), v); }
-
-Quat multiply(const Quat& a, const Quat& b) noexcept {
-  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
-}
-
-Quat conjugate(const Quat& q) noexcept { return {q[0], -q[1], -q[2], -q[3]}; }
-
 Quat normalized(const Quat& q) noexcept {
   const double norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
   if (!(norm > 0)) return {1, 0, 0, 0};
@@ -52,15 +34,6 @@ Vec3 roll_pitch_yaw(const Quat& q) noexcept {
   if (level < 1e-12) return {0, pitch_rad, std::atan2(-y[0], y[1])};
   const Vec3 z = rotate(q, {0, 0, 1});
   return {std::atan2(y[2], z[2]), pitch_rad, std::atan2(x[1], x[0])};
-}
-
-Pose compose(const Pose& a, const Pose& b) noexcept {
-  return {transform(a, b.position_m), multiply(a.orientation, b.orientation)};
-}
-
-Vec3 transform(const Pose& pose, const Vec3& point) noexcept {
-  const Vec3 turned = rotate(pose.orientation, point);
-  return {pose.position_m[0] + turned[0], pose.position_m[1] + turned[1], pose.position_m[2] + turned[2]};
 }
 
 namespace {

@@ -1,20 +1,36 @@
-// What whole-body control costs in the behavior thread: the high level of TULip's object while it sinks, shifts its
-// weight and leans, each call by itself, and what it takes to say that a target can be reached.
+// What moving the whole body costs. In the control thread: a tick of TULip's walk. In the behavior thread: the high
+// level of TULip's object while it sinks, shifts its weight and leans, each call by itself, and what it takes to say
+// that a target can be reached.
 #include <algorithm>
 #include <string>
 
 #include "body_rig.h"
 #include "report.h"
+#include "walk_rig.h"
 
 namespace kadans::bench {
 namespace {
 
-constexpr int behavior_ticks = 600;
+constexpr int behavior_ticks = 600, walk_ticks = 6000;
 constexpr double behavior_period_us = 10'000;
+
+void bench_walk(Report& report) {
+  WalkRig rig;
+  std::vector<double> each_us;
+  for (int i = 0; i < walk_ticks; ++i) {
+    rig.feel();
+    const double began = now_ns();
+    rig.step();
+    each_us.push_back(1e-3 * (now_ns() - began));
+  }
+  report.add("walk.steps", "walk, steps made", rig.steps(), "");
+  report.add("walk.tick_us", "walk, a tick, median", median(each_us), "us");
+}
 
 }  // namespace
 
 void bench_body(Report& report) {
+  bench_walk(report);
   BodyRig rig;
   std::vector<double> each_us;
   double most = 0;

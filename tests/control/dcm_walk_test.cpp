@@ -101,7 +101,7 @@ TEST_CASE("DcmWalk levels the sole of the swinging foot by what hip and knee are
     bench.lead("forward_m_s", 0.5);
     bench.lead("go", 1);
     while (bench.walk.plan().state().phase != Phase::steps) bench.ticks(1);
-    bench.ticks(250);
+    bench.ticks(200);
     const bool left = bench.walk.plan().state().stance == 1;
     bench.joints.joints[(left ? 0 : 5) + joint].position_rad += by_rad;
     bench.ticks(1);

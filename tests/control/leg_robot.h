@@ -44,6 +44,8 @@ inline RobotModel leg_robot() {
     link(side + "_shank", 1, -shank_m / 2);
     joint(side + "_ankle_pitch", first + 3, {0, 0, -shank_m}, {0, 1, 0});
     link(side + "_foot", 0.3, 0);
+    model.links.back().collisions.push_back(
+        {.pose = {.position_m = {0.03, 0, -0.045}}, .shape = Box{{0.22, 0.1, 0.03}}});
   }
   return model;
 }

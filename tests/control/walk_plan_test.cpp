@@ -17,7 +17,21 @@ using Phase = WalkPlan::Phase;
 
 struct Pendulum {
   WalkPlan plan;
-  WalkPlan::Config config{.side_rate_share = 1};
+  WalkPlan::Config config{.step_s = 0.32,
+                          .step_min_s = 0.24,
+                          .width_m = 0.18,
+                          .lift_m = 0.04,
+                          .place_share = 0.9,
+                          .place_weight = 0.05,
+                          .time_weight = 0.05,
+                          .side_rate_share = 1,
+                          .trust_per_s = 30,
+                          .edge_share = 0,
+                          .ankle_gain = 1,
+                          .shift_x_m = 0,
+                          .trim_per_s = 0.3,
+                          .trim_max_m_s = 0.1,
+                          .sole = {.heel_m = 0.06, .toe_m = 0.1, .half_width_m = 0.03}};
   WalkPlan::Wanted wanted{.go = true};
   std::array<GroundPoint, 2> foot{{{0, 0.09}, {0, -0.09}}};
   GroundPoint com, velocity_m_s;

@@ -9,16 +9,39 @@
 
 namespace kadans {
 
-Vec3 rotate(const Quat& q, const Vec3& v) noexcept;
-Vec3 rotate_inverse(const Quat& q, const Vec3& v) noexcept;
-Quat multiply(const Quat& a, const Quat& b) noexcept;
-Quat conjugate(const Quat& q) noexcept;
+// Rotations are inlined: a body's motion is hundreds of them a tick.
+inline Quat conjugate(const Quat& q) noexcept { return {q[0], -q[1], -q[2], -q[3]}; }
+
+// v + 2 w (u x v) + 2 u x (u x v), with u the quaternion's vector part: exact when q is the identity.
+inline Vec3 rotate(const Quat& q, const Vec3& v) noexcept {
+  const Vec3 u{q[1], q[2], q[3]};
+  const Vec3 first = cross(u, v);
+  const Vec3 second = cross(u, first);
+  return {v[0] + 2 * (q[0] * first[0] + second[0]), v[1] + 2 * (q[0] * first[1] + second[1]),
+          v[2] + 2 * (q[0] * first[2] + second[2])};
+}
+
+inline Vec3 rotate_inverse(const Quat& q, const Vec3& v) noexcept { return rotate(conjugate(q), v); }
+
+inline Quat multiply(const Quat& a, const Quat& b) noexcept {
+  return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+          a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
 Quat normalized(const Quat& q) noexcept;
 Quat from_axis_angle(const Vec3& unit_axis, double angle_rad) noexcept;
 Quat from_roll_pitch_yaw(double roll_rad, double pitch_rad, double yaw_rad) noexcept;  // Rz(yaw) Ry(pitch) Rx(roll)
-Vec3 roll_pitch_yaw(const Quat& q) noexcept;          // roll, pitch, yaw; pitch in [-pi/2, pi/2]
-Pose compose(const Pose& a, const Pose& b) noexcept;  // b given in a's frame
-Vec3 transform(const Pose& pose, const Vec3& point) noexcept;
+Vec3 roll_pitch_yaw(const Quat& q) noexcept;  // roll, pitch, yaw; pitch in [-pi/2, pi/2]
+
+inline Vec3 transform(const Pose& pose, const Vec3& point) noexcept {
+  const Vec3 turned = rotate(pose.orientation, point);
+  return {pose.position_m[0] + turned[0], pose.position_m[1] + turned[1], pose.position_m[2] + turned[2]};
+}
+
+// b given in a's frame.
+inline Pose compose(const Pose& a, const Pose& b) noexcept {
+  return {transform(a, b.position_m), multiply(a.orientation, b.orientation)};
+}
 
 class Kinematics {
  public:

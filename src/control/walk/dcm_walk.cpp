@@ -12,9 +12,12 @@ namespace {
 
 constexpr double walk_rate_max_rad_s = 7;
 constexpr double kick_rate_max_rad_s = 15;
-constexpr double sole_front_m = 0.14, sole_back_m = 0.08, sole_side_m = 0.05;
-constexpr double rest_gain = 0.4;  // shift of the load per error of xi while it rests: both knees are to push it up
-constexpr double within = 0.8;     // of the sole: a pressure farther out is at its edge
+constexpr double rest_gain = 0.4;    // shift of the load per error of xi while it rests: both knees are to push it up
+constexpr double learnt_most = 0.5;  // of a joint's torque
+constexpr double within = 0.8;       // of the sole: a pressure farther out is at its edge
+// The robot that the defaults were found on, TULip, and how much of its sole it uses.
+constexpr double found_leg_m = 0.55, found_mass_kg = 14, found_hips_m = 0.17;
+constexpr double heel_share = 0.75, toe_share = 1 / 1.4, half_width_share = 0.6;
 enum Channel : std::uint32_t {
   forward_channel,
   left_channel,
@@ -30,10 +33,15 @@ enum Channel : std::uint32_t {
   channels
 };
 
+FootShape smaller(const FootShape& a, const FootShape& b) noexcept {
+  return {std::min(a.front_m, b.front_m), std::min(a.back_m, b.back_m), std::min(a.side_m, b.side_m),
+          std::max(a.below_m, b.below_m)};
+}
+
 }  // namespace
 
 DcmWalk::Leg DcmWalk::leg(const ObjectSetup& setup, std::size_t foot) const {
-  Leg made{{.inverse = LegInverse(setup.model, axes_, foot)}, LegLoad(setup.model, foot), {}};
+  Leg made{{.inverse = LegInverse(setup.model, axes_, foot)}, LegLoad(setup.model, foot), {}, {}};
   for (std::size_t j = 0; j < leg_joints; ++j) {
     const auto bearings = made.load.bearings();
     const auto found = std::ranges::find(bearings, made.inverse.axis(j).joint, &LegLoad::Bearing::joint);
@@ -46,27 +54,40 @@ DcmWalk::DcmWalk(const ObjectSetup& setup)
     : axes_(joint_axes(setup)),
       over_feet_(setup),
       legs_{leg(setup, over_feet_.feet()[0]), leg(setup, over_feet_.feet()[1])},
-      weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()) {}
+      weight_N_(gravity_of_balance_m_s2 * setup.model.mass_kg()),
+      foot_(smaller(shape_of(setup.model, over_feet_.feet()[0]), shape_of(setup.model, over_feet_.feet()[1]))),
+      // As float, because a sum of masses differs in the last places from what it shall be.
+      similarity_{static_cast<float>(legs_[0].inverse.length_m() / found_leg_m),
+                  static_cast<float>(setup.model.mass_kg() / found_mass_kg)} {
+  const double hips_m = std::abs(legs_[0].inverse.hip_m()[1] - legs_[1].inverse.hip_m()[1]);
+  config_.sole_m = foot_.below_m;
+  plan_config_.width_m *= static_cast<float>(hips_m / found_hips_m);
+  plan_config_.sole = {.heel_m = heel_share * foot_.back_m,
+                       .toe_m = toe_share * foot_.front_m,
+                       .half_width_m = half_width_share * foot_.side_m};
+  plan_config_.kick.tip_m = foot_.front_m;
+}
 
-void DcmWalk::declare(Declaration& d) {
+void DcmWalk::declare(Declaration& declaration) {
+  const FittedDeclaration d(declaration, similarity_);
   Config& c = config_;
   d.parameter({"tilt_max_rad", "rad", 0, 1.5, c.tilt_max_rad, "Tilt of the trunk beyond which it gives up."},
               &c.tilt_max_rad);
   d.parameter({"height_m", "m", 0.1, 2, c.height_m, "Of the centre of mass over the foot that stands."}, &c.height_m);
-  d.parameter({"height_N_per_m", "N/m", 0, 20000, c.height_N_per_m, "Keeps that height."}, &c.height_N_per_m);
-  d.parameter({"height_Ns_per_m", "N s/m", 0, 2000, c.height_Ns_per_m, "Damps it."}, &c.height_Ns_per_m);
+  d.parameter({"height_N_per_m", "N/m", 0, 200000, c.height_N_per_m, "Keeps that height."}, &c.height_N_per_m);
+  d.parameter({"height_Ns_per_m", "N s/m", 0, 20000, c.height_Ns_per_m, "Damps it."}, &c.height_Ns_per_m);
   d.parameter({"lift_max", "", 0, 1, c.lift_max, "Most of both, per weight."}, &c.lift_max);
   d.parameter({"lean_rad", "rad", -0.5, 0.5, c.lean_rad, "Of the torso, forward."}, &c.lean_rad);
-  d.parameter({"torso_Nm_per_rad", "Nm/rad", 0, 2000, c.torso_Nm_per_rad, "Holds the torso, in pitch."},
+  d.parameter({"torso_Nm_per_rad", "Nm/rad", 0, 20000, c.torso_Nm_per_rad, "Holds the torso, in pitch."},
               &c.torso_Nm_per_rad);
-  d.parameter({"torso_Nms_per_rad", "Nm s/rad", 0, 200, c.torso_Nms_per_rad, "Damps it."}, &c.torso_Nms_per_rad);
-  d.parameter({"level_Nm_per_rad", "Nm/rad", 0, 2000, c.level_Nm_per_rad, "Holds the torso, in roll."},
+  d.parameter({"torso_Nms_per_rad", "Nm s/rad", 0, 2000, c.torso_Nms_per_rad, "Damps it."}, &c.torso_Nms_per_rad);
+  d.parameter({"level_Nm_per_rad", "Nm/rad", 0, 20000, c.level_Nm_per_rad, "Holds the torso, in roll."},
               &c.level_Nm_per_rad);
-  d.parameter({"level_Nms_per_rad", "Nm s/rad", 0, 200, c.level_Nms_per_rad, "Damps it."}, &c.level_Nms_per_rad);
+  d.parameter({"level_Nms_per_rad", "Nm s/rad", 0, 2000, c.level_Nms_per_rad, "Damps it."}, &c.level_Nms_per_rad);
   d.parameter({"counter_share", "", 0, 1, c.counter_share, "Of the swing hip's torque that the stance hip takes."},
               &c.counter_share);
   d.parameter({"grip", "", 0, 2, c.grip, "Largest force along the ground, per load."}, &c.grip);
-  d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
+  d.own({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
   d.parameter({"slope_s", "s", 0.01, 100, c.slope_s, "In which the slope of the ground is learnt."}, &c.slope_s);
   d.parameter({"slope_max", "", 0, 1, c.slope_max, "The largest slope that it believes in."}, &c.slope_max);
   d.parameter({"shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load."}, &c.shift_s);
@@ -79,17 +100,19 @@ void DcmWalk::declare(Declaration& d) {
   d.parameter({"fade_s", "s", 0, 0.1, c.fade_s, "In which the torques of a leg's part pass into the next one's."},
               &c.fade_s);
   d.parameter({"stand_s", "s", 0, 10, c.stand_s, "After the last step, before it counts as standing."}, &c.stand_s);
+  d.parameter({"learn_share", "", 0, 1, c.learn_share, "Of a swing's torques that the leg's next one begins with."},
+              &c.learn_share);
   config_.gains.declare(d);
   declare_plan(d);
-  declare_signals(d);
+  declare_signals(declaration);
 }
 
-void DcmWalk::declare_plan(Declaration& d) {
+void DcmWalk::declare_plan(const FittedDeclaration& d) {
   WalkPlan::Config& c = plan_config_;
   d.parameter({"step_s", "s", 0.1, 2, c.step_s, "Time of a step."}, &c.step_s);
   d.parameter({"step_min_s", "s", 0.05, 2, c.step_min_s, "Shortest step."}, &c.step_min_s);
   d.parameter({"step_max_s", "s", 0.1, 2, c.step_max_s, "Longest step."}, &c.step_max_s);
-  d.parameter({"width_m", "m", 0, 1, c.width_m, "Between the feet, sideways."}, &c.width_m);
+  d.own({"width_m", "m", 0, 1, c.width_m, "Between the feet, sideways."}, &c.width_m);
   d.parameter({"apart_min_m", "m", 0, 1, c.apart_min_m, "Least distance of the feet, sideways."}, &c.apart_min_m);
   d.parameter({"apart_max_m", "m", 0, 1, c.apart_max_m, "Largest distance of the feet, sideways."}, &c.apart_max_m);
   d.parameter({"reach_m", "m", 0, 1, c.reach_m, "Longest step."}, &c.reach_m);
@@ -116,7 +139,7 @@ void DcmWalk::declare_plan(Declaration& d) {
               &c.shift_x_m);
   d.parameter({"trim_per_s", "1/s", 0, 10, c.trim_per_s, "How fast the meant speed is corrected."}, &c.trim_per_s);
   d.parameter({"trim_max_m_s", "m/s", 0, 1, c.trim_max_m_s, "Largest such correction."}, &c.trim_max_m_s);
-  d.parameter({"touch_N", "N", 1, 200, c.touch_N, "Force of a foot that has landed."}, &c.touch_N);
+  d.parameter({"touch_N", "N", 1, 2000, c.touch_N, "Force of a foot that has landed."}, &c.touch_N);
   d.parameter({"touch_s", "s", 0, 0.1, c.touch_s, "How long it must bear that."}, &c.touch_s);
   d.parameter({"early_share", "", 0, 1, c.early_share, "Of a swing, before which no landing counts."}, &c.early_share);
   d.parameter({"sway_gain", "", 0, 20, c.sway_gain, "Shift of the load per error of xi, before the first step."},
@@ -128,19 +151,22 @@ void DcmWalk::declare_plan(Declaration& d) {
               &c.brake_m_s2);
   d.parameter({"sunk_m", "m", 0.001, 1, c.sunk_m, "How far it may sink before it rests on both feet."}, &c.sunk_m);
   d.parameter({"rest_s", "s", 0, 10, c.rest_s, "Longest rest."}, &c.rest_s);
-  d.parameter({"heel_m", "m", 0.001, 0.5, c.sole.heel_m, "Of the sole that may bear, behind the foot's frame."},
-              &c.sole.heel_m);
-  d.parameter({"toe_m", "m", 0.001, 0.5, c.sole.toe_m, "Before it."}, &c.sole.toe_m);
+  d.own({"heel_m", "m", 0.001, 0.5, c.sole.heel_m, "Of the sole that may bear, behind the foot's frame."},
+        &c.sole.heel_m);
+  d.own({"toe_m", "m", 0.001, 0.5, c.sole.toe_m, "Before it."}, &c.sole.toe_m);
   declare_kick(d);
 }
 
-void DcmWalk::declare_kick(Declaration& d) {
+void DcmWalk::declare_kick(const FittedDeclaration& d) {
   KickSwing::Config& c = plan_config_.kick;
-  d.parameter({"kick.ball_radius_m", "m", 0.02, 0.3, c.ball_radius_m, "Of the ball that it kicks."}, &c.ball_radius_m);
-  d.parameter({"kick.tip_m", "m", 0, 0.5, c.tip_m, "How far the tip of a foot is before its frame."}, &c.tip_m);
+  d.own({"kick.ball_radius_m", "m", 0.02, 0.3, c.ball_radius_m, "Of the ball that it kicks."}, &c.ball_radius_m);
+  d.own({"kick.tip_m", "m", 0, 0.5, c.tip_m, "How far the tip of a foot is before its frame."}, &c.tip_m);
   d.parameter({"kick.strike_s", "s", 0.05, 1, c.strike_s, "From lift-off to the strike."}, &c.strike_s);
   d.parameter({"kick.after_s", "s", 0.02, 1, c.after_s, "Least time from there to the landing."}, &c.after_s);
   d.parameter({"kick.step_s", "s", 0.1, 2, c.step_s, "Time of the step that kicks."}, &c.step_s);
+  d.parameter(
+      {"kick.swing_s_per_m_s", "s2/m", 0, 1, c.swing_s_per_m_s, "Least time to the strike, by the foot's speed."},
+      &c.swing_s_per_m_s);
   d.parameter({"kick.follow_m", "m", 0, 0.5, c.follow_m, "How far the foot goes on beyond the strike, forward."},
               &c.follow_m);
   d.parameter({"kick.lead_s", "s", 0, 0.1, c.lead_s, "How far the reference is ahead, for the lag of the leg."},
@@ -166,8 +192,9 @@ void DcmWalk::declare_signals(Declaration& d) {
                 .joint = no_joint,
                 .safe = safe});
   };
-  setpoint("forward_m_s", "m/s", -0.25, 0.65, "Velocity forward.", forward_channel);
-  setpoint("left_m_s", "m/s", -0.2, 0.2, "Velocity to the left.", left_channel);
+  const double faster = std::round(100 * similarity_.of("m/s")) / 100;
+  setpoint("forward_m_s", "m/s", -0.25 * faster, 0.65 * faster, "Velocity forward.", forward_channel);
+  setpoint("left_m_s", "m/s", -0.2 * faster, 0.2 * faster, "Velocity to the left.", left_channel);
   setpoint("turn_rad_s", "rad/s", -1, 1, "Turning to the left.", turn_channel);
   setpoint("go", "", 0, 1, "1: walks; 0: comes to stand. Reads 1 until it stands.", go_channel);
   setpoint("x_m", "m", -1e4, 1e4, "Where the base is by its steps; setting it sets it there.", x_channel);
@@ -176,7 +203,8 @@ void DcmWalk::declare_signals(Declaration& d) {
   setpoint("kick_x_m", "m", -1e4, 1e4, "Where the ball to be kicked is.", kick_x_channel);
   setpoint("kick_y_m", "m", -1e4, 1e4, "Likewise, to the left.", kick_y_channel);
   setpoint("kick_rad", "rad", -std::numbers::pi, std::numbers::pi, "Where the ball shall go.", kick_rad_channel);
-  setpoint("kick_m_s", "m/s", 0, 3, "Speed of the foot; 0: no kick. Reads 0 when the ball was kicked.", kick_channel);
+  setpoint("kick_m_s", "m/s", 0, 3 * faster, "Speed of the foot; 0: no kick. Reads 0 when the ball was kicked.",
+           kick_channel);
   const WalkPlan::State& s = plan_.state();
   d.signal({"phase", "", "0 stands, 1 sways, 2 steps, 3 bears, 4 rests; -1 has given up."}, &phase_number_);
   d.signal({"stance", "", "The foot that stands: 0 left, 1 right."}, &stance_number_);
@@ -333,8 +361,8 @@ void DcmWalk::feel_ground(const ControlInput& input) noexcept {
   const double share = s.time_s / std::max(s.step_s, input.dt_s), rate = std::min(input.dt_s / config_.slope_s, 1.0);
   const FootStatus& foot = input.status.feet[s.stance];
   if (s.phase == WalkPlan::Phase::steps && !(share > 0.3 && share < 0.8)) return;
-  if (!(std::abs(foot.cop_y_m) < within * sole_side_m && foot.cop_x_m < within * sole_front_m &&
-        foot.cop_x_m > -within * sole_back_m))
+  if (!(std::abs(foot.cop_y_m) < within * foot_.side_m && foot.cop_x_m < within * foot_.front_m &&
+        foot.cop_x_m > -within * foot_.back_m))
     return;
   const DcmMeasure::OverFoot& over = over_feet_.over(s.stance);
   const double most = config_.slope_max;
@@ -350,6 +378,7 @@ void DcmWalk::begin(const ControlInput& input) noexcept {
     for (std::size_t j = 0; j < leg_joints; ++j)
       legs_[i].effort_Nm[j] = input.last.joints[legs_[i].inverse.axis(j).joint].effort_Nm;
     ankle_Nm_[i] = legs_[i].effort_Nm[ankle_pitch];
+    legs_[i].learnt = {};
   }
   landed(input);
 }
@@ -363,6 +392,10 @@ void DcmWalk::landed(const ControlInput& input) noexcept {
     (void)over_feet_.update(input);
   }
   changes_ = true;
+  Leg& lands = legs_[plan_.state().stance];
+  Efforts most_Nm{};
+  for (std::size_t j = 0; j < leg_joints; ++j) most_Nm[j] = learnt_most * lands.inverse.axis(j).effort_max_Nm;
+  lands.learnt.learn(config_.learn_share, most_Nm);
   for (Leg& leg : legs_) {
     leg.jump_Nm = leg.effort_Nm;
     for (std::size_t i = 0; i < leg_joints; ++i) {
@@ -402,7 +435,7 @@ DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_
   const double ground_N = std::max(input.status.feet[i].force_N, 0.0);
   // A foot that bears less than it was asked to would turn about its toes by the torque that was meant for all of it.
   if (force_N > ground_N) effort_Nm[ankle_pitch] *= 1 - config_.ankle_by_load * (1 - ground_N / force_N);
-  effort_Nm[ankle_pitch] = std::clamp(effort_Nm[ankle_pitch], -ground_N * sole_back_m, ground_N * sole_front_m);
+  effort_Nm[ankle_pitch] = std::clamp(effort_Nm[ankle_pitch], -ground_N * foot_.back_m, ground_N * foot_.front_m);
   return effort_Nm;
 }
 
@@ -427,8 +460,8 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
   const Vec3 swing_hip_m = rotate(over_feet_.upright(), swing.inverse.hip_m());
   const double toe_up_m = over.toe_up_m - slope_.x_m;  // on its toes, or heel
   const double risen_m =
-      std::max(-toe_up_m * sole_front_m, toe_up_m * sole_back_m) -
-      sole_side_m * std::abs(over_feet_.over(b).left_up_m - slope_.y_m) -  // tilted, it reaches deeper
+      std::max(-toe_up_m * foot_.front_m, toe_up_m * foot_.back_m) -
+      foot_.side_m * std::abs(over_feet_.over(b).left_up_m - slope_.y_m) -  // tilted, it reaches deeper
       slope_.x_m * s.feet.at_m[0] - slope_.y_m * s.feet.at_m[1];
   const Vec3 way_m{over.foot_m[0] + s.feet.at_m[0] - swing_hip_m[0], over.foot_m[1] + s.feet.at_m[1] - swing_hip_m[1],
                    over.foot_m[2] + s.feet.at_m[2] - swing_hip_m[2] - risen_m};
@@ -447,7 +480,12 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
                          joints[swing.inverse.axis(knee).joint].position_rad - swing_rad[knee];
   swing_rad[ankle_pitch] -= by_now * lag_rad + base.pitch_rad + slope_.x_m;
   swing.aim(swing_rad, s.kick.kicks() ? kick_rate_max_rad_s : walk_rate_max_rad_s, input.dt_s);
-  const Efforts swing_Nm = swing.spring(c.gains, input);
+  Efforts swing_Nm = swing.spring(c.gains, input);
+  if (!s.kick.kicks()) {  // a kick is like no other swing
+    const Efforts ahead_Nm = swing.learnt.at(s.time_s);
+    swing.learnt.see(s.time_s, swing_Nm);
+    for (std::size_t j = 0; j < leg_joints; ++j) swing_Nm[j] += ahead_Nm[j];
+  }
   turn(swing_Nm, input);
   const Efforts left_Nm = bearing(b, 1 - loaded, 0, lever(b, 0), input);
 
@@ -511,7 +549,7 @@ void DcmWalk::write(const ControlInput& input, ActuationFrame& actuation) noexce
 }
 
 void DcmWalk::pass_state(StateBytes& bytes) noexcept {
-  for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm, leg.jump_Nm);
+  for (Leg& leg : legs_) bytes(leg.target_rad, leg.rate_rad_s, leg.effort_Nm, leg.learnt, leg.jump_Nm);
   bytes(over_feet_, plan_, wanted_, ball_, odometry_, slope_, given_up_, turn_Nm_, ankle_Nm_, phase_number_,
         stance_number_, com_height_m_);
 }

@@ -11,7 +11,8 @@
 //               base to the heading.
 //   swing leg   Inverse kinematics of where the foot shall be over the ground, through the measured stance leg and
 //               attitude; PD on its joints, and the leg's own weight. The leg lags on a long step: its length is
-//               right for where the foot is by now, and the sole level by what hip and knee are.
+//               right for where the foot is by now, and the sole level by what hip and knee are. What led the leg's
+//               last swings is given ahead (LearntSwing).
 //   a landing   moves the load from one leg to the other in shift_s.
 //   both bear   After the last step: the load is shared so that xi comes to rest in the middle. The forces of both legs
 //               are parallel, so that feet far apart need no friction to stay there.
@@ -22,7 +23,8 @@
 // Set-points  forward_m_s, left_m_s, turn_rad_s: the velocity. go: 1 walks, 0 comes to stand; it reads 1 until it
 // stands.
 //             x_m, y_m, heading_rad: where the base is by joints and IMU; setting one sets it there.
-// Parameters  Config and WalkPlan::Config.
+// Parameters  Config and WalkPlan::Config. Their defaults are those of TULip, carried over to this robot by the length
+//             of its legs and its mass (similarity.h), and its soles are those that collide.
 // Signals     State of the plan.
 // Given up    when the base leans beyond tilt_max_rad or a measurement is not finite: it lets go of the legs until `go`
 //             is 0.
@@ -37,6 +39,7 @@
 #include "control/balance/stance.h"
 #include "kadans/control/control_object.h"
 #include "kadans/control/joint_axis.h"
+#include "learnt_swing.h"
 #include "led_leg.h"
 #include "walk_plan.h"
 
@@ -46,26 +49,27 @@ class DcmWalk final : public ControlObject {
  public:
   struct Config {
     double tilt_max_rad = 0.7;
-    double height_m = 0.51;  // of the centre of mass over the foot's frame
-    double height_N_per_m = 1500, height_Ns_per_m = 150, lift_max = 0.4;
-    double lean_rad = 0.03;                                 // of the torso, forward
-    double torso_Nm_per_rad = 220, torso_Nms_per_rad = 14;  // in pitch
-    double level_Nm_per_rad = 220, level_Nms_per_rad = 14;  // in roll
-    double counter_share = 0.5;                             // share of the swing hip's torque that the stance hip takes
-    double grip = 0.4;                                      // largest force along the ground, per load
-    double sole_m = 0.06;                                   // how far the sole is below a foot's frame
-    double slope_s = 0.5;                                   // time constant with which the ground's slope is learnt
+    double height_m = 0.5028;  // of the centre of mass over the foot's frame
+    double height_N_per_m = 2718, height_Ns_per_m = 158.4, lift_max = 0.4;
+    double lean_rad = 0.02049;                                   // of the torso, forward
+    double torso_Nm_per_rad = 100.4, torso_Nms_per_rad = 6.271;  // in pitch
+    double level_Nm_per_rad = 194.6, level_Nms_per_rad = 14.49;  // in roll
+    double counter_share = 0.2208;                               // of the swing hip's torque that the stance hip takes
+    double grip = 0.4;                                           // largest force along the ground, per load
+    double sole_m = 0;                                           // how far the sole is below a foot's frame
+    double slope_s = 0.25;  // time constant with which the ground's slope is learnt
     double slope_max = 0.12;
-    double shift_s = 0.05;  // in which a leg that landed takes the load
+    double shift_s = 0.02875;  // in which a leg that landed takes the load
     double ankle_smooth_s = 0.003;
     double by_now = 1;  // 1: the swinging leg's length and sole are right for where it is; 0: for where it shall be
     double ankle_by_load = 1;  // 1: a foot that bears half of what it shall has half the torque in its ankle
     double fade_s = 0.006;     // in which the torques of a leg's part pass into those of the next one
     double stand_s = 0.6;      // after the last step, before it lets go
-    LegGains gains{.kp_Nm_per_rad = {80, 250, 250, 250, 120}, .kd_Nms_per_rad = {4, 4, 4, 4, 2}};
+    double learn_share = 0.3;  // of the torque that led a swing: the leg's next one begins with it
+    LegGains gains{.kp_Nm_per_rad = {36.46, 382.7, 240, 100, 92.03}, .kd_Nms_per_rad = {2.765, 4, 4, 4, 2}};
   };
 
-  // Throws std::invalid_argument for a joint that is missing, OptionError for a wrong foot.
+  // Throws std::invalid_argument for a joint that is missing or a foot without a sole, OptionError for a wrong foot.
   explicit DcmWalk(const ObjectSetup& setup);
 
   void declare(Declaration& declaration) override;
@@ -82,12 +86,13 @@ class DcmWalk final : public ControlObject {
   struct Leg : LedLeg {
     LegLoad load;
     std::array<std::size_t, leg_joints> bearing;  // the joint's place in load.bearings()
+    LearntSwing learnt;
     Efforts jump_Nm{};  // by which the torques would have jumped when the leg changed its part
   };
 
   Leg leg(const ObjectSetup& setup, std::size_t foot) const;
-  void declare_plan(Declaration& declaration);
-  void declare_kick(Declaration& declaration);
+  void declare_plan(const FittedDeclaration& declaration);
+  void declare_kick(const FittedDeclaration& declaration);
   void declare_signals(Declaration& declaration);
   void let_go(ActuationFrame& actuation) noexcept;
   WalkPlan::Sight sight(const ControlInput& input) const noexcept;
@@ -109,6 +114,8 @@ class DcmWalk final : public ControlObject {
   DcmMeasure over_feet_;
   std::array<Leg, 2> legs_;
   double weight_N_;
+  FootShape foot_;
+  Similarity similarity_;
   Config config_;
   WalkPlan::Config plan_config_;
   WalkPlan plan_;

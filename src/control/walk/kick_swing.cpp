@@ -36,23 +36,24 @@ void KickSwing::begin(const Config& config, const Kick& asked) noexcept {
 }
 
 Vec3 KickSwing::at(const Config& c, const Vec3& from_m, const GroundPoint& foothold, double time_s,
-                   double step_s) const noexcept {
+                   double whole_s) const noexcept {
   const double x_m_s = kick.m_s * std::cos(kick.rad), y_m_s = kick.m_s * std::sin(kick.rad);
-  if (time_s < c.strike_s) {
-    const double share = time_s / c.strike_s;
-    return {way(from_m[0], strike.x_m, 0, x_m_s, share, c.strike_s),
-            way(from_m[1], strike.y_m, 0, y_m_s, share, c.strike_s),
+  const double until_s = strike_s(c, kick);
+  if (time_s < until_s) {
+    const double share = time_s / until_s;
+    return {way(from_m[0], strike.x_m, 0, x_m_s, share, until_s), way(from_m[1], strike.y_m, 0, y_m_s, share, until_s),
             from_m[2] * (1 - swing_way(share)) + c.height_m * swing_way(share / 0.7)};
   }
-  const double after_s = std::max(step_s - c.strike_s, 0.01), share = (time_s - c.strike_s) / after_s;
+  const double after_s = std::max(whole_s - until_s, 0.01), share = (time_s - until_s) / after_s;
   return {way(strike.x_m, foothold.x_m, x_m_s, 0, share, after_s),
           way(strike.y_m, foothold.y_m, y_m_s, 0, share, after_s), c.height_m * (1 - swing_way(share))};
 }
 
 double KickSwing::yaw_rad(const Config& c, double time_s) const noexcept {
   constexpr double still_share = 0.8, still_s = 0.05, back_s = 0.2;  // a foot that turns would spin the ball
-  if (time_s < c.strike_s + still_s) return kick.rad * swing_way(time_s / (still_share * c.strike_s));
-  return kick.rad * (1 - swing_way((time_s - c.strike_s - still_s) / back_s));
+  const double until_s = strike_s(c, kick);
+  if (time_s < until_s + still_s) return kick.rad * swing_way(time_s / (still_share * until_s));
+  return kick.rad * (1 - swing_way((time_s - until_s - still_s) / back_s));
 }
 
 }  // namespace kadans

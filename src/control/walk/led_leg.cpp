@@ -55,12 +55,12 @@ LegInverse::Angles LegInverse::angles(const Vec3& ankle_m, double yaw_rad, doubl
   return {yaw_rad, std::atan2(y_m, -ankle_m[2]), pitch_rad, bend_rad, -(pitch_rad + bend_rad)};
 }
 
-void LegGains::declare(Declaration& d) {
+void LegGains::declare(const FittedDeclaration& d) {
   for (std::size_t i = 0; i < leg_joints; ++i) {
     const std::string name = leg_joint_names[i];
-    d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 2000, kp_Nm_per_rad[i], "Torque per position error."},
+    d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 20000, kp_Nm_per_rad[i], "Torque per position error."},
                 &kp_Nm_per_rad[i]);
-    d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 200, kd_Nms_per_rad[i], "Torque per velocity error."},
+    d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 2000, kd_Nms_per_rad[i], "Torque per velocity error."},
                 &kd_Nms_per_rad[i]);
   }
 }

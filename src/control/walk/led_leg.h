@@ -7,6 +7,7 @@
 
 #include "kadans/control/control_object.h"
 #include "kadans/control/joint_axis.h"
+#include "similarity.h"
 
 namespace kadans {
 
@@ -36,6 +37,7 @@ class LegInverse {
 
   const Vec3& hip_m() const noexcept { return hip_m_; }     // in the base frame
   double longest_m() const noexcept { return longest_m_; }  // from hip to ankle with the knee almost straight
+  double length_m() const noexcept { return thigh_m_ + shank_m_; }
   const JointAxis& axis(std::size_t joint) const noexcept { return axes_[joint]; }
 
  private:
@@ -47,7 +49,7 @@ class LegInverse {
 // Parameters <part>.kp_Nm_per_rad and <part>.kd_Nms_per_rad of both legs.
 struct LegGains {
   std::array<double, leg_joints> kp_Nm_per_rad{}, kd_Nms_per_rad{};
-  void declare(Declaration& declaration);
+  void declare(const FittedDeclaration& declaration);
 };
 
 // A leg whose joints are led: a spring and a damper to targets, whose rates are low-passed.

@@ -1,11 +1,22 @@
 // The geometry of stepping, in the heading frame: how a foot swings, when it has landed, and how two feet bear.
 #pragma once
 
+#include <cstddef>
+
+#include "kadans/model/robot_model.h"
+
 namespace kadans {
 
 struct GroundPoint {
   double x_m = 0, y_m = 0;
 };
+
+// How far what collides of a foot reaches from its frame, with the foot flat.
+struct FootShape {
+  double front_m = 0, back_m = 0, side_m = 0, below_m = 0;
+};
+// Of the link, by its collision shapes. Throws std::invalid_argument when it has none, or none on all sides.
+FootShape shape_of(const RobotModel& model, std::size_t foot);
 
 // The usable part of a sole, without a margin at its edges, relative to the foot's frame.
 struct Sole {

@@ -141,17 +141,19 @@ void WalkPlan::mean(const Config& c, const Sight& sight, const Kick& kick) noexc
   const Kick next{from_next, kick.rad, kick.m_s};
   s.prepares = KickSwing::reaches(c.kick, next, -sign);
   if (!s.prepares) return;
-  const double step_m = KickSwing::strike_of(c.kick, next).x_m + c.kick.follow_m;
-  s.meant.offset = {c.shift_x_m + (step_m + s.meant.offset.x_m - c.shift_x_m) / std::exp(w_x * c.kick.step_s),
-                    (-sign * c.width_m - s.meant.offset.y_m) / std::exp(w_y * c.kick.step_s)};
+  const double step_m = KickSwing::strike_of(c.kick, next).x_m + c.kick.follow_m,
+               kick_s = KickSwing::step_s(c.kick, next);
+  s.meant.offset = {c.shift_x_m + (step_m + s.meant.offset.x_m - c.shift_x_m) / std::exp(w_x * kick_s),
+                    (-sign * c.width_m - s.meant.offset.y_m) / std::exp(w_y * kick_s)};
 }
 
 void WalkPlan::choose(const Config& c, const Sight& sight) noexcept {
   State& s = state_;
   const double w_x = sight.rate_per_s, w_y = c.side_rate_share * w_x, sign = side_of(1 - s.stance);
-  const double wanted_s = s.kick.kicks() ? c.kick.step_s : c.step_s;
-  const double least_s = s.kick.kicks() ? c.kick.strike_s + c.kick.after_s : c.step_min_s;
-  const double earliest_s = std::max(least_s, s.time_s), latest_s = std::max(c.step_max_s, earliest_s);
+  const Kick& kick = s.kick.kick;
+  const double wanted_s = s.kick.kicks() ? KickSwing::step_s(c.kick, kick) : c.step_s;
+  const double least_s = s.kick.kicks() ? KickSwing::strike_s(c.kick, kick) + c.kick.after_s : c.step_min_s;
+  const double earliest_s = std::max(least_s, s.time_s), latest_s = std::max({c.step_max_s, earliest_s, wanted_s});
   const double from_x_m = s.in_sole_x_m, from_y_m = c.edge_share * s.in_sole_y_m;
   // xi at the earliest time, and by how much it grows from one time to the next.
   const double apart_s = (latest_s - earliest_s) / (times_tried - 1), wait_s = earliest_s - s.time_s;
@@ -281,7 +283,8 @@ bool WalkPlan::advance(const Config& c, const Wanted& wanted, const Sight& sight
   mean(c, sight, wanted.kick);
   choose(c, sight);
   lead_foot(c);
-  const double early_s = s.kick.kicks() ? c.kick.strike_s + 0.5 * c.kick.after_s : c.early_share * s.step_s;
+  const double early_s =
+      s.kick.kicks() ? KickSwing::strike_s(c.kick, s.kick.kick) + 0.5 * c.kick.after_s : c.early_share * s.step_s;
   s.touchdown.look(sight.force_N[1 - s.stance], c.touch_N, dt_s);
   const bool touches = s.time_s > early_s && s.touchdown.landed(c.touch_s);
   if (!touches && s.time_s < s.step_s + late_s) return false;

@@ -36,23 +36,23 @@ class WalkPlan {
   enum class Phase : std::uint8_t { stands, sways, steps, bears, rests };
 
   struct Config {
-    double step_s = 0.32, step_min_s = 0.24, step_max_s = 0.45;
-    double width_m = 0.18;  // between the feet, sideways
+    double step_s = 0.2896, step_min_s = 0.162, step_max_s = 0.45;
+    double width_m = 0.1755;  // between the feet, sideways
     double apart_min_m = 0.13, apart_max_m = 0.36;
-    double reach_m = 0.38;     // longest step
-    double lift_m = 0.04;      // height of a swing
-    double place_share = 0.9;  // how long before the end of a swing the foot is over its foothold, as share of it
-    double sink_m_s = 0.25;    // how a late foot looks for the ground
-    double place_weight = 0.05, time_weight = 0.05;  // of place and time beside that of the offset, 1
-    double side_rate_share = 0.9;  // w across of the one along: the ankle roll's spring carries a part
-    double trust_per_s = 30;       // observer gain for the measured xi
-    double both_trust_per_s = 60;  // the same while both feet bear: none lands, and its velocity is right
-    double by_load = 1;       // 1: each foot's measured xi counts by its load; 0: that of the stance foot alone does
-    double edge_share = 0;    // how much of the measured pressure across counts for where xi will be
-    double ankle_gain = 1.0;  // shift of the pressure per error of xi
-    double shift_x_m = 0.0;   // where the pressure is meant to be, before the foot's frame
-    double trim_per_s = 0.3;  // how fast the meant speed is corrected by the measured one
-    double trim_max_m_s = 0.1;
+    double reach_m = 0.38;    // longest step
+    double lift_m = 0.03279;  // height of a swing
+    double place_share = 1;   // how long before the end of a swing the foot is over its foothold, as share of it
+    double sink_m_s = 0.25;   // how a late foot looks for the ground
+    double place_weight = 0.01147, time_weight = 0.1837;  // of place and time beside that of the offset, 1
+    double side_rate_share = 1.022;  // w across of the one along: the ankle roll's spring carries a part
+    double trust_per_s = 12.88;      // observer gain for the measured xi
+    double both_trust_per_s = 60;    // the same while both feet bear: none lands, and its velocity is right
+    double by_load = 1;          // 1: each foot's measured xi counts by its load; 0: that of the stance foot alone does
+    double edge_share = 0.5;     // how much of the measured pressure across counts for where xi will be
+    double ankle_gain = 0.6986;  // shift of the pressure per error of xi
+    double shift_x_m = -0.00455;  // where the pressure is meant to be, before the foot's frame
+    double trim_per_s = 0.7;      // how fast the meant speed is corrected by the measured one
+    double trim_max_m_s = 0.25;
     double touch_N = 15;          // a foot that bears this ..
     double touch_s = 0.003;       // .. for so long has landed
     double early_share = 0.6;     // of a swing, before which no landing counts
@@ -62,7 +62,7 @@ class WalkPlan {
     double brake_m_s2 = 1.5;      // how fast it does once the robot shall stand
     double sunk_m = 0.04;         // how far the centre of mass may sink before it rests on both feet
     double rest_s = 0.5;          // longest rest
-    Sole sole{.heel_m = 0.06, .toe_m = 0.10, .half_width_m = 0.03};
+    Sole sole;
     KickSwing::Config kick;
   };
   struct Velocity {
