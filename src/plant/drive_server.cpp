@@ -23,7 +23,13 @@ std::vector<pollfd> polled(const std::vector<int>& descriptors) {
 
 }  // namespace
 
+void DriveServer::look(World& world) {
+  const std::lock_guard lock(mutex_);
+  drives().look(world.robot(0));
+}
+
 bool DriveServer::await(int milliseconds) noexcept {
+  if (thread_.joinable()) (void)end_session();  // of a world that was given up
   std::vector<pollfd> wanted = polled(descriptors());
   if (poll(wanted.data(), wanted.size(), milliseconds) <= 0) return false;
   session_ = {};
@@ -31,6 +37,8 @@ bool DriveServer::await(int milliseconds) noexcept {
   heard_ = heard();
   stepped_ = cycles();
   time_runs_ = tripped_ = false;
+  stop_.store(false, std::memory_order_relaxed);
+  thread_ = std::thread([this] { serve(); });  // who asked may wait for the answer no longer than some milliseconds
   return true;
 }
 
@@ -79,16 +87,12 @@ bool DriveServer::beat(World& world, std::uint32_t periods) {
     drives().drive(world.robot(0));
     periods = due(periods);
     drives().pass(static_cast<std::int64_t>(periods) * period_ns_);
-    time_runs_ = time_runs_ || (thread_.joinable() && drives().any_torque());
+    time_runs_ = time_runs_ || drives().any_torque();
     const bool tripped = drives().any_watchdog_tripped();
     if (tripped && !tripped_) ++session_.releases;
     tripped_ = tripped;
     heard = this->heard();
     session_.left = !drives().any_torque();
-  }
-  if (!thread_.joinable()) {  // from now on the drives know where they stand
-    stop_.store(false, std::memory_order_relaxed);
-    thread_ = std::thread([this] { serve(); });
   }
   for (std::uint32_t i = 0; time_runs_ && i < periods; ++i) world.step(period_ns_);
   if (time_runs_) time_ns_ += static_cast<std::int64_t>(periods) * period_ns_;

@@ -10,8 +10,8 @@
 //
 // Faults of the bus and the drives may be planned; they happen by the model's time in each session anew.
 //
-// Threads: await and beat by one thread at a time; a thread of its own serves the bus during a session. What a type
-// brings is called by one of them at a time.
+// Threads: look, await and beat by one thread at a time; a thread of its own serves the bus during a session, from the
+// first bytes on. What a type brings is called by one of them at a time.
 #pragma once
 
 #include <atomic>
@@ -26,6 +26,7 @@ namespace kadans {
 
 class DriveServer : public PlantEmulator {
  public:
+  void look(World& world) final;
   bool await(int milliseconds) noexcept final;
   bool beat(World& world, std::uint32_t periods) final;
   bool step_with_peer() noexcept final { return in_step_ = true; }

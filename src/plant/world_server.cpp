@@ -48,6 +48,13 @@ WorldServer::~WorldServer() = default;
 
 PlantEmulator& WorldServer::emulator(std::size_t robot) noexcept { return *seats_[robot]->emulator; }
 
+void WorldServer::look(World& world) {
+  for (std::size_t i = 0; i < seats_.size(); ++i) {
+    seats_[i]->own = &world.robot(i);
+    seats_[i]->emulator->look(*seats_[i]);
+  }
+}
+
 bool WorldServer::await(int milliseconds) {
   const int each_ms = std::max(1, milliseconds / static_cast<int>(seats_.size()));
   for (auto& seat : seats_) seat->in_session = seat->in_session || seat->emulator->await(each_ms);
@@ -92,6 +99,7 @@ void WorldServer::beat_from(std::size_t first, World& world, std::int64_t dt_ns)
   };
   if (!seat.driven) robot.write(seat.held(robot.truth()));
   if (!seat.in_session) {
+    seat.emulator->look(seat);
     seat.in_session = seat.emulator->await(0);
   } else if (!seat.emulator->beat(seat, 1)) {
     leave(first);

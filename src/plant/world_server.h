@@ -6,8 +6,8 @@
 // drives do that were just switched on. When the peer of one robot goes, the world goes on; this robot's drives do what
 // they do without a peer, and may get another.
 //
-// Threads: await() before the world's time, beat() in it, abandon() after it, by one thread at a time; take_ended() by
-// any thread.
+// Threads: look() and await() before the world's time, beat() in it, abandon() after it, by one thread at a time;
+// take_ended() by any thread.
 #pragma once
 
 #include <memory>
@@ -36,6 +36,8 @@ class WorldServer {
 
   std::size_t robot_count() const noexcept { return seats_.size(); }
   PlantEmulator& emulator(std::size_t robot) noexcept;
+  // Before await(): what they say of their robots before the first beat is true of this world.
+  void look(World& world);
   // Waits at most about this long. True once each robot has a peer, or had one that has gone since.
   bool await(int milliseconds);
   // `periods` of dt_ns passed since the last beat. False: no robot has a peer any more, and the next await() is that of

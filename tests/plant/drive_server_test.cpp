@@ -1,11 +1,14 @@
-// The server of emulated drives in step with its peer: the model's time is that of the peer's bus, whatever the clock
-// does.
-#include <thread>
+// The server of emulated drives: its first answers, and in step with its peer, where the model's time is that of the
+// peer's bus, whatever the clock does.
+#include <filesystem>
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include "hostmot2_bench.h"
+#include "plant/dynamixel/emulator/servo_server.h"
 #include "plant/hostmot2/emulator/board_server.h"
+#include "plant/serial/serial_port.h"
 #include "plant/socket_address.h"
 
 namespace kadans::hostmot2::drive_server_test {
@@ -50,6 +53,39 @@ struct Ends {
 };
 
 }  // namespace
+
+TEST_CASE("Boards answer who speaks first before a beat, and say where their drives stand") {
+  Ends ends(at("127.0.7.121"));
+  ends.server.look(ends.model);
+  REQUIRE(ends.server.await(10'000));
+  REQUIRE(ends.plant->open());
+  ends.plant->read(ends.sensors);
+  CHECK(ends.sensors.joints[0].position_rad == doctest::Approx(0.1).epsilon(0.01));
+  CHECK(ends.sensors.joints[1].position_rad == doctest::Approx(-0.2).epsilon(0.01));
+}
+
+TEST_CASE("Servos answer who speaks first before a beat, and say where they stand") {
+  const dynamixel::ServoModel* const model = dynamixel::find_model("XM430-W210");
+  dynamixel::DynamixelSettings settings;
+  settings.ports = {{.name = "bus", .device = "", .baud = 1'000'000}};
+  settings.servos = {{.drive = "hip", .port = "bus", .id = 1, .model = model, .zero_pulse = 1000},
+                     {.drive = "knee", .port = "bus", .id = 2, .model = model}};
+  const std::string bus = std::filesystem::temp_directory_path() / ("kadans-first-" + std::to_string(getpid()));
+  dynamixel::ServoServer server(settings, site(), bus);
+  IdealWorld world(test::two_joints(), PlantSettings{.position_rad = {0.1, -0.2}});
+  server.look(world);
+  TerminalPort port(bus, 1'000'000);
+  // Where does servo 1 stand (Present Position, 4 bytes)?
+  REQUIRE(port.send(std::array<std::uint8_t, 14>{0xFF, 0xFF, 0xFD, 0, 1, 7, 0, 0x02, 0x84, 0, 4, 0, 0x1D, 0x15}));
+  REQUIRE(server.await(10'000));
+  std::array<std::uint8_t, 15> answer{};
+  for (std::size_t got = 0; got < answer.size();) {
+    const std::size_t more = port.receive(std::span(answer).subspan(got), monotonic_ns() + 5'000'000'000);
+    REQUIRE(more > 0);
+    got += more;
+  }
+  CHECK(answer[9] + 256 * answer[10] == 1000 + std::lround(0.1 * 4096 / 6.28318530718));
+}
 
 TEST_CASE("In step with its peer a server of drives lets time pass with the peer's ticks alone") {
   Ends ends(at("127.0.7.120"));

@@ -85,7 +85,7 @@ struct EmulatedFault {
 
 // The other side of a type's wire: programs that speak its protocol drive a modelled robot, one after the other.
 //
-// Threads: await() before a session, beat() in it, the rest after it.
+// Threads: look() and await() before a session, beat() in it, the rest after it.
 class PlantEmulator {
  public:
   struct Session {
@@ -102,6 +102,8 @@ class PlantEmulator {
   PlantEmulator(const PlantEmulator&) = delete;
   PlantEmulator& operator=(const PlantEmulator&) = delete;
 
+  // What is said of the robot before the first beat is true of this world. Called before await() for each new world.
+  virtual void look(World& world) { (void)world; }
   // Waits at most this long for datagrams and answers them. True once there is a peer: a session began.
   virtual bool await(int milliseconds) noexcept = 0;
   // `periods` passed since the last beat. False: the session is over. Throws what the world's step throws.

@@ -81,6 +81,7 @@ class PlantService {
     for (std::size_t i = 0; i < names_.size(); ++i) print_line("serves '" + names_[i] + "' on " + options_.listen[i]);
     while (!interrupted()) {
       if (world_ == nullptr) world_ = make();
+      server_->look(*world_);
       while (!interrupted() && !server_->await(look_every_ms)) {
       }
       if (interrupted()) break;

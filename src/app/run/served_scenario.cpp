@@ -40,7 +40,9 @@ class ServedScenario::Served {
         world(scenario, seed),
         server(emulators_of(world, seed, listen)),
         period_ns(world.sites().front().robot.engine.control_period_ns()),
-        observed(world.robot_count()) {}
+        observed(world.robot_count()) {
+    server.look(world);
+  }
 
   // What a robot's perception says, until it is taken.
   struct Observed final : ObservationSink {

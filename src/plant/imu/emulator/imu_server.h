@@ -24,6 +24,7 @@ class ImuServer final : public PlantEmulator {
             const std::string& link);
   ~ImuServer() override;
 
+  void look(World& world) override { drives_->look(world); }
   bool await(int milliseconds) noexcept override { return drives_->await(milliseconds); }
   bool beat(World& world, std::uint32_t periods) override;
   bool step_with_peer() noexcept override { return false; }  // its time is the clock's
