@@ -14,22 +14,21 @@ local P = k.params {
   lost_s      = { 2, min = 0.1, max = 20, unit = "s", doc = "a ball not seen for so long is looked for" },
 }
 
-local there_m = 0.3   -- a ball that is so far beyond the target is there: what is seen is noisy
-
 local function approach(m, b)
   ball.approach(m, b, { x_m = P.target_x_m, y_m = P.target_y_m }, P.beyond_m, P.roll_m_s2)
 end
 
--- How far the ball is beyond the target.
-local function beyond(b)
-  local x_m, y_m = P.target_x_m, P.target_y_m
-  return (x_m * (b.x_m - x_m) + y_m * (b.y_m - y_m)) / math.sqrt(x_m ^ 2 + y_m ^ 2)
+-- The ball is beyond the target, and its radius with it. From afar the robot sees that by noisy pictures.
+local function is_there(m, b)
+  local x_m, y_m, at = P.target_x_m, P.target_y_m, walk.at(m)
+  local beyond_m = (x_m * (b.x_m - x_m) + y_m * (b.y_m - y_m)) / math.sqrt(x_m ^ 2 + y_m ^ 2)
+  return beyond_m > 0.1 + 0.05 * math.sqrt((b.x_m - at.x_m) ^ 2 + (b.y_m - at.y_m) ^ 2)
 end
 
 local function look(m, s)
   local b = ball.watch(m, s, m.vars.known)
   m.vars.sees = b ~= nil and s.time_s - b.seen_s < P.lost_s
-  m.vars.there = b ~= nil and beyond(b) > there_m
+  m.vars.there = b ~= nil and is_there(m, b)
   return b
 end
 

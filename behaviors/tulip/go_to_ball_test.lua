@@ -30,6 +30,17 @@ describe("go_to_ball", function()
     expect(run.state).to_equal "stop"
   end)
 
+  it("takes a ball for there when it is a little beyond the target only from near, where it sees that", function()
+    for target_m, state in pairs { [4] = "approach", [0.5] = "stop" } do
+      run = k.play "go_to_ball.lua"
+      run:set_parameter("target_x_m", target_m)
+      run:advance_to("search")
+      run:set_seen("ball", { x_m = target_m + 0.15, y_m = 0 })
+      run:advance(0.05)
+      expect(run.state).to_equal(state)
+    end
+  end)
+
   it("gets up when it lies", function()
     run:set_seen("ball", { x_m = 1, y_m = 0.2 })
     run:advance_to("approach")

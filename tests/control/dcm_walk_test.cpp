@@ -114,6 +114,27 @@ TEST_CASE("DcmWalk levels the sole of the swinging foot by what hip and knee are
   CHECK(targets_rad(hip_pitch, -0.3)[0] < as_it_is[0] - 0.002);  // nearer to its foothold, it may be longer
 }
 
+TEST_CASE("DcmWalk turns over the foot that bears by no more than that grips") {
+  Bench bench;
+  bench.lead("go", 1);
+  while (bench.walk.plan().state().phase != Phase::steps) bench.ticks(1);
+  bench.ticks(20);
+  const std::size_t stance = bench.walk.plan().state().stance;
+  bench.joints.joints[5 * stance + hip_yaw].velocity_rad_s = -5;  // it is turned, quickly
+  const auto turns_Nm = [&](double bears_N, double grip_m) {
+    bench.set("yaw_grip_m", grip_m);
+    for (int tick = 0; tick < 20; ++tick) {
+      bench.status.feet[stance].force_N = bears_N;
+      bench.walk.step(bench.input(), bench.computed);
+    }
+    REQUIRE(bench.walk.plan().state().stance == stance);
+    return bench.computed.joints[5 * stance + hip_yaw].effort_Nm;
+  };
+  CHECK(turns_Nm(140, 0) > 8);  // as its spring has it
+  CHECK(turns_Nm(140, 0.035) == doctest::Approx(4.9));
+  CHECK(turns_Nm(40, 0.035) == doctest::Approx(1.4));
+}
+
 TEST_CASE("DcmWalk lands without a step in torque") {
   const auto most_at_a_landing = [](double fade_s) {
     Bench bench;

@@ -87,6 +87,9 @@ void DcmWalk::declare(Declaration& declaration) {
   d.parameter({"counter_share", "", 0, 1, c.counter_share, "Of the swing hip's torque that the stance hip takes."},
               &c.counter_share);
   d.parameter({"grip", "", 0, 2, c.grip, "Largest force along the ground, per load."}, &c.grip);
+  d.parameter({"yaw_grip_m", "m", 0, 1, c.yaw_grip_m,
+               "Largest torque of the yaw of a leg that bears, per load of its foot; 0: as much as its motor has."},
+              &c.yaw_grip_m);
   d.own({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
   d.parameter({"slope_s", "s", 0.01, 100, c.slope_s, "In which the slope of the ground is learnt."}, &c.slope_s);
   d.parameter({"slope_max", "", 0, 1, c.slope_max, "The largest slope that it believes in."}, &c.slope_max);
@@ -439,6 +442,13 @@ DcmWalk::Efforts DcmWalk::bearing(std::size_t i, double share, double in_sole_x_
   return effort_Nm;
 }
 
+// More would spin the foot on the ground: its toes turn in, and the other foot comes down on it.
+double DcmWalk::gripped_Nm(std::size_t i, double yaw_Nm, const ControlInput& input) const noexcept {
+  if (config_.yaw_grip_m <= 0) return yaw_Nm;
+  const double most_Nm = config_.yaw_grip_m * std::max(input.status.feet[i].force_N, 0.0);
+  return std::clamp(yaw_Nm, -most_Nm, most_Nm);
+}
+
 // The moment that rights the torso and takes the swing leg's reaction.
 void DcmWalk::turn(const Efforts& swing_Nm, const ControlInput& input) noexcept {
   const Config& c = config_;
@@ -499,7 +509,7 @@ void DcmWalk::swing_torques(const ControlInput& input) noexcept {
     swing.effort_Nm[j] = loaded * swing_Nm[j] + left_Nm[j];
     stance.effort_Nm[j] = borne_Nm[j];
   }
-  stance.effort_Nm[hip_yaw] = stance_Nm[hip_yaw];
+  stance.effort_Nm[hip_yaw] = gripped_Nm(a, stance_Nm[hip_yaw], input);
 }
 
 void DcmWalk::both_torques(const ControlInput& input) noexcept {
@@ -526,7 +536,7 @@ void DcmWalk::both_torques(const ControlInput& input) noexcept {
     const Efforts held_Nm = leg.spring(config_.gains, input),
                   borne_Nm = bearing(i, share, split.in_sole.x_m, lever_m, input);
     leg.effort_Nm = borne_Nm;
-    leg.effort_Nm[hip_yaw] = held_Nm[hip_yaw];
+    leg.effort_Nm[hip_yaw] = gripped_Nm(i, held_Nm[hip_yaw], input);
   }
 }
 

@@ -55,9 +55,10 @@ class DcmWalk final : public ControlObject {
     double torso_Nm_per_rad = 100.4, torso_Nms_per_rad = 6.271;  // in pitch
     double level_Nm_per_rad = 194.6, level_Nms_per_rad = 14.49;  // in roll
     double counter_share = 0.2208;                               // of the swing hip's torque that the stance hip takes
-    double grip = 0.4;                                           // largest force along the ground, per load
-    double sole_m = 0;                                           // how far the sole is below a foot's frame
-    double slope_s = 0.25;  // time constant with which the ground's slope is learnt
+    double yaw_grip_m = 0.035;  // largest torque of a bearing leg's yaw, per load; 0: as much as its motor has
+    double grip = 0.4;          // largest force along the ground, per load
+    double sole_m = 0;          // how far the sole is below a foot's frame
+    double slope_s = 0.25;      // time constant with which the ground's slope is learnt
     double slope_max = 0.12;
     double shift_s = 0.02875;  // in which a leg that landed takes the load
     double ankle_smooth_s = 0.003;
@@ -105,6 +106,7 @@ class DcmWalk final : public ControlObject {
   GroundPoint lever(std::size_t leg, double in_sole_x_m) const noexcept;
   Efforts bearing(std::size_t leg, double share, double in_sole_x_m, const GroundPoint& lever_m,
                   const ControlInput& input) noexcept;
+  double gripped_Nm(std::size_t leg, double yaw_Nm, const ControlInput& input) const noexcept;
   void turn(const Efforts& swing_Nm, const ControlInput& input) noexcept;
   void swing_torques(const ControlInput& input) noexcept;
   void both_torques(const ControlInput& input) noexcept;
