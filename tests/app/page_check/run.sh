@@ -14,7 +14,7 @@ skip() {
 }
 command -v node >/dev/null && command -v npm >/dev/null || skip "node and npm are not installed"
 case "$*" in
-  *page* | *pictures* | *first_view* | *world*)
+  *page* | *pictures* | *first_view* | *world* | *match*)
     command -v chromium >/dev/null || skip "chromium is not installed; the page was not tested"
     KADANS_CHROMIUM=${KADANS_CHROMIUM:-$(command -v chromium)}
     export KADANS_CHROMIUM
