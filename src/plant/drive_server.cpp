@@ -1,6 +1,7 @@
 #include "drive_server.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <poll.h>
@@ -24,47 +25,62 @@ std::vector<pollfd> polled(const std::vector<int>& descriptors) {
 }  // namespace
 
 void DriveServer::look(World& world) {
-  const std::lock_guard lock(mutex_);
-  drives().look(world.robot(0));
+  if (in_session_) (void)end_session();  // of a world that was given up
+  {
+    const std::lock_guard lock(mutex_);
+    drives().look(world.robot(0));
+    look_true_ = true;
+  }
+  changed_.notify_all();
 }
 
 bool DriveServer::await(int milliseconds) noexcept {
-  if (thread_.joinable()) (void)end_session();  // of a world that was given up
-  std::vector<pollfd> wanted = polled(descriptors());
-  if (poll(wanted.data(), wanted.size(), milliseconds) <= 0) return false;
+  if (!thread_.joinable()) thread_ = std::thread([this] { serve(); });
+  std::unique_lock lock(mutex_);
+  if (!changed_.wait_for(lock, std::chrono::milliseconds(milliseconds), [this] { return spoken_to_; })) return false;
   session_ = {};
   silent_ns_ = time_ns_ = 0;
   heard_ = heard();
   stepped_ = cycles();
   time_runs_ = tripped_ = false;
-  stop_.store(false, std::memory_order_relaxed);
-  thread_ = std::thread([this] { serve(); });  // who asked may wait for the answer no longer than some milliseconds
-  return true;
+  return in_session_ = true;
 }
 
+// Who speaks first finds an answer at once: programs that ask once, as mesaflash does, wait for some milliseconds.
 void DriveServer::serve() noexcept {
   sched_param parameter{};
   parameter.sched_priority = bus_priority;
   (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);  // without the right it is a usual thread
   std::vector<pollfd> wanted = polled(descriptors());
+  std::int64_t wake_ns = 0;
   while (!stop_.load(std::memory_order_relaxed)) {
-    std::int64_t wake_ns = monotonic_ns() + look_ns;
-    {
-      const std::lock_guard lock(mutex_);
-      wake_ns = std::min(wake_ns, serve_bus(monotonic_ns()));
-    }
     const std::int64_t left_ns = std::max<std::int64_t>(0, wake_ns - monotonic_ns());
     const timespec wait{.tv_sec = 0, .tv_nsec = std::min(left_ns, look_ns)};
-    (void)ppoll(wanted.data(), wanted.size(), &wait, nullptr);
+    const bool came = ppoll(wanted.data(), wanted.size(), &wait, nullptr) > 0;
+    std::unique_lock lock(mutex_);
+    if (!look_true_) {  // what came waits until the drives know where they stand
+      (void)changed_.wait_for(lock, std::chrono::nanoseconds(look_ns));
+      continue;
+    }
+    wake_ns = std::min(monotonic_ns() + look_ns, serve_bus(monotonic_ns()));
+    if (!came || std::exchange(spoken_to_, true)) continue;
+    lock.unlock();
+    changed_.notify_all();
   }
 }
 
 bool DriveServer::end_session() noexcept {
-  stop_.store(true, std::memory_order_relaxed);
-  if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
   faults_.end(drives());
   drives().switch_power();
+  in_session_ = spoken_to_ = look_true_ = false;
   return false;
+}
+
+void DriveServer::end() noexcept {
+  stop_.store(true, std::memory_order_relaxed);
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
 }
 
 void DriveServer::plan_faults(const std::vector<EmulatedFault>& faults) { faults_.add(faults, drives()); }

@@ -2,7 +2,8 @@
 // their protocol.
 //
 // A session begins with the first bytes that somebody sends, and ends after a second without any that were understood.
-// Between two sessions the drives' power is off. The model's time begins when the first drive gets torque, so that the
+// They are answered at once; where the drives stand then, look() has shown them. Between two sessions the drives' power
+// is off, and what is sent before look() waits. The model's time begins when the first drive gets torque, so that the
 // robot does not fall while its drives are found and set up.
 //
 // In step with its peer, whose clock may be slow or stand still, the model's time, and with it that of the drives'
@@ -10,11 +11,12 @@
 //
 // Faults of the bus and the drives may be planned; they happen by the model's time in each session anew.
 //
-// Threads: look, await and beat by one thread at a time; a thread of its own serves the bus during a session, from the
-// first bytes on. What a type brings is called by one of them at a time.
+// Threads: look, await and beat by one thread at a time; a thread of its own serves the bus from the first await on.
+// What a type brings is called by one of them at a time.
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <mutex>
 #include <thread>
@@ -36,8 +38,7 @@ class DriveServer : public PlantEmulator {
  protected:
   // A cycle of the peer's bus is a tick of its control in every `divisor`.
   DriveServer(std::int64_t period_ns, std::uint32_t divisor) noexcept : period_ns_(period_ns), divisor_(divisor) {}
-  // A destructor of a type calls it first.
-  bool end_session() noexcept;
+  void end() noexcept;  // a destructor of a type calls it first
 
   // What becomes readable when somebody speaks.
   virtual std::vector<int> descriptors() const = 0;
@@ -52,6 +53,7 @@ class DriveServer : public PlantEmulator {
   static constexpr std::uint64_t in_step_ahead_max = 10;  // cycles in a beat; beyond that they are lost
 
   void serve() noexcept;
+  bool end_session() noexcept;  // false
   std::uint32_t due(std::uint32_t periods) noexcept;
 
   std::int64_t period_ns_;
@@ -60,7 +62,11 @@ class DriveServer : public PlantEmulator {
   std::uint64_t stepped_ = 0;  // for that many cycles of the peer's bus
   FaultPlan faults_;
   std::int64_t time_ns_ = 0;  // of the model, in this session
-  std::mutex mutex_;          // of what the type brings
+  std::mutex mutex_;          // of what the type brings, and of the two below
+  bool look_true_ = false;    // the drives know where they stand
+  bool spoken_to_ = false;    // since the last session was over
+  std::condition_variable changed_;
+  bool in_session_ = false;
   std::thread thread_;
   std::atomic<bool> stop_{false};
   Session session_;

@@ -64,7 +64,7 @@ TEST_CASE("Boards answer who speaks first before a beat, and say where their dri
   CHECK(ends.sensors.joints[1].position_rad == doctest::Approx(-0.2).epsilon(0.01));
 }
 
-TEST_CASE("Servos answer who speaks first before a beat, and say where they stand") {
+TEST_CASE("Servos answer who speaks first before a beat, as soon as they know where they stand") {
   const dynamixel::ServoModel* const model = dynamixel::find_model("XM430-W210");
   dynamixel::DynamixelSettings settings;
   settings.ports = {{.name = "bus", .device = "", .baud = 1'000'000}};
@@ -73,10 +73,11 @@ TEST_CASE("Servos answer who speaks first before a beat, and say where they stan
   const std::string bus = std::filesystem::temp_directory_path() / ("kadans-first-" + std::to_string(getpid()));
   dynamixel::ServoServer server(settings, site(), bus);
   IdealWorld world(test::two_joints(), PlantSettings{.position_rad = {0.1, -0.2}});
-  server.look(world);
   TerminalPort port(bus, 1'000'000);
   // Where does servo 1 stand (Present Position, 4 bytes)?
   REQUIRE(port.send(std::array<std::uint8_t, 14>{0xFF, 0xFF, 0xFD, 0, 1, 7, 0, 0x02, 0x84, 0, 4, 0, 0x1D, 0x15}));
+  CHECK_FALSE(server.await(50));  // what came waits until they know it
+  server.look(world);
   REQUIRE(server.await(10'000));
   std::array<std::uint8_t, 15> answer{};
   for (std::size_t got = 0; got < answer.size();) {
@@ -90,6 +91,7 @@ TEST_CASE("Servos answer who speaks first before a beat, and say where they stan
 TEST_CASE("In step with its peer a server of drives lets time pass with the peer's ticks alone") {
   Ends ends(at("127.0.7.120"));
   REQUIRE(ends.server.step_with_peer());
+  ends.server.look(ends.model);
   REQUIRE(ends.server.await(10'000));
   REQUIRE(ends.server.beat(ends.model, 1));
   REQUIRE(ends.plant->open());

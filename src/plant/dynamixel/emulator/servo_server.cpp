@@ -15,7 +15,7 @@ ServoServer::ServoServer(const DynamixelSettings& settings, const PlantSite& sit
     terminals_.emplace_back(settings.ports.size() == 1 ? listen : listen + "-" + port.name, "--listen");
 }
 
-ServoServer::~ServoServer() { (void)end_session(); }
+ServoServer::~ServoServer() { end(); }
 
 std::vector<int> ServoServer::descriptors() const {
   std::vector<int> all;

@@ -24,7 +24,7 @@ BoardServer::BoardServer(const HostMot2Settings& settings, const PlantSite& site
 }
 
 BoardServer::~BoardServer() {
-  (void)end_session();
+  end();
   for (const int one : sockets_) close(one);
 }
 
