@@ -11,6 +11,7 @@
 #include "config/schema_checks.h"
 #include "football/program/match_report.h"
 #include "kadans/config/input_object.h"
+#include "process_folder.h"
 
 namespace match_input_test {
 
@@ -20,7 +21,8 @@ using kadans::InputError;
 
 namespace {
 
-const fs::path folder = KADANS_BINARY_DIR "/football_input";
+const kadans::football::test::ProcessFolder own("football_input");
+const fs::path& folder = own.path;
 
 fs::path written(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());

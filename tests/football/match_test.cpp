@@ -7,6 +7,7 @@
 
 #include "football/program/match_report.h"
 #include "kadans/signal/input_error.h"
+#include "process_folder.h"
 
 namespace match_test {
 
@@ -16,11 +17,10 @@ using namespace kadans::football;
 namespace {
 
 const fs::path matches = KADANS_SOURCE_DIR "/config/matches";
+const kadans::football::test::ProcessFolder own("football_match");
 
 fs::path match_of(const std::string& text) {
-  const fs::path folder = KADANS_BINARY_DIR "/football_match";
-  fs::create_directories(folder);
-  const fs::path file = folder / "match.json";
+  const fs::path file = own.path / "match.json";
   std::ofstream(file) << text;
   return file;
 }
