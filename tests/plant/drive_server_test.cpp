@@ -55,7 +55,7 @@ struct Ends {
 }  // namespace
 
 TEST_CASE("Boards answer who speaks first before a beat, and say where their drives stand") {
-  Ends ends(at("127.0.7.121"));
+  Ends ends(at("127.0.7.123"));
   ends.server.look(ends.model);
   REQUIRE(ends.server.await(10'000));
   REQUIRE(ends.plant->open());
