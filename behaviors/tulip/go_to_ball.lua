@@ -20,9 +20,9 @@ end
 
 -- The ball is beyond the target, and its radius with it. From afar the robot sees that by noisy pictures.
 local function is_there(m, b)
-  local x_m, y_m, at = P.target_x_m, P.target_y_m, walk.at(m)
+  local x_m, y_m = P.target_x_m, P.target_y_m
   local beyond_m = (x_m * (b.x_m - x_m) + y_m * (b.y_m - y_m)) / math.sqrt(x_m ^ 2 + y_m ^ 2)
-  return beyond_m > 0.1 + 0.05 * math.sqrt((b.x_m - at.x_m) ^ 2 + (b.y_m - at.y_m) ^ 2)
+  return beyond_m > 0.1 + 0.05 * walk.distance(b, walk.at(m))
 end
 
 local function look(m, s)

@@ -8,7 +8,7 @@
 #include "football/program/match_report.h"
 #include "football/program/match_summary.h"
 #include "kadans/signal/input_error.h"
-#include "process_folder.h"
+#include "temporary_folder.h"
 
 namespace many_matches_test {
 
@@ -17,8 +17,8 @@ using namespace kadans::football;
 
 namespace {
 
-const kadans::football::test::ProcessFolder own("football_many");
-const fs::path& folder = own.path;
+const kadans::test::TemporaryFolder own;
+const fs::path folder = own.path() / "many";
 const std::string program = KADANS_BINARY_DIR "/kadans-football";
 const std::string drill = KADANS_SOURCE_DIR "/config/matches/striker_drill.json";
 

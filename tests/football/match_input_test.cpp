@@ -11,7 +11,7 @@
 #include "config/schema_checks.h"
 #include "football/program/match_report.h"
 #include "kadans/config/input_object.h"
-#include "process_folder.h"
+#include "temporary_folder.h"
 
 namespace match_input_test {
 
@@ -21,8 +21,8 @@ using kadans::InputError;
 
 namespace {
 
-const kadans::football::test::ProcessFolder own("football_input");
-const fs::path& folder = own.path;
+const kadans::test::TemporaryFolder own(KADANS_BINARY_DIR);  // a team is in a folder of the project
+const fs::path folder = own.path() / "football_input";
 
 fs::path written(const fs::path& file, const std::string& text) {
   fs::create_directories(file.parent_path());

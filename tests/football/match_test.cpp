@@ -1,13 +1,12 @@
 // Matches that robots play: what a file says, what is wrong in one, and short ones by their seed.
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include <doctest/doctest.h>
 
 #include "football/program/match_report.h"
 #include "kadans/signal/input_error.h"
-#include "process_folder.h"
+#include "temporary_folder.h"
 
 namespace match_test {
 
@@ -17,13 +16,9 @@ using namespace kadans::football;
 namespace {
 
 const fs::path matches = KADANS_SOURCE_DIR "/config/matches";
-const kadans::football::test::ProcessFolder own("football_match");
+const kadans::test::TemporaryFolder own(KADANS_BINARY_DIR);  // a match belongs to the project around it
 
-fs::path match_of(const std::string& text) {
-  const fs::path file = own.path / "match.json";
-  std::ofstream(file) << text;
-  return file;
-}
+fs::path match_of(const std::string& text) { return own.write("match.json", text); }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
