@@ -162,8 +162,7 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "Run 'kadans --help' or 'kadans COMMAND --help'.\n");
     return exit_usage;
   }
-  if (app.got_subcommand("run") || app.got_subcommand("plant") || app.got_subcommand("jitter"))
-    bind_all_functions(argv);
+  if (app.got_subcommand("run") || app.got_subcommand("plant") || app.got_subcommand("jitter")) bind_all_functions();
   if (app.got_subcommand("test")) return run_test(line.test);
   if (app.got_subcommand("run")) return run_live(line.run);
   if (app.got_subcommand("behavior-process")) return run_behavior_process(line.behavior_process);

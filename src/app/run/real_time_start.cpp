@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,14 @@ namespace {
 // TULip squats, walks and falls without any. A machine of 32 bits has half of the memory and half as large pointers.
 constexpr std::size_t heap_reserve_bytes = (std::size_t{64} << 10U) * sizeof(void*);
 
+// The arguments with which this program was started, which need not be those that its main() hands on.
+std::vector<std::string> own_arguments() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> arguments;
+  for (std::string argument; std::getline(file, argument, '\0');) arguments.push_back(argument);
+  return arguments;
+}
+
 }  // namespace
 
 bool rights_suffice(int priority, bool soft) {
@@ -28,7 +37,7 @@ bool rights_suffice(int priority, bool soft) {
   return missing.empty() || soft;
 }
 
-void bind_all_functions(char** argv) {
+void bind_all_functions() {
   constexpr const char* variable = "LD_BIND_NOW";   // of ld.so; linking with -z now binds only what a file itself calls
   const char* const bound = std::getenv(variable);  // NOLINT(concurrency-mt-unsafe): before any thread is started
   if (bound != nullptr && *bound != '\0') return;
@@ -38,7 +47,11 @@ void bind_all_functions(char** argv) {
   (void)setenv(variable, "1", 1);                      // NOLINT(concurrency-mt-unsafe)
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (!error) execv(program.c_str(), argv);
+  std::vector<std::string> arguments = own_arguments();
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  if (!error) execv(program.c_str(), argv.data());
   print_error(
       std::string("functions of libraries are bound at their first call, in real time too: this program cannot be "
                   "started anew (") +
