@@ -31,7 +31,7 @@ end
 local function nearest_m(robots, mates, x_m, y_m)
   local least_m = 10
   for _, robot in ipairs(robots) do
-    if robot.mate == mates then
+    if robot.mate == mates and not robot.leaves_ball then
       least_m = math.min(least_m, math.sqrt((robot.x_m - x_m) ^ 2 + (robot.y_m - y_m) ^ 2))
     end
   end
@@ -74,8 +74,8 @@ local function outcome(me, robots, ball, rad, far, indirect)
   return chance.of_ball(me, robots, x_m, y_m)
 end
 
--- The worth of a kick from `ball` to `place`, beyond_m farther. robots: { x_m =, y_m =, mate =, kicks = }, the robot
--- that kicks among them.
+-- The worth of a kick from `ball` to `place`, beyond_m farther. robots: { x_m =, y_m =, mate =, kicks =, leaves_ball = },
+-- the robot that kicks among them, which may have to leave the ball to others then.
 function chance.of_kick(me, robots, ball, place, beyond_m, indirect)
   local x_m, y_m = place.x_m - ball.x_m, place.y_m - ball.y_m
   local rad = math.atan2(y_m, x_m)

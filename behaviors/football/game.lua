@@ -56,6 +56,46 @@ function game.indirect(s)
   return told.ours == 1 and (told.set_play == 2 or told.set_play == 4)
 end
 
+-- Who takes a free kick, throw-in and so on may not touch the ball again before another robot has, in a team of three or
+-- more on the field.
+local three, mate_silent_s = 3, 4
+function game.touches_once(m, s)
+  if not m.vars.heard then return s.seen.me.players >= three end
+  local count = 1
+  for _, mate in pairs(m.vars.mates) do
+    if mate.plays and s.time_s - mate.heard_s < mate_silent_s then count = count + 1 end
+  end
+  return count >= three
+end
+
+-- To be called in each tick: whether it must leave the ball to others, because it took such a kick. It took one when it
+-- was at the ball, and play is free and the ball gone. After waits_s it waits no longer for others, who may not have seen
+-- the kick.
+local at_ball_m, gone_m, touched_m, soon_s, waits_s = 0.7, 0.15, 0.45, 1.5, 20
+function game.leaves_ball(m, s, pose, ball)
+  local vars = m.vars
+  if s.seen.game.set_play > 0 then
+    vars.took_s = false
+    if ball and game.may_kick(s) and vars.role ~= "supporter" and field.distance(pose, ball) < at_ball_m then
+      vars.takes = { x_m = ball.x_m, y_m = ball.y_m, s = s.time_s }
+    end
+    return false
+  end
+  local takes = vars.takes
+  if takes and ball and field.distance(takes, ball) > gone_m and game.touches_once(m, s) then
+    vars.takes, vars.took_s = false, s.time_s
+  elseif takes and s.time_s - takes.s > soon_s then
+    vars.takes = false
+  end
+  if not vars.took_s then return false end
+  local touched = s.time_s - vars.took_s > waits_s
+  for _, all in ipairs { vars.others, vars.mates } do
+    for _, robot in pairs(all) do touched = touched or ball ~= nil and field.distance(robot, ball) < touched_m end
+  end
+  if touched then vars.took_s = false end
+  return not touched
+end
+
 function game.goal(s) return { x_m = s.seen.me.length_m / 2, y_m = 0 } end
 function game.own_goal(s) return { x_m = -s.seen.me.length_m / 2, y_m = 0 } end
 

@@ -16,6 +16,14 @@ local function told(state, more)
 end
 local function robot() return { vars = { mates = {}, whistled = false, whistles = 0 } } end
 
+-- A robot of three that took a free kick, by which the ball went from `lay` to `at`.
+local function took_a_kick(mates_play, lay, at)
+  local m, pose = { vars = { mates = {}, others = {}, heard = true, role = "striker" } }, { x_m = lay.x_m - 0.3, y_m = 0 }
+  for number = 1, 3, 2 do m.vars.mates[number] = { heard_s = 9, plays = mates_play, x_m = -3, y_m = 0 } end
+  expect(game.leaves_ball(m, told(3, { set_play = 1, ours = 1 }), pose, lay)).to_be_false()
+  return m, game.leaves_ball(m, told(3, { ours = -1 }), pose, at), pose
+end
+
 describe("game", function()
   it("waits, goes to its place and plays as the game controller says", function()
     local m = robot()
@@ -64,5 +72,30 @@ describe("ready", function()
     expect(ready.place(s).x_m).to_be_above(-4.5 + 2.6)
     s.seen.me.number = 1
     expect(ready.place(s).x_m).to_equal(-4.5)
+  end)
+
+  it("leaves the ball of its own free kick to others until one of them is there, or for 20 s", function()
+    local lay, at = { x_m = 1, y_m = 0 }, { x_m = 2, y_m = 0 }
+    local m, leaves, pose = took_a_kick(true, lay, at)
+    expect(leaves).to_be_true()
+    expect(game.leaves_ball(m, told(3, { ours = -1 }), pose, at)).to_be_true()
+    m.vars.others = { { x_m = 2.2, y_m = 0.1 } }
+    expect(game.leaves_ball(m, told(3, { ours = -1 }), pose, at)).to_be_false()
+    m, leaves, pose = took_a_kick(true, lay, at)
+    local s = told(3, { ours = -1 })
+    s.time_s = 31
+    expect(leaves).to_be_true()
+    expect(game.leaves_ball(m, s, pose, at)).to_be_false()
+  end)
+
+  it("does not when its team has two on the field, when the ball still lies there, or the others kicked", function()
+    local lay, at = { x_m = 1, y_m = 0 }, { x_m = 2, y_m = 0 }
+    local _, leaves = took_a_kick(false, lay, at)
+    expect(leaves).to_be_false()
+    _, leaves = took_a_kick(true, lay, lay)
+    expect(leaves).to_be_false()
+    local m = { vars = { mates = {}, others = {}, heard = false, role = "striker" } }
+    expect(game.leaves_ball(m, told(3, { set_play = 1, ours = 0 }), { x_m = 0.7, y_m = 0 }, lay)).to_be_false()
+    expect(game.leaves_ball(m, told(3, { ours = -1 }), { x_m = 0.7, y_m = 0 }, at)).to_be_false()
   end)
 end)

@@ -37,6 +37,9 @@ function kicks.look(m, s, pose)
   m.vars.others = known
 end
 
+-- Where this kick leaves the ball, it may not go on by itself.
+function kicks.is_for_others(m, s) return game.may_kick(s) and game.touches_once(m, s) end
+
 -- The others, and mates that told where they are, or are seen when they are silent; itself among them.
 function kicks.robots(m, s, pose)
   local all = {}
@@ -49,7 +52,7 @@ function kicks.robots(m, s, pose)
       if robot.mate then all[#all + 1] = robot end
     end
   end
-  all[#all + 1] = { x_m = pose.x_m, y_m = pose.y_m, mate = true, kicks = true }
+  all[#all + 1] = { x_m = pose.x_m, y_m = pose.y_m, mate = true, kicks = true, leaves_ball = kicks.is_for_others(m, s) }
   return all
 end
 
@@ -102,13 +105,13 @@ function kicks.all(m, s, pose, ball, now)
   if can.dribble then ahead(ball, toward_rad, list) end
   if can.pass then to_mates(m, s, list) end
   if now then list[#list + 1] = now end
-  local cost = turns_cost(m, s, robots, ball)
+  local cost, for_others = turns_cost(m, s, robots, ball), kicks.is_for_others(m, s)
   for _, kick in ipairs(list) do
     local rad = math.atan2(kick.y_m - ball.y_m, kick.x_m - ball.x_m)
     local out_m = math.max(
       math.abs(ball.x_m - stands_m * math.cos(rad)) - me.length_m / 2,
       math.abs(ball.y_m - stands_m * math.sin(rad)) - me.width_m / 2, 0)
-    local share = kick.name == "pass" and passed or 1
+    local share = (kick.name == "pass" or for_others and kick.name == "dribble") and passed or 1
     kick.worth = share * chance.of_kick(me, robots, ball, kick, kick.beyond_m, game.indirect(s)) -
       cost * math.max(0, math.abs(field.angle(rad - toward_rad)) - aside_rad) - beside * out_m
   end

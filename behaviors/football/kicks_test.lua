@@ -47,6 +47,21 @@ describe("kicks", function()
     expect(kicks.choose(m, s, pose, { x_m = 1.5, y_m = -2 }).name == "pass").to_be_false()
   end)
 
+  it("passes at a free kick of a team of three, since it may not go on with the ball by itself", function()
+    local pose, ball = facing(-0.5, 0), { x_m = 0, y_m = 0 }
+    local function chosen(mate_plays)
+      local m, s = situation()
+      sees(m, s, pose, 2, -1)
+      s.seen.game = { ours = 1, set_play = 2, state = 3 }
+      m.vars.heard = true
+      m.vars.mates[1] = { heard_s = 9.5, plays = mate_plays, x_m = -4, y_m = 0 }
+      m.vars.mates[3] = { heard_s = 9.5, plays = true, x_m = 1, y_m = 1.5 }
+      return kicks.choose(m, s, pose, ball).name
+    end
+    expect(chosen(true)).to_equal "pass"
+    expect(chosen(false)).to_equal "dribble"
+  end)
+
   it("remembers an opponent that is out of sight for a while", function()
     local m, s = situation()
     local pose = facing(2.6, 0)

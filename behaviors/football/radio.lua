@@ -58,7 +58,7 @@ function radio.tell(m, s, pose, ball, tell_s)
   local own = ball and ball.own and ball or {}
   local rolls = own.rolls or {}
   m:send("robot.tell", {
-    number = s.seen.me.number, role = vars.role, plays = game.phase(s, m) == "play", far_s = roles.far(pose, ball, vars.lies),
+    number = s.seen.me.number, role = vars.role, plays = game.phase(s, m) == "play", far_s = roles.told(m, pose, ball),
     x_m = within(pose.x_m, 20), y_m = within(pose.y_m, 20), pass_to = pass_to or nil,
     ball_x_m = within(own.x_m, 20), ball_y_m = within(own.y_m, 20), ball_age_s = own.age_s,
     ball_x_m_s = within(rolls.x_m_s, 10), ball_y_m_s = within(rolls.y_m_s, 10),

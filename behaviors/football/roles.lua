@@ -9,11 +9,17 @@ local roles = {}
 local silent_s = 4    -- a mate that was not heard of for so long does not count
 local keeps_s = 1.5   -- who is the striker stays it, unless another one is faster by that
 local rises_s = 8
+local unknown_s = 60  -- to a ball that it does not know, or must leave to others
 local walks_m_s, turns_rad_s = 0.3, 0.6
+
+-- What it tells its mates about its way to the ball.
+function roles.told(m, pose, ball)
+  return m.vars.leaves_ball and unknown_s or roles.far(pose, ball, m.vars.lies)
+end
 
 -- Seconds to stand behind the ball, facing the others' goal; more for one that lies.
 function roles.far(pose, ball, lies)
-  if not ball then return 60 end
+  if not ball then return unknown_s end
   if lies then return rises_s + roles.far(pose, ball) end
   local rest = ball.rest or ball
   local behind = { x_m = rest.x_m - 0.4, y_m = rest.y_m }
@@ -50,6 +56,7 @@ end
 
 function roles.pick(m, s, pose, ball)
   local me = s.seen.me
+  if m.vars.leaves_ball then return me.number == me.keeper and "keeper" or "supporter" end
   if me.number == me.keeper then return keeper_goes(m, s, pose, ball) and "striker" or "keeper" end
   local own_s = roles.far(pose, ball, m.vars.lies) - (m.vars.role == "striker" and keeps_s or 0)
   for number, mate in pairs(m.vars.mates) do

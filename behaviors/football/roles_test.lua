@@ -58,4 +58,14 @@ describe("roles", function()
     m.vars.mates[3] = { heard_s = 9, plays = false, far_s = 0, role = "striker" }
     expect(roles.pick(m, s, far, ball)).to_equal "striker"
   end)
+
+  it("sends nobody to a ball that it must leave to others, and tells its mates so", function()
+    local m, s = robot(2, 1)
+    m.vars.leaves_ball = true
+    expect(roles.pick(m, s, near, ball)).to_equal "supporter"
+    expect(roles.told(m, near, ball)).to_be_above(50)
+    m.vars.leaves_ball = false
+    expect(roles.pick(m, s, near, ball)).to_equal "striker"
+    expect(roles.told(m, near, ball)).to_be_below(10)
+  end)
 end)

@@ -10,6 +10,7 @@ local supporter = {}
 
 local ahead_m, before_goal_m, side_m = 1.5, 1.3, 1
 local behind_ball_m = 1.6
+local leaves_m = 0.6  -- so far it keeps from a ball that it must not touch
 local near_m = 0.4  -- near enough to its place
 local has_m = 2     -- an opponent that is farther from the ball does not have it,
 local clear_m = 0.5 -- nor one that is nearer than a mate by less: they fight for it
@@ -65,6 +66,7 @@ function supporter.play(m, s, pose, ball)
   local place = supporter.place(m, s, pose, ball)
   if game.keeps_away(s) then return legs.keep_away(m, s, pose, place, ball) end
   if field.distance(pose, place) < near_m or is_passed_to(m, s) then place = { x_m = pose.x_m, y_m = pose.y_m } end
+  if m.vars.leaves_ball then return legs.go(m, s, pose, field.clear_of(pose, place, ball, leaves_m), ball) end
   if is_passed_to(m, s) then return legs.go(m, s, pose, place, ball) end
   legs.watch(m, s, pose, place, ball)
 end

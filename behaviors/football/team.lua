@@ -43,6 +43,7 @@ local function play(m, s)
   m.vars.can = { pass = P.passes > 0.5, dribble = P.dribbles > 0.5, support = P.supports > 0.5, dive = P.dives > 0.5 }
   m.vars.lies = legs.lies(m)
   kicks.look(m, s, pose)
+  m.vars.leaves_ball = game.leaves_ball(m, s, pose, ball)
   m.vars.role = roles.pick(m, s, pose, ball)
   radio.tell(m, s, pose, ball, P.tell_s)
   plays[m.vars.role](m, s, pose, ball)
@@ -66,6 +67,7 @@ local function is_not(phase) return function(s, m) return game.phase(s, m) ~= ph
 return k.decisions "team" {
   vars = {
     mates = {}, others = {}, rolling = {}, can = {}, heard = false, lies = false, role = "none", kick = false,
+    takes = false, took_s = false, leaves_ball = false,
     told_s = -10, told_say = 0, told_role = "none", told_pass = false,
     whistled = false, whistles = 0, kick_off_ours = false, kick_off_theirs = false,
   },

@@ -174,11 +174,11 @@ TEST_CASE("Decisions in a process of their own are refused with their place when
 
 TEST_CASE("A k.decisions is no behavior, and a behavior decides nothing: both are refused with their places") {
   const fs::path project = supervised_project("supervised_wrong");
-  const Outcome list = run("run config/tulip/robot.json --plant ideal --duration 1 --play decide", project);
+  const Outcome list = run("run config/tulip/robot.json --plant ideal --soft --duration 1 --play decide", project);
   CHECK(list.exit_code == 2);
   CHECK_MESSAGE(has(list.err, "--play:1:1: 'decide' is a k.decisions"), list.err);
   CHECK(edit(project / "config/tulip/decides.json", "\"decide\"", "\"squat\""));
-  const Outcome decides = run("run config/tulip/decides.json --plant ideal --duration 1", project);
+  const Outcome decides = run("run config/tulip/decides.json --plant ideal --soft --duration 1", project);
   CHECK(decides.exit_code == 2);
   CHECK_MESSAGE(has(decides.err, "'squat' is a k.behavior; what decides returns k.decisions"), decides.err);
 }

@@ -47,14 +47,15 @@ else
     0.05 0.02 0.001 0.0005 "$work/stall" &
 fi
 
-# Bounds for a machine with other work to do: a stall of a few milliseconds is not what is tested here.
+# Bounds for a machine with other work to do: late ticks and behaviors, and a stall of some milliseconds, are not what is
+# tested here.
 mkdir "$work/project"
 cp -r "$source"/{config,models,behaviors} "$work/project"
 cd "$work/project"
 python3 - <<'END'
 import json
 robot = json.load(open("config/tulip/robot.json"))
-robot["safety"]["silent_ticks_max"] = 30
+robot["safety"].update(silent_ticks_max=30, overruns_in_a_row_max=10000, heartbeat_timeout_s=10)
 robot["plant"]["udp"] = {"peer": "10.77.0.2:7100", "round_trip_max_s": 0.05, "watchdog_s": 0.1}
 json.dump(robot, open("config/tulip/robot.json", "w"), indent=2)
 END
@@ -79,10 +80,12 @@ plant=$!
 drive --play squat --duration 8 || true
 wait "$plant"
 python3 -c 'import json, sys; print(json.loads(open(sys.argv[1]).read().splitlines()[-1])["link"])' "$work/run.json"
-expect "datagrams were lost" "$(field "$work/run.json" link.lost) > 100"
-expect "datagrams came twice" "$(field "$work/run.json" link.duplicates) > 50"
+sent=$(field "$work/run.json" link.sent)
+expect "the robot was driven" "$sent > 500"
+expect "datagrams were lost" "$(field "$work/run.json" link.lost) > 0.02 * $sent"
+expect "datagrams came twice" "$(field "$work/run.json" link.duplicates) > 0.005 * $sent"
 expect "no datagram was garbage" "$(field "$work/run.json" link.refused) == 0"
-expect "the plant was driven" "$(field "$work/plant.json" link.received) > 5000"
+expect "the plant was driven" "$(field "$work/plant.json" link.received) > 0.9 * $sent"
 # Whoever keeps the control thread or the relay from its work for long is told, and is not what is tested here.
 missed=$(field "$work/run.json" threads.control.missed)
 if [ "$missed" -lt 20 ] && [ "$(cat "$work/stall")" -lt 20 ]; then
