@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 #include <stdlib.h>
 
-#include "program.h"
+#include "app/program.h"
 
 using namespace kadans::program;
 

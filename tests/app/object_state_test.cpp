@@ -10,9 +10,9 @@
 #include <doctest/doctest.h>
 
 #include "assembly.h"
-#include "control/gaze_bench.h"
+#include "control/body/gaze_bench.h"
 #include "control/joint/trajectory_list.h"
-#include "control/leg_robot.h"
+#include "control/walk/leg_robot.h"
 #include "kadans/testing/allocation_count.h"
 
 namespace object_state_test {

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/document.h"
+#include "app/shipped/document.h"
 
 using namespace kadans;
 

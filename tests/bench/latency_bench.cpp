@@ -2,7 +2,7 @@
 // the plant has another torque. A count, the same on every machine.
 #include <cmath>
 
-#include "chain_rig.h"
+#include "bench/control/chain_rig.h"
 #include "report.h"
 
 namespace kadans::bench {

@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "chain_rig.h"
+#include "bench/control/chain_rig.h"
 #include "kadans/testing/allocation_count.h"
 #include "realtime/engine_tasks.h"
 #include "realtime/posix_wait.h"

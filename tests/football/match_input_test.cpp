@@ -7,8 +7,8 @@
 #include <doctest/doctest.h>
 
 #include "config/broken.h"
-#include "config/schema.h"
-#include "config/schema_checks.h"
+#include "config/json/schema.h"
+#include "config/json/schema_checks.h"
 #include "football/program/match_report.h"
 #include "kadans/config/input_object.h"
 #include "temporary_folder.h"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "config/json_agreement.h"
+#include "config/json/json_agreement.h"
 #include "fuzz_input.h"
 
 namespace {

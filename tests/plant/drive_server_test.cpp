@@ -5,9 +5,9 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "hostmot2_bench.h"
 #include "plant/dynamixel/emulator/servo_server.h"
 #include "plant/hostmot2/emulator/board_server.h"
+#include "plant/hostmot2/hostmot2_bench.h"
 #include "plant/serial/serial_port.h"
 #include "plant/socket_address.h"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # keep_sample.sh: keeps what this version writes, and what is written for it, beside this script in a folder named after the
-# version. To be run once, at a release; tests/app/versions_test.cpp reads all samples.
+# version. To be run once, at a release; tests/app/shipped/versions_test.cpp reads all samples.
 set -euo pipefail
 here=$(dirname "$(realpath "$0")")
 tree=$(realpath "$here/../..")

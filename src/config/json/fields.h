@@ -7,9 +7,9 @@
 //
 // When the function runs on a JSON object, each line checks type and range and stores the value. A field that is not in
 // the file keeps the value it had, so that value is the default. When the function runs without an object
-// (describe_fields), each line describes its field, default included; tests/config/schema.h writes the description as
-// JSON Schema. A key that no line asks for is refused, with the nearest known key. Every object may carry a "doc" for
-// people. All mistakes are added to one Problems; a line returns true when it stored the value.
+// (describe_fields), each line describes its field, default included; tests/config/json/schema.h writes the description
+// as JSON Schema. A key that no line asks for is refused, with the nearest known key. Every object may carry a "doc"
+// for people. All mistakes are added to one Problems; a line returns true when it stored the value.
 #pragma once
 
 #include <algorithm>

@@ -53,7 +53,8 @@ std::int64_t thread_now_ns() noexcept;
 void note_place(lua_State* state, ScriptError& error) noexcept;
 
 // Counts the steps of work in C and charges the budget for them, one slice at a time. When the budget is used up, the
-// work is stopped in the middle. A step is about six machine instructions; tests/script/charge_count.cpp checks that.
+// work is stopped in the middle. A step is about six machine instructions; tests/script/sandbox/charge_count.cpp checks
+// that.
 class StepMeter {
  public:
   explicit StepMeter(lua_State* state) noexcept : state_(state) {}

@@ -1,4 +1,4 @@
-#include "live/crowd.h"
+#include "bench/live/crowd.h"
 
 #include <cstring>
 

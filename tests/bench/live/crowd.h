@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "live/web_socket.h"
+#include "bench/live/web_socket.h"
 
 namespace kadans::bench {
 

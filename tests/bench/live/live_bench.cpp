@@ -14,9 +14,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "live/crowd.h"
-#include "live/tick_times.h"
-#include "report.h"
+#include "bench/live/crowd.h"
+#include "bench/live/tick_times.h"
+#include "bench/report.h"
 
 namespace kadans::bench {
 namespace {

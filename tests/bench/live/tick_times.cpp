@@ -1,11 +1,11 @@
-#include "live/tick_times.h"
+#include "bench/live/tick_times.h"
 
 #include <algorithm>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "live/crowd.h"
+#include "bench/live/crowd.h"
 
 namespace kadans::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "live/web_socket.h"
+#include "bench/live/web_socket.h"
 
 namespace kadans::bench {
 

@@ -1,4 +1,4 @@
-#include "live/web_socket.h"
+#include "bench/live/web_socket.h"
 
 #include <array>
 #include <stdexcept>

@@ -1,0 +1,172 @@
+// `kadans new robot`: robots that nobody has configured stand or are held by the files that it writes.
+#include <cstdlib>
+#include <string>
+#include <tuple>
+
+#include <doctest/doctest.h>
+
+#include "app/program.h"
+#include "app/robots_of_tests.h"
+
+namespace kadans::program::new_robot_test {
+
+using namespace robots_of_tests;
+
+namespace {
+
+// Drawing takes seconds. While this lives, no Chromium is found.
+class WithoutPictures {
+ public:
+  WithoutPictures() : named_(std::getenv(name) == nullptr ? "" : std::getenv(name)) { setenv(name, "", 1); }
+  ~WithoutPictures() {
+    if (named_.empty()) unsetenv(name);
+    if (!named_.empty()) setenv(name, named_.c_str(), 1);
+  }
+  WithoutPictures(const WithoutPictures&) = delete;
+  WithoutPictures& operator=(const WithoutPictures&) = delete;
+
+ private:
+  static constexpr const char* name = "KADANS_CHROMIUM";
+  std::string named_;
+};
+
+}  // namespace
+
+TEST_CASE("new robot writes robots that stand or are held, and play their behavior") {
+  const auto folder = fresh_folder("new_robot");
+  const WithoutPictures none;
+  for (const auto& [of, text, says] :
+       {std::tuple{"spot_four", quadruped(), "It stands on fl_calf, fr_calf, rl_calf, rr_calf"},
+        std::tuple{"biped", biped(), "It stands on l_foot, r_foot"}, std::tuple{"arm", arm(), "it is bolted down"}}) {
+    const std::string name = of;
+    CAPTURE(name);
+    write(folder / "from.urdf", text);
+    const Outcome made = run("new robot from.urdf", folder);
+    CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
+    CHECK(has(made.err, says));
+    CHECK(has(made.err, "No picture: "));
+    CHECK(!std::filesystem::exists(folder / "models" / name / (name + ".mcap")));
+    CHECK(has(made.out, "PASSED"));
+    CHECK(has(made.out, "behaviors/" + std::string(name) + "/sway.lua"));
+    const std::string scenario = "config/scenarios/" + std::string(name) + "_hold.json";
+    const Outcome sways = run("sim " + scenario + " --play sway --no-record --duration 14", folder);
+    CHECK_MESSAGE(sways.exit_code == 0, (sways.out + sways.err));
+    CHECK(run("behavior test behaviors/" + std::string(name), folder).exit_code == 0);
+    CHECK(run("check config behaviors", folder).exit_code == 0);
+  }
+}
+
+TEST_CASE("new robot lets an arm sink that its motors cannot hold stretched out, and holds it from the first tick") {
+  const auto folder = fresh_folder("new_robot_weak");
+  const WithoutPictures none;
+  std::string text = arm();  // its second joint bears 12.6 Nm when it is level
+  const std::string stands = "<origin xyz=\"0 0 0.1\"";
+  REQUIRE(has(text, stands));
+  text.replace(text.find(stands), stands.size(), stands + " rpy=\"0 1.5708 0\"");
+  for (std::size_t at = 0; (at = text.find("effort=\"", at)) != std::string::npos;) {
+    at += 8;
+    text.replace(at, text.find('"', at) - at, "10");
+  }
+  write(folder / "from.urdf", text);
+  const Outcome made = run("new robot from.urdf", folder);
+  CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
+  CHECK(has(made.out, "no faults"));
+  const std::string robot = read(folder / "config/arm/robot.json");
+  CHECK(has(robot, "\"from_off\": \"at_once\""));
+}
+
+TEST_CASE("new robot balances a trunk on a waist whose motor cannot hold it as it leans at 0") {
+  const auto folder = fresh_folder("new_robot_waist");
+  std::string text = biped();
+  text.erase(text.find("</robot>"));
+  text += link("trunk", 8, "", 0.3);  // leans by 0.25 rad: 5.8 Nm
+  text += joint("waist", "pelvis", "trunk", "0 0 0.4\" rpy=\"0 0.25 0", "0 1 0", "lower=\"-1\" upper=\"1\"");
+  text.replace(text.rfind("effort=\"60\""), 11, "effort=\"5\"");
+  write(folder / "from.urdf", text + "</robot>");
+  REQUIRE(run("new robot from.urdf --no-run", folder).exit_code == 0);
+  CHECK(has(read(folder / "config/biped/robot.json"), "\"waist\": -0.08"));  // in steps of 0.02
+}
+
+TEST_CASE("new robot takes meshes of a package along that it is told of") {
+  const auto folder = fresh_folder("new_robot_package");
+  std::string text = arm();
+  text.insert(
+      text.find("<link"),
+      "<link name=\"cap\"><visual><geometry><mesh filename=\"package://caps/cap.stl\"/></geometry></visual></link>"
+      "<joint name=\"cap\" type=\"fixed\"><parent link=\"base\"/><child link=\"cap\"/></joint>");
+  write(folder / "from.urdf", text);
+  std::filesystem::create_directories(folder / "there");
+  write(folder / "there/cap.stl", "solid");
+  const Outcome made = run("new robot from.urdf --package caps=there --no-run", folder);
+  CHECK_MESSAGE(made.exit_code == 0, made.err);
+  CHECK(std::filesystem::exists(folder / "models/arm/meshes/cap.stl"));
+  CHECK(has(run("new robot from.urdf --name b --package caps --no-run", folder).err, "must be NAME=FOLDER"));
+}
+
+TEST_CASE("Behaviors know the feet of a robot with four legs by name, and what each bears") {
+  const auto folder = fresh_folder("new_robot_feet");
+  write(folder / "from.urdf", quadruped());
+  REQUIRE(run("new robot from.urdf --name four --no-run", folder).exit_code == 0);
+  write(folder / "behaviors/four/weighs.lua", R"(local k = require "kadans"
+local names = { "front_left", "front_right", "rear_left", "rear_right" }
+return k.behavior "weighs" {
+  initial = "stands",
+  k.state "stands" {
+    run = function(m, s)
+      m:wait(2)
+      local all_N = 0
+      for _, name in ipairs(names) do
+        assert(s.feet[name].contact, name)
+        all_N = all_N + s.feet[name].force_N
+      end
+      assert(math.abs(all_N - 141.3) < 8, all_N)  -- 14.4 kg, and noise of sensors that push no less than 0
+    end,
+    { on = "run.done", to = "done" },
+  },
+  k.final "done" { outcome = "done" },
+}
+)");
+  CHECK(run("check config behaviors", folder).exit_code == 0);
+  const Outcome weighed = run("sim config/scenarios/four_hold.json --play weighs --no-record --duration 3", folder);
+  CHECK_MESSAGE(weighed.exit_code == 0, (weighed.out + weighed.err));
+}
+
+TEST_CASE("new robot takes the meshes with it, each under a name of its own, and points the URDF to them") {
+  const auto folder = fresh_folder("new_robot_meshes");
+  for (const char* part : {"a", "b"}) std::filesystem::create_directories(folder / part);
+  write(folder / "a/part.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 2 3\nf 1 2 4\n");
+  write(folder / "b/part.obj", "v 0 0 0\nv 0.2 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 2 3\nf 1 2 4\n");
+  std::string text = arm();
+  for (const char* mesh : {"a/part.obj", "b/part.obj"}) {
+    const std::string shape = "<cylinder radius=\"0.03\" length=\"0.15\"/>";
+    text.replace(text.find(shape), shape.size(), "<mesh filename='" + std::string(mesh) + "'/>");
+  }
+  write(folder / "arm.urdf", text);
+  const Outcome made = run("new robot arm.urdf --in project --name mine", folder);
+  CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
+  const std::string urdf = read(folder / "project/models/mine/mine.urdf");
+  CHECK(has(urdf, "<mesh filename='meshes/part.obj'/>"));
+  CHECK(has(urdf, "<mesh filename='meshes/part_2.obj'/>"));
+  CHECK(read(folder / "project/models/mine/meshes/part_2.obj") == read(folder / "b/part.obj"));
+  if (!has(made.err, "No picture: ")) CHECK(read(folder / "project/models/mine/mine.png").substr(1, 3) == "PNG");
+}
+
+TEST_CASE("new robot overwrites nothing, and refuses what it can make no robot of") {
+  const auto folder = fresh_folder("new_robot_refused");
+  write(folder / "arm.urdf", arm());
+  std::filesystem::create_directories(folder / "behaviors/arm");
+  const Outcome taken = run("new robot arm.urdf", folder);
+  CHECK(taken.exit_code == 2);
+  CHECK(has(taken.err, "behaviors/arm: is there already; nothing is overwritten"));
+  CHECK(!std::filesystem::exists(folder / "models"));
+  CHECK(run("new robot arm.urdf --name Arm --no-run", folder).exit_code == 2);
+  CHECK(has(run("new robot none.urdf", folder).err, "there is no such file"));
+  std::string limp = arm();
+  for (std::size_t at; (at = limp.find("effort=\"60\"")) != std::string::npos;) limp.replace(at, 11, "effort=\"0\"");
+  write(folder / "limp.urdf", limp);
+  const Outcome refused = run("new robot limp.urdf --name limp", folder);
+  CHECK(refused.exit_code == 2);
+  CHECK(has(refused.err, "no joint of it has a motor"));
+}
+
+}  // namespace kadans::program::new_robot_test
