@@ -83,10 +83,10 @@ ViewerSubjects viewer_subjects(const Assembly& assembly) {
 
 RobotTexts robot_texts(const Assembly& assembly) {
   const RobotConfig& robot = assembly.robot();
-  RobotTexts texts{
-      .name = robot.model.name,
-      .urdf = read_input_file(robot.model.file),
-      .description = run_description(robot, assembly.catalog(), assembly.own_host(), assembly.world_settings())};
+  RobotTexts texts{.name = robot.model.name,
+                   .urdf = read_input_file(robot.model.file),
+                   .description = run_description(robot, assembly.scenario().robot_name, assembly.catalog(),
+                                                  assembly.own_host(), assembly.world_settings())};
   for (const auto& other : assembly.others()) {
     const std::string& file = other->robot().model.file;
     texts.others.push_back({.name = other->scenario().name, .urdf = read_input_file(file), .file = file});

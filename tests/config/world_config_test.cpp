@@ -161,6 +161,7 @@ TEST_CASE("Further robots of a scenario have names of their own, and take the fi
   };
   refused(text(R"({"name": "b"}, {"name": "b"})"), ":1:122: another robot has the name 'b'");
   refused(text(R"({"name": "B 1"})"), ":1:107: name 'B 1' must consist of small letters, digits and underscores");
+  refused(text(R"({"name": "b"}], "robot_name": "b", "pushes": [)"), ":1:107: another robot has the name 'b'");
   refused(text(R"({"name": "last"})"),
           ":1:107: name 'last': checks read last.SIGNAL as the signal's value one tick before");
   refused(text(R"({"name": "b", "faults": [{"kind": "clock_missed", "size": 2}]})"),

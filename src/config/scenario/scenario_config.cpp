@@ -307,15 +307,20 @@ void supervisor_part(Fields& f, ScenarioConfig& scenario, Problems& problems) {
          });
 }
 
+// With this name a robot's signals begin, or viewers show it.
+void check_robot_name(const std::string& name, const TextPlace& place, const ScenarioConfig& scenario,
+                      Problems& problems) {
+  if (std::ranges::count(scenario.robots, name, &ScenarioConfig::name) > 0 || name == scenario.robot_name)
+    problems.add(place, "another robot has the name " + in_quotes(name));
+  if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+    problems.add(place, "name " + in_quotes(name) + " must consist of small letters, digits and underscores");
+}
+
 void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig& scenario, Problems& problems) {
   f.string("name", robot.name, "the robot's name: its signals are NAME.plant.base.height_m and the like",
            Need::required);
   robot.plant_place = f.place("name");
-  if (std::ranges::count(scenario.robots, robot.name, &ScenarioConfig::name) > 0)
-    problems.add(robot.plant_place, "another robot has the name " + in_quotes(robot.name));
-  if (robot.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
-    problems.add(robot.plant_place,
-                 "name " + in_quotes(robot.name) + " must consist of small letters, digits and underscores");
+  check_robot_name(robot.name, robot.plant_place, scenario, problems);
   if (robot.name == "last")
     problems.add(robot.plant_place, "name 'last': checks read last.SIGNAL as the signal's value one tick before");
   robot.file = scenario.file;
@@ -369,9 +374,9 @@ void record_test_fields(Fields& f, ScenarioConfig& scenario, Problems& problems)
     if (f.has("with")) problems.add(f.place("with"), "with: only a scenario that repeats a record has one");
     return;
   }
-  for (const char* const key : {"robot",     "plant",   "seed",   "repeat",  "start_pose", "set",        "randomise",
-                                "behaviors", "events",  "pushes", "carried", "faults",     "supervisor", "perception",
-                                "robots",    "network", "world",  "bus",     "joystick",   "sight"}) {
+  for (const char* const key : {"robot",      "plant",  "seed",    "repeat",  "start_pose", "set",        "randomise",
+                                "behaviors",  "events", "pushes",  "carried", "faults",     "supervisor", "perception",
+                                "robot_name", "robots", "network", "world",   "bus",        "joystick",   "sight"}) {
     if (f.has(key)) problems.add(f.place(key), std::string(key) + ": comes with the record, which is repeated");
   }
   const std::filesystem::path file = std::filesystem::absolute(scenario.file).parent_path() / scenario.record;
@@ -404,6 +409,11 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   variant_fields(f, scenario, problems);
   play_fields(f, scenario, problems);
   supervisor_part(f, scenario, problems);
+  std::string robot_name;
+  if (f.string("robot_name", robot_name, "what viewers call the first robot (default: as its configuration does)")) {
+    check_robot_name(robot_name, f.place("robot_name"), scenario, problems);
+    scenario.robot_name = robot_name;
+  }
   f.list("robots", {0, further_robots_max}, "further robots in the same world and time", [&](Fields& e) {
     ScenarioConfig robot;
     further_robot_fields(e, robot, scenario, problems);

@@ -221,6 +221,7 @@ struct ScenarioConfig {
   // Further robots in the same world and time. Of each only name, robot, quantities, behaviors, events, pushes,
   // faults and where it is carried are its own; plant_place is that of its name.
   std::vector<ScenarioConfig> robots;
+  std::string robot_name;  // of the first robot, for viewers; "": as its configuration has it
   PluginGate plugins;  // not in the file
 };
 

@@ -403,7 +403,8 @@ std::string scenario_of(const MatchConfig& match, std::uint64_t seed) {
   const Ball ball = league_ball(match.division);
   const std::vector<RobotId> robots = match.robots();
   std::string text = "{ \"name\": " + json_text(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
-                     robot_fields(match, robots.front(), seed) + ",\n  \"robots\": [";
+                     robot_fields(match, robots.front(), seed) +
+                     ",\n  \"robot_name\": " + json_text(robot_name(robots.front())) + ", \"robots\": [";
   for (std::size_t i = 1; i < robots.size(); ++i) {
     text += std::string(i == 1 ? "" : ",") + "\n    { \"name\": " + json_text(robot_name(robots[i])) + ", " +
             robot_fields(match, robots[i], seed) + " }";

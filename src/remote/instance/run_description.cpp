@@ -91,7 +91,7 @@ Json behaviors_of(const ScriptHost* host) {
   return behaviors;
 }
 
-Json robot_of(const RobotConfig& robot) {
+Json robot_of(const RobotConfig& robot, const std::string& called) {
   Json joints = Json::array(), feet = Json::array();
   for (const Joint& joint : robot.model.joints) joints.push_back(joint.name);
   for (const FootSettings& foot : robot.plant.feet) {
@@ -100,6 +100,7 @@ Json robot_of(const RobotConfig& robot) {
     feet.push_back({{"link", foot.link}, {"corners_m", corners}});
   }
   return {{"name", robot.name},
+          {"called", called.empty() ? robot.name : called},
           {"base", robot.model.links.front().name},
           {"mass_kg", robot.model.mass_kg()},
           {"joints", joints},
@@ -233,16 +234,12 @@ void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t
   if (!texts.description.empty()) (void)record.describe_parts(texts.description, time_ns);
 }
 
-std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host,
-                            const WorldSettings& world) {
-  const Json description{{"robot", robot_of(robot)},
-                         {"sets", sets_of(catalog)},
-                         {"objects", objects_of(robot, catalog)},
-                         {"parameters", parameters_of(catalog)},
-                         {"world", world_of(world)},
-                         {"ground", ground_of(world)},
-                         {"payloads", payloads_of(world)},
-                         {"behaviors", behaviors_of(host)}};
+std::string run_description(const RobotConfig& robot, const std::string& called, const Catalog& catalog,
+                            const ScriptHost* host, const WorldSettings& world) {
+  const Json description{
+      {"robot", robot_of(robot, called)},     {"sets", sets_of(catalog)},       {"objects", objects_of(robot, catalog)},
+      {"parameters", parameters_of(catalog)}, {"world", world_of(world)},       {"ground", ground_of(world)},
+      {"payloads", payloads_of(world)},       {"behaviors", behaviors_of(host)}};
   return json_text(description);
 }
 

@@ -38,8 +38,9 @@ void describe_robots(RecordWriter& record, const RobotTexts& texts, std::int64_t
 
 // Call it before the loop or between two behavior ticks, because it reads the values of parameters and the charts.
 // Without a host (behaviors in a process of their own) the charts are left out.
-std::string run_description(const RobotConfig& robot, const Catalog& catalog, const ScriptHost* host,
-                            const WorldSettings& world);
+// `called`: the robot's name in its world, where it has another one than in its configuration; "": it has not.
+std::string run_description(const RobotConfig& robot, const std::string& called, const Catalog& catalog,
+                            const ScriptHost* host, const WorldSettings& world);
 // The array "behaviors" of that text alone, which changes when other behaviors or new versions play. Call it between
 // two behavior ticks.
 std::string behaviors_description(const ScriptHost* host);

@@ -53,14 +53,13 @@ run(async () => {
     const near = (at, name) => Math.hypot(at.x - row[`${name}.x_m`], at.y - row[`${name}.y_m`]) < apart_m;
     await until(`at ${row.time_s} s the world from above has the robots where the report has them`, async () => {
       const { robots: shown, balls } = await drawn(page);
-      const [first, ...others] = shown; // the first one's signals have no name before them
-      return shown.length === 3 && balls.length === 1 && near(first, 'home_1') && others.every((at) => near(at, at.name)) &&
+      return shown.length === 3 && balls.length === 1 && shown.every((at) => near(at, at.name)) &&
         Math.hypot(balls[0].x - row.ball_x_m, balls[0].y - row.ball_y_m) < 3 * apart_m;
     });
     const { robots: shown } = await drawn(page);
-    check(shown.every((at, i) => Math.abs(Math.sin((at.degrees * Math.PI) / 180 - row[`${i === 0 ? 'home_1' : at.name}.theta_rad`])) < 0.1), `at ${row.time_s} s they are where the report has them, and turned so`);
+    check(shown.every((at) => Math.abs(Math.sin((at.degrees * Math.PI) / 180 - row[`${at.name}.theta_rad`])) < 0.1), `at ${row.time_s} s they are where the report has them, and turned so`);
   }
-  check(new Set((await drawn(page)).robots.slice(1).map(({ name }) => name)).size === 2, 'the others have their names');
+  check(new Set((await drawn(page)).robots.map(({ name }) => name)).size === 3, 'each has its own name');
   check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
   await view.stop();
 });

@@ -59,7 +59,7 @@ export function TopBar({ session, theme, turn, open, help }) {
       <h1>Kadans</h1>
       {named && <span class={session.live ? (session.status ? 'badge lost' : 'badge live') : 'badge'}>{session.live ? (session.status || 'live') : 'record'}</span>}
       {named && <span class="title" title={session.title}>{session.title}</span>}
-      {session.description && <span class="muted">{session.description.robot.name}</span>}
+      {session.description && <span class="muted">{session.description.robot.called ?? session.description.robot.name}</span>}
       {!session.live && session.status && <span class="warn">{session.status}</span>}
       {Number.isFinite(level) && <span class={`chip level${level}`} title="Worst rung of robot and joints">{rungs[level]}</span>}
       <span class="grow" />

@@ -38,7 +38,7 @@ function world_of(session) {
     const at = robot_at(session, prefix);
     const seen = beliefs(session, prefix);
     const drawn = seen.filter((entry) => entry.confidence > 0 && known(entry)).map((entry) => ({ ...entry, ...from_robot(at, entry) }));
-    return { name: prefix.slice(0, -1) || session.description?.robot.name, ...at, seen, drawn };
+    return { name: prefix.slice(0, -1) || (session.description?.robot.called ?? session.description?.robot.name), ...at, seen, drawn };
   });
   const things = (session.description?.world ?? []).map((thing) => from_above(session, thing));
   const driven = place(session, 'world.ground.');
