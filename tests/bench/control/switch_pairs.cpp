@@ -121,7 +121,7 @@ const char* name(Situation situation) {
 }
 
 std::vector<std::string> switch_sets() {
-  const Robot robot = read_robot(robot_file);
+  const auto robot = read_robot(robot_file);
   std::vector<std::string> names;
   for (const ControlSetInfo& set : robot.config.sets) names.push_back(set.name);
   return names;
@@ -166,7 +166,7 @@ SwitchStep measure_switch(const std::string& from, const std::string& to, Situat
 }
 
 double switch_cost_ns(const std::string& from, const std::string& to) {
-  const Robot robot = read_robot(robot_file);
+  const auto robot = read_robot(robot_file);
   const auto system = make_control_system(robot);
   Catalog& catalog = system->catalog;
   ControlSets sets(catalog, std::move(system->objects));
