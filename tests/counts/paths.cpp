@@ -3,11 +3,11 @@
 #include <array>
 #include <memory>
 
-#include "../bench/chart_rig.h"
-#include "../bench/plant/engines.h"
-#include "../bench/plant/standing.h"
+#include "bench/chart_rig.h"
 #include "bench/control/body_rig.h"
 #include "bench/control/chain_rig.h"
+#include "bench/plant/engines.h"
+#include "bench/plant/standing.h"
 #include "telemetry/record/recorder.h"
 
 using Element = std::array<std::uint64_t, 64>;  // 512 bytes
