@@ -83,6 +83,11 @@ void DriveServer::end() noexcept {
   if (thread_.joinable()) thread_.join();
 }
 
+std::vector<PlantCount> DriveServer::link_counts() const {
+  const std::lock_guard lock(mutex_);
+  return counts();
+}
+
 void DriveServer::plan_faults(const std::vector<EmulatedFault>& faults) { faults_.add(faults, drives()); }
 
 // How many of the periods pass for the model and its drives.

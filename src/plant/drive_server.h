@@ -12,7 +12,7 @@
 // Faults of the bus and the drives may be planned; they happen by the model's time in each session anew.
 //
 // Threads: look, await and beat by one thread at a time; a thread of its own serves the bus from the first await on.
-// What a type brings is called by one of them at a time.
+// What a type brings is called by one of them at a time. link_counts by any.
 #pragma once
 
 #include <atomic>
@@ -34,6 +34,7 @@ class DriveServer : public PlantEmulator {
   bool step_with_peer() noexcept final { return in_step_ = true; }
   const Session& session() const noexcept final { return session_; }
   void plan_faults(const std::vector<EmulatedFault>& faults) final;
+  std::vector<PlantCount> link_counts() const final;
 
  protected:
   // A cycle of the peer's bus is a tick of its control in every `divisor`.
@@ -46,6 +47,7 @@ class DriveServer : public PlantEmulator {
   virtual std::int64_t serve_bus(std::int64_t now_ns) noexcept = 0;
   virtual std::uint64_t heard() const noexcept = 0;   // messages that were understood, ever
   virtual std::uint64_t cycles() const noexcept = 0;  // of the peer's bus, ever
+  virtual std::vector<PlantCount> counts() const = 0;
   virtual EmulatedDrives& drives() noexcept = 0;
 
  private:
@@ -62,7 +64,7 @@ class DriveServer : public PlantEmulator {
   std::uint64_t stepped_ = 0;  // for that many cycles of the peer's bus
   FaultPlan faults_;
   std::int64_t time_ns_ = 0;  // of the model, in this session
-  std::mutex mutex_;          // of what the type brings, and of the two below
+  mutable std::mutex mutex_;  // of what the type brings, and of the two below
   bool look_true_ = false;    // the drives know where they stand
   bool spoken_to_ = false;    // since the last session was over
   std::condition_variable changed_;

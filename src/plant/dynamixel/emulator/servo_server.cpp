@@ -49,7 +49,7 @@ std::uint64_t ServoServer::cycles() const noexcept {
   return most;
 }
 
-std::vector<PlantCount> ServoServer::link_counts() const {
+std::vector<PlantCount> ServoServer::counts() const {
   std::uint64_t not_understood = 0;
   for (const auto& bus : robot_.buses()) not_understood += bus->not_understood();
   return {{"instructions", heard()}, {"not understood", not_understood}};

@@ -18,13 +18,13 @@ class ServoServer final : public DriveServer {
   ~ServoServer() override;
 
   std::string peer_name() const override { return "whoever opened " + listen_; }
-  std::vector<PlantCount> link_counts() const override;
 
  private:
   std::vector<int> descriptors() const override;
   std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
   std::uint64_t heard() const noexcept override;
   std::uint64_t cycles() const noexcept override;
+  std::vector<PlantCount> counts() const override;
   EmulatedDrives& drives() noexcept override { return robot_; }
 
   std::string listen_;

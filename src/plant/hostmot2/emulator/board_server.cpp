@@ -65,7 +65,7 @@ std::uint64_t BoardServer::cycles() const noexcept {
   return most;
 }
 
-std::vector<PlantCount> BoardServer::link_counts() const {
+std::vector<PlantCount> BoardServer::counts() const {
   std::uint64_t not_understood = 0;
   for (const EmulatedWire& wire : machine_.wires()) not_understood += wire.responder.not_understood();
   return {{"datagrams", heard()}, {"not understood", not_understood}};

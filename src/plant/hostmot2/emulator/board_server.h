@@ -17,13 +17,13 @@ class BoardServer final : public DriveServer {
   ~BoardServer() override;
 
   std::string peer_name() const override { return "whoever speaks LBP16 there"; }
-  std::vector<PlantCount> link_counts() const override;
 
  private:
   std::vector<int> descriptors() const override { return sockets_; }
   std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
   std::uint64_t heard() const noexcept override;
   std::uint64_t cycles() const noexcept override;
+  std::vector<PlantCount> counts() const override;
   EmulatedDrives& drives() noexcept override { return machine_; }
 
   EmulatedMachine machine_;
