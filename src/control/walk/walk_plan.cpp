@@ -233,7 +233,8 @@ void WalkPlan::land(const Config& c, const Wanted& wanted, const Sight& sight) n
   s.kick.end();
   s.time_s = 0;
   s.step_s = c.step_s;
-  s.meant.turn_rad = s.meant.velocity.turn_rad_s * c.step_s;
+  // As long as the last step took: steps land sooner than meant, and the rate is that of time.
+  s.meant.turn_rad = s.meant.velocity.turn_rad_s * std::min(step_time_s_, c.step_max_s);
   const double slow_m_s = 0.06, beside_m = 0.1;
   if (!wanted.go && std::abs(s.meant.velocity.forward_m_s) < slow_m_s &&
       std::abs(s.meant.velocity.left_m_s) < slow_m_s && s.steps > 1 && std::abs(way.x_m) < beside_m &&
