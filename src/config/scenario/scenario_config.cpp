@@ -310,7 +310,8 @@ void supervisor_part(Fields& f, ScenarioConfig& scenario, Problems& problems) {
 // With this name a robot's signals begin, or viewers show it.
 void check_robot_name(const std::string& name, const TextPlace& place, const ScenarioConfig& scenario,
                       Problems& problems) {
-  if (std::ranges::count(scenario.robots, name, &ScenarioConfig::name) > 0 || name == scenario.robot_name)
+  if (std::ranges::count(scenario.robots, name, &ScenarioConfig::name) > 0 ||
+      (!name.empty() && name == scenario.robot_name))
     problems.add(place, "another robot has the name " + in_quotes(name));
   if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
     problems.add(place, "name " + in_quotes(name) + " must consist of small letters, digits and underscores");
