@@ -335,11 +335,16 @@ TEST_CASE("WalkPlan does not rest longer than rest_s, nor when xi leaves the fee
   CHECK(robot.state().phase == Phase::steps);  // it has sunk, but would fall over its heels
 }
 
-TEST_CASE("WalkPlan says by how much the heading turns at a landing") {
+TEST_CASE("WalkPlan says by how much the heading turns at a landing: by the rate and the time that a step takes") {
   Pendulum robot;
   robot.wanted.velocity.turn_rad_s = 0.5;
   robot.run(4);
-  CHECK(robot.state().meant.turn_rad == doctest::Approx(0.5 * robot.config.step_s));
+  robot.next_step();
+  int ticks = 0;
+  for (const std::uint32_t steps = robot.state().steps; robot.state().steps == steps; ++ticks) robot.tick();
+  const double step_s = ticks * dt_s;
+  CHECK(std::abs(step_s - robot.config.step_s) > 0.003);  // it is not what was meant that counts
+  CHECK(robot.state().meant.turn_rad == doctest::Approx(0.5 * step_s));
   WalkPlan& plan = robot.plan;
   const GroundPoint before = plan.state().dcm;
   plan.turned(0.3);
