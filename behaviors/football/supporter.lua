@@ -9,7 +9,8 @@ local search = require "search"
 local supporter = {}
 
 local ahead_m, before_goal_m, side_m = 1.5, 1.3, 1
-local behind_ball_m = 1.6
+local behind_ball_m = 1.6  -- with a keeper behind it
+local covers_m = 0.9       -- without one: so near to the ball it hides most of the goal
 local leaves_m = 0.6  -- so far it keeps from a ball that it must not touch
 local near_m = 0.4  -- near enough to its place
 local has_m = 2     -- an opponent that is farther from the ball does not have it,
@@ -23,7 +24,7 @@ end
 
 local function behind(me, s, ball)
   local side = ball.y_m > 0 and -1 or 1
-  local behind_m = game.keeps_away(s) and me.circle_m + 1 or behind_ball_m
+  local behind_m = game.keeps_away(s) and me.circle_m + 1 or me.keeper > 0 and behind_ball_m or covers_m
   if me.keeper > 0 then return { x_m = ball.x_m - behind_m, y_m = ball.y_m + 0.8 * side } end
   local own = game.own_goal(s)
   local share = math.min(1, behind_m / math.max(field.distance(ball, own), 0.1))

@@ -27,13 +27,13 @@ describe("supporter", function()
     expect(supporter.lost(m, s, ball)).to_be_false()
     m.vars.mates[1].x_m = 2
     local place, own = supporter.place(m, s, pose, ball), { x_m = -4.5, y_m = 0 }
-    expect(field.distance(place, ball)).to_be_near(1.6, 1e-6)
-    expect(field.distance(place, own) + 1.6).to_be_near(field.distance(ball, own), 1e-6)  -- on the line between them
+    expect(field.distance(place, ball)).to_be_near(0.9, 1e-6)
+    expect(field.distance(place, own) + 0.9).to_be_near(field.distance(ball, own), 1e-6)  -- on the line between them
   end)
 
   it("covers the goal in all of the own half when there is no keeper, and otherwise goes forward sooner", function()
     local m, s = situation(0)
-    expect(supporter.place(m, s, pose, { x_m = -1, y_m = 0 }).x_m).to_be_below(-2.5)
+    expect(supporter.place(m, s, pose, { x_m = -1, y_m = 0 }).x_m).to_be_below(-1.8)
     m, s = situation(1)
     expect(supporter.place(m, s, pose, { x_m = -1, y_m = 0 }).x_m).to_be_above(0)
   end)
