@@ -222,7 +222,7 @@ struct ScenarioConfig {
   // faults and where it is carried are its own; plant_place is that of its name.
   std::vector<ScenarioConfig> robots;
   std::string robot_name;  // of the first robot, for viewers; "": as its configuration has it
-  PluginGate plugins;  // not in the file
+  PluginGate plugins;      // not in the file
 };
 
 // The folders in which the names of its behaviors are looked up.
