@@ -15,19 +15,18 @@ class ContractTable final : public doctest::IReporter {
 
   void report_query(const doctest::QueryData& query) override {
     out_ << "# What goes wrong, and what happens then\n\n"
-            "Made from the tests of tests/failures, one a row; `scripts/failures` runs them and renews it. How soon "
-            "each "
-            "fault\n"
-            "is found stands in src/safety/detection.h. The death of the runtime itself "
-            "and a\n"
-            "slow viewer are not in this table.\n\n"
+            "Made from the tests of tests/failures/contract, one a row; `scripts/failures` runs them and renews it. "
+            "How soon each\n"
+            "fault is found stands in src/safety/detection.h. The death of the runtime itself and a slow viewer are "
+            "not in\n"
+            "this table.\n\n"
             "| what goes wrong | what the runtime promises | test |\n|---|---|---|\n";
     std::map<std::pair<std::string, unsigned>, std::string> rows;  // by file and line, however they were compiled
     for (unsigned i = 0; i < query.num_data; ++i) {
       const doctest::TestCaseData& test = *query.data[i];
       const std::string file = std::filesystem::path(test.m_file.c_str()).filename().string();
       rows[{file, test.m_line}] =
-          std::string("| ") + test.m_description + " | " + test.m_name + " | tests/failures/" + file + " |\n";
+          std::string("| ") + test.m_description + " | " + test.m_name + " | tests/failures/contract/" + file + " |\n";
     }
     for (const auto& [place, row] : rows) out_ << row.c_str();
   }
