@@ -56,14 +56,18 @@ function game.indirect(s)
   return told.ours == 1 and (told.set_play == 2 or told.set_play == 4)
 end
 
+-- Whether a mate is on the field: who is silent or may not play is not there.
+local silent_s = 4
+function game.plays(s, mate) return mate ~= nil and s.time_s - mate.heard_s < silent_s and mate.plays end
+
 -- Who takes a free kick, throw-in and so on may not touch the ball again before another robot has, in a team of three or
 -- more on the field.
-local three, mate_silent_s = 3, 4
+local three = 3
 function game.touches_once(m, s)
   if not m.vars.heard then return s.seen.me.players >= three end
   local count = 1
   for _, mate in pairs(m.vars.mates) do
-    if mate.plays and s.time_s - mate.heard_s < mate_silent_s then count = count + 1 end
+    if game.plays(s, mate) then count = count + 1 end
   end
   return count >= three
 end

@@ -48,31 +48,6 @@ describe("game", function()
     game.listen(m, s)
     expect(game.phase(s, m)).to_equal "wait"
   end)
-end)
-
-describe("ready", function()
-  it("stands in its own half, at the others' kick-off outside of the circle", function()
-    for number = 1, 4 do
-      for ours = 0, 1 do
-        local s = told(1, { ours = ours })
-        s.seen.me.number = number
-        local place = ready.place(s)
-        expect(place.x_m).to_be_below(-0.3)
-        if ours == 0 then expect(place.x_m ^ 2 + place.y_m ^ 2).to_be_above(1.1 ^ 2) end
-      end
-    end
-  end)
-
-  it("stands behind the ball of its own penalty kick, and far from that of the others", function()
-    local s = told(1, { set_play = 3, ours = 1 })
-    expect(ready.place(s).x_m).to_be_near(4.5 - 1.5 - 0.6, 1e-9)
-    s.seen.me.number = 3
-    expect(ready.place(s).x_m).to_be_below(4.5 - 1.5 - 0.75 - 0.4)
-    s = told(1, { set_play = 3, ours = 0 })
-    expect(ready.place(s).x_m).to_be_above(-4.5 + 2.6)
-    s.seen.me.number = 1
-    expect(ready.place(s).x_m).to_equal(-4.5)
-  end)
 
   it("leaves the ball of its own free kick to others until one of them is there, or for 20 s", function()
     local lay, at = { x_m = 1, y_m = 0 }, { x_m = 2, y_m = 0 }
@@ -97,5 +72,30 @@ describe("ready", function()
     local m = { vars = { mates = {}, others = {}, heard = false, role = "striker" } }
     expect(game.leaves_ball(m, told(3, { set_play = 1, ours = 0 }), { x_m = 0.7, y_m = 0 }, lay)).to_be_false()
     expect(game.leaves_ball(m, told(3, { ours = -1 }), { x_m = 0.7, y_m = 0 }, at)).to_be_false()
+  end)
+end)
+
+describe("ready", function()
+  it("stands in its own half, at the others' kick-off outside of the circle", function()
+    for number = 1, 4 do
+      for ours = 0, 1 do
+        local s = told(1, { ours = ours })
+        s.seen.me.number = number
+        local place = ready.place(s)
+        expect(place.x_m).to_be_below(-0.3)
+        if ours == 0 then expect(place.x_m ^ 2 + place.y_m ^ 2).to_be_above(1.1 ^ 2) end
+      end
+    end
+  end)
+
+  it("stands behind the ball of its own penalty kick, and far from that of the others", function()
+    local s = told(1, { set_play = 3, ours = 1 })
+    expect(ready.place(s).x_m).to_be_near(4.5 - 1.5 - 0.6, 1e-9)
+    s.seen.me.number = 3
+    expect(ready.place(s).x_m).to_be_below(4.5 - 1.5 - 0.75 - 0.4)
+    s = told(1, { set_play = 3, ours = 0 })
+    expect(ready.place(s).x_m).to_be_above(-4.5 + 2.6)
+    s.seen.me.number = 1
+    expect(ready.place(s).x_m).to_equal(-4.5)
   end)
 end)

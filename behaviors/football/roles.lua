@@ -6,7 +6,6 @@ local keeper = require "keeper"
 
 local roles = {}
 
-local silent_s = 4    -- a mate that was not heard of for so long does not count
 local keeps_s = 1.5   -- who is the striker stays it, unless another one is faster by that
 local rises_s = 8
 local unknown_s = 60  -- to a ball that it does not know, or must leave to others
@@ -27,11 +26,9 @@ function roles.far(pose, ball, lies)
   return field.distance(pose, behind) / walks_m_s + math.abs(field.angle(toward_rad - pose.heading_rad)) / turns_rad_s
 end
 
-local function plays(s, mate) return mate ~= nil and s.time_s - mate.heard_s < silent_s and mate.plays end
-
 local function has_mates(m, s)
   for _, mate in pairs(m.vars.mates) do
-    if plays(s, mate) then return true end
+    if game.plays(s, mate) then return true end
   end
   return false
 end
@@ -39,7 +36,7 @@ end
 -- The keeper clears this ball, as long as it is on the field and on its feet.
 local function is_the_keepers(m, s, ball, own_s)
   local mate = m.vars.mates[s.seen.me.keeper]
-  return keeper.clears(s, ball) and plays(s, mate) and mate.far_s < own_s + rises_s / 2
+  return keeper.clears(s, ball) and game.plays(s, mate) and mate.far_s < own_s + rises_s / 2
 end
 
 -- All its mates are off the field: nobody goes to the ball but the keeper, unless an opponent is there sooner, who may
@@ -60,7 +57,7 @@ function roles.pick(m, s, pose, ball)
   if me.number == me.keeper then return keeper_goes(m, s, pose, ball) and "striker" or "keeper" end
   local own_s = roles.far(pose, ball, m.vars.lies) - (m.vars.role == "striker" and keeps_s or 0)
   for number, mate in pairs(m.vars.mates) do
-    if (number ~= me.keeper or mate.role == "striker") and plays(s, mate) then
+    if (number ~= me.keeper or mate.role == "striker") and game.plays(s, mate) then
       local their_s = mate.far_s - (mate.role == "striker" and keeps_s or 0)
       if their_s < own_s or (their_s == own_s and number < me.number) then return "supporter" end
     end
