@@ -51,7 +51,7 @@ void bind_all_functions() {
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
-  if (!error) execv(program.c_str(), argv.data());
+  if (!error && !arguments.empty()) execv(program.c_str(), argv.data());
   print_error(
       std::string("functions of libraries are bound at their first call, in real time too: this program cannot be "
                   "started anew (") +
