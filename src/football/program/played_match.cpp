@@ -172,13 +172,16 @@ void PlayedMatch::tell_players(bool at_once) {
   }
 }
 
-// People put the robots where they begin; each knows where that is.
+// People put the robots where they begin; each knows where that is. In the first round a robot may still stand where
+// another one goes, which is then put beside it.
 void PlayedMatch::prepare_half() {
-  for (std::size_t i = 0; i < players_.size(); ++i) {
-    const RobotId id = players_[i].told.id;
-    const Pose2 place = place_before(match_, id), at = world_pose(place, sign(id.side));
-    played_in_->robot(i).carry(at.x_m, at.y_m, at.theta_rad);
-    players_[i].senses->placed(place);
+  for (int round = 0; round < 2; ++round) {
+    for (std::size_t i = 0; i < players_.size(); ++i) {
+      const RobotId id = players_[i].told.id;
+      const Pose2 place = place_before(match_, id), at = world_pose(place, sign(id.side));
+      played_in_->robot(i).carry(at.x_m, at.y_m, at.theta_rad);
+      if (round == 0) players_[i].senses->placed(place);
+    }
   }
 }
 

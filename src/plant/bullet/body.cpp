@@ -205,8 +205,8 @@ void Body::place(const PlantSettings& settings) {
 
 void Body::carry(const WorldSettings& world, double x_m, double y_m, double heading_rad) {
   const btTransform base = link_frame(0);
-  const double now_rad = std::atan2(base.getBasis()[1][0], base.getBasis()[0][0]);
-  const btMatrix3x3 turned = btMatrix3x3(btQuaternion({0, 0, 1}, heading_rad - now_rad)) * base.getBasis();
+  const double turn_rad = heading_rad - heading_of(base.getBasis());
+  const btMatrix3x3 turned = btMatrix3x3(btQuaternion({0, 0, 1}, turn_rad)) * base.getBasis();
   multibody_->clearVelocities();
   set_base(btTransform(turned, {x_m, y_m, base.getOrigin().z()}));
   const double over_m = over_surface_m(world);

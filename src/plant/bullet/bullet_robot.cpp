@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "convert.h"
+#include "plant/bullet/contact/room.h"
 
 namespace kadans::bullet {
 namespace {
@@ -85,7 +86,18 @@ void BulletRobot::push(std::size_t link, const Vec3& force_N, const Vec3& point_
 void BulletRobot::carry(double x_m, double y_m, double heading_rad) {
   if (settings_.fixed_base) throw std::invalid_argument("carry: the base is fixed");
   if (!std::isfinite(x_m + y_m + heading_rad)) throw std::invalid_argument("carry: the place must be finite");
-  body_.carry(settings_.world, x_m, y_m, heading_rad);
+  const btVector3 left(-std::sin(heading_rad), std::cos(heading_rad), 0);
+  const auto put_down = [&](double to_left_m) {
+    body_.carry(settings_.world, x_m + to_left_m * left.x(), y_m + to_left_m * left.y(), heading_rad);
+    return !is_crowded(body_.multibody(), worlds_);
+  };
+  const btTransform was = body_.link_frame(0);
+  if (put_down(0)) return;
+  for (int i = 1; i * room_step_m <= room_max_m; ++i) {
+    if (put_down(i * room_step_m) || put_down(-i * room_step_m)) return;
+  }
+  body_.carry(settings_.world, was.getOrigin().x(), was.getOrigin().y(), heading_of(was.getBasis()));
+  throw std::invalid_argument(no_room("carry"));
 }
 
 void BulletRobot::begin_step(std::int64_t dt_ns) {

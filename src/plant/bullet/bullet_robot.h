@@ -1,6 +1,7 @@
 // One robot of a Bullet world: body, drives, electronics and sensors, in a contact world of its own.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ class BulletRobot final : public WorldRobot {
   const PlantTruth& truth() const noexcept override { return truth_.truth(); }
   void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override;
   void carry(double x_m, double y_m, double heading_rad) override;
+
+  // Of all robots, with its own; once, before the first step. It is carried beside what stands in them.
+  void stand_among(std::span<ContactWorld* const> worlds) noexcept { worlds_ = worlds; }
 
   // A step: begin, then that of the contact world, end, and sample once the objects have moved, too.
   void begin_step(std::int64_t dt_ns);
@@ -52,6 +56,7 @@ class BulletRobot final : public WorldRobot {
   Sensors sensors_;
   TruthReader truth_;
   ContactWorld world_;  // last: it lets go of the parts above before they end
+  std::span<ContactWorld* const> worlds_;
   std::int64_t time_ns_ = 0;
 };
 

@@ -47,6 +47,7 @@ class BulletWorld::Inside {
       robots_.push_back(std::make_unique<BulletRobot>(sites[i], settings_[i], friction, objects_, i == 0));
       worlds_.push_back(&robots_.back()->world());
     }
+    for (const auto& robot : robots_) robot->stand_among(worlds_);
     if (robots_.size() > 1) contacts_ = std::make_unique<RobotContacts>(worlds_);
   }
 
@@ -74,7 +75,7 @@ class BulletWorld::Inside {
     for (const auto& robot : robots_) robot->hash_sensors(hash);
   }
 
-  void put(std::size_t object, const Vec3& position_m) { objects_.put(object, to_bullet(position_m)); }
+  void put(std::size_t object, const Vec3& position_m) { objects_.put(object, to_bullet(position_m), worlds_); }
 
   std::size_t size() const noexcept { return robots_.size(); }
   BulletRobot& robot(std::size_t number) const noexcept { return *robots_[number]; }

@@ -28,6 +28,9 @@ inline Pose from_bullet(const btTransform& transform) {
   return {from_bullet(transform.getOrigin()), from_bullet(transform.getRotation())};
 }
 
+// About the world's z axis.
+inline double heading_of(const btMatrix3x3& basis) { return std::atan2(basis[1][0], basis[0][0]); }
+
 inline bool finite(const btVector3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
 }  // namespace kadans::bullet

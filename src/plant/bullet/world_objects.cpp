@@ -6,9 +6,12 @@
 
 #include "convert.h"
 #include "plant/bullet/contact/object_contact.h"
+#include "plant/bullet/contact/room.h"
 
 namespace kadans::bullet {
 namespace {
+
+constexpr int ways = 8;  // away from a place in which there is no room
 
 std::unique_ptr<btCompoundShape> compound_of(btConvexShape& shape) {
   auto compound = std::make_unique<btCompoundShape>(false);
@@ -167,15 +170,32 @@ void WorldObjects::end_step(const ContactWorld& world, double time_s) {
   }
 }
 
-void WorldObjects::put(std::size_t number, const btVector3& position_m) {
+void WorldObjects::put(std::size_t number, const btVector3& position_m, std::span<ContactWorld* const> worlds) {
   if (number >= objects_.size()) throw std::invalid_argument("put: no object number " + std::to_string(number));
   Object& object = objects_[number];
   if (object.multibody == nullptr || object.multibody->getNumLinks() > 0)
     throw std::invalid_argument("put: '" + object.settings.name + "' is not free");
   if (!bullet::finite(position_m)) throw std::invalid_argument("put: the place must be finite");
-  object.multibody->clearVelocities();
-  object.multibody->setBaseWorldTransform(btTransform(to_bullet(object.settings.pose).getBasis(), position_m));
-  object.parts[0].collider->setWorldTransform(object.multibody->getBaseWorldTransform());
+  btMultiBody& body = *object.multibody;
+  const btTransform was = body.getBaseWorldTransform();
+  const auto move = [&](const btTransform& to) {
+    body.setBaseWorldTransform(to);
+    object.parts[0].collider->setWorldTransform(to);
+  };
+  const auto put_down = [&](const btVector3& aside_m) {
+    move(btTransform(to_bullet(object.settings.pose).getBasis(), position_m + aside_m));
+    return !is_crowded(body, worlds);
+  };
+  body.clearVelocities();
+  if (put_down({0, 0, 0})) return;
+  for (int ring = 1; ring * room_step_m <= room_max_m; ++ring) {
+    for (int i = 0; i < ways; ++i) {
+      const double rad = i * SIMD_2_PI / ways;
+      if (put_down(ring * room_step_m * btVector3(std::cos(rad), std::sin(rad), 0))) return;
+    }
+  }
+  move(was);
+  throw std::invalid_argument(no_room("put"));
 }
 
 bool WorldObjects::finite(std::size_t object) const {

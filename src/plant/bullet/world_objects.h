@@ -26,8 +26,9 @@ class WorldObjects {
   void begin_step(std::span<ContactWorld* const> worlds, double time_s);
   void end_step(const ContactWorld& world, double time_s);
 
-  // Puts a free object there, at rest. Throws std::invalid_argument.
-  void put(std::size_t object, const btVector3& position_m);
+  // Puts a free object there, or where it has room beside what stands in these worlds, at rest. Throws
+  // std::invalid_argument.
+  void put(std::size_t object, const btVector3& position_m, std::span<ContactWorld* const> worlds);
 
   std::size_t size() const { return objects_.size(); }
   bool finite(std::size_t object) const;

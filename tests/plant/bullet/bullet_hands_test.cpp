@@ -195,6 +195,25 @@ TEST_CASE("A robot that is carried stands where it is put, turned, with the weig
   CHECK_THROWS_WITH(bolted.carry(0, 0, 0), "carry: the base is fixed");
 }
 
+TEST_CASE("A ball that is put into a robot, or a robot onto a ball, comes to lie beside it") {
+  Robot robot = box(4, {0.4, 0.2, 0.2});
+  robot.settings.world.objects = {object("ball", WorldBall{.radius_m = 0.1, .mass_kg = 0.4}, {2, 0, 0.1})};
+  BulletWorld plant(robot.model, robot.settings, 1);
+  run(plant, 100);
+  plant.put(0, {0.05, 0.05, 0.1});
+  run(plant, 300);
+  const PlantTruth& truth = plant.truth();
+  CHECK(std::abs(truth.objects[0].pose.position_m[0] - 0.05) < 1e-3);
+  CHECK(std::abs(truth.objects[0].pose.position_m[1] - 0.25) < 1e-3);
+  CHECK(std::hypot(truth.base.position_m[0], truth.base.position_m[1]) < 1e-3);
+  plant.put(0, {2, 0, 0.1});
+  plant.carry(2, 0, 1.5707963);
+  run(plant, 300);
+  CHECK(std::abs(truth.base.position_m[0] - 1.8) < 1e-3);  // its left is where x falls
+  CHECK(std::abs(truth.base.position_m[1]) < 1e-3);
+  CHECK(std::abs(truth.objects[0].pose.position_m[0] - 2) < 1e-3);
+}
+
 TEST_CASE("A world that has settled allocates nothing more") {
   Robot robot = box(4, {0.22, 0.1, 0.03});
   robot.settings.world.objects = {object("step", WorldBox{{1, 1, 0.2}}, {0, 0, 0.1}),

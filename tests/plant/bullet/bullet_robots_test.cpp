@@ -61,6 +61,26 @@ class Pair {
 
 }  // namespace
 
+TEST_CASE("A robot that is carried into another one is put down beside it, and none is thrown") {
+  Pair pair;
+  for (int i = 0; i < 100; ++i) pair.tick();
+  const double y_m = pair.truth(0).base.position_m[1];
+  pair.world.robot(1).carry(0.02, y_m + 0.03, 0);
+  double fastest_rad_s = 0;
+  for (int i = 0; i < 200; ++i) {
+    pair.tick();
+    for (std::size_t robot = 0; robot < 2; ++robot) {
+      const auto& velocity = pair.truth(robot).velocity_rad_s;
+      for (const double joint : velocity) fastest_rad_s = std::max(fastest_rad_s, std::abs(joint));
+    }
+  }
+  CHECK(fastest_rad_s < 1);
+  const double apart_m = pair.truth(1).base.position_m[1] - pair.truth(0).base.position_m[1];
+  CHECK(apart_m > 0.2);
+  CHECK(apart_m < 0.7);
+  CHECK(std::abs(pair.truth(1).base.position_m[0] - 0.02) < 0.02);
+}
+
 TEST_CASE("A robot moves bit for bit as without another one that it does not touch, first or second, also in a fall") {
   const Robot robot = tulip(Drives::rigid);
   const Robot far = at(tulip(Drives::rigid), {0.1, 5, 0});
