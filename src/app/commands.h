@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/assembly/robot.h"
 #include "app/run/run_choices.h"
-#include "assembly.h"
 #include "campaign/sweep/tuning_score.h"
 #include "config/scenario/scenario_config.h"
 #include "record_options.h"

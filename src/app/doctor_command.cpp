@@ -4,7 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/assembly.h"
+#include "app/assembly/assembled_plant.h"
+#include "app/assembly/robot.h"
 #include "app/author/file_checks.h"
 #include "commands.h"
 #include "config/json/foreign_json.h"

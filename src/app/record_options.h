@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "assembly.h"
+#include "app/assembly/assembly.h"
 #include "remote/instance/record_side.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): its name

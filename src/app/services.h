@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "assembly.h"
+#include "app/assembly/assembly.h"
 #include "remote/ctl/ctl_server.h"
 #include "remote/page/live_server.h"
 #include "remote/ros2/ros2_bridge.h"

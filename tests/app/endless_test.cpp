@@ -1,7 +1,7 @@
 // `while true do end` in every place where an author can put it, under the whole robot: TULip in Bullet.
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "program.h"
 
 namespace endless_test {

@@ -8,7 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/terminal.h"
 #include "program.h"
 

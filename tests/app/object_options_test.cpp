@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 
 using namespace kadans;
 

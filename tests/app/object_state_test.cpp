@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include "assembly.h"
+#include "app/assembly/robot.h"
 #include "control/body/gaze_bench.h"
 #include "control/joint/trajectory_list.h"
 #include "control/walk/leg_robot.h"

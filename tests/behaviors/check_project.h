@@ -1,7 +1,7 @@
 // Projects of a few files for tests of what behavior check finds in them.
 #pragma once
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "app/program.h"
 #include "estimate/estimator.h"
 #include "script/check/check_behavior.h"

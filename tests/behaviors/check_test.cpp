@@ -1,7 +1,7 @@
 // What `kadans behavior check` finds in a behavior without running it: each mistake with its line and what was meant.
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "app/program.h"
 #include "script/check/check_behavior.h"
 

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "app/program.h"
 #include "script/bindings/api.h"
 

@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/sim/input_files.h"
 #include "kadans/signal/random.h"
 #include "report.h"

@@ -1,7 +1,7 @@
 #include <ctime>
 #include <filesystem>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "plant/engines.h"
 #include "plant/standing.h"
 #include "report.h"

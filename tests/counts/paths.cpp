@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 
+#include "app/assembly/assembly.h"
 #include "bench/chart_rig.h"
 #include "bench/control/body_rig.h"
 #include "bench/control/chain_rig.h"

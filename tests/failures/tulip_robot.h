@@ -1,7 +1,7 @@
 // TULip on the ground in Bullet, from its own configuration, on the posture set.
 #pragma once
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "kadans/plant/bullet/bullet_world.h"
 #include "rig.h"
 

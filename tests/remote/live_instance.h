@@ -15,6 +15,7 @@
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"
 #include "remote/instance/record_side.h"
+#include "supervisor/decide/supervisor.h"
 #include "temporary_folder.h"
 
 namespace kadans::remote_test {

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "behavior_stage.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "config/json/problems.h"
 #include "config/robot/project_root.h"
 #include "decision_stage.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "scenario/run.h"
 #include "script/test/behavior_test.h"
 #include "set_sensors.h"

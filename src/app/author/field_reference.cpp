@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "config/json/fields.h"
 #include "config/plan/experiment_plans.h"
 #include "signal/number_text.h"

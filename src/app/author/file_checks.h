@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "config/json/json_value.h"
 #include "kadans/model/urdf.h"
 

@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <unistd.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/commands.h"
 #include "app/line_editor.h"
 #include "app/option_checks.h"

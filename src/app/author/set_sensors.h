@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/snapshot_filter.h"
+#include "app/assembly/snapshot_filter.h"
 #include "estimate/leg_chain.h"
 #include "kadans/control/catalog.h"
 #include "signal/sine_cosine.h"

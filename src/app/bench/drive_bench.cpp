@@ -6,6 +6,7 @@
 
 #include <pthread.h>
 
+#include "app/assembly/assembled_plant.h"
 #include "app/terminal.h"
 #include "signal/monotonic_clock.h"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "bench.h"
 #include "kadans/plant/plant_type.h"
 

@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "app/author/file_checks.h"
 #include "app/commands.h"
 #include "app/option_checks.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "app/assembly/assembled_plant.h"
 #include "commission_steps.h"
 #include "kadans/signal/nearest_name.h"
 

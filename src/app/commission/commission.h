@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "app/bench/bench.h"
 #include "person.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "bench_session.h"
 #include "progress.h"
 #include "wiring.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "config/scenario/based_on.h"
 #include "signal/durable_file.h"
 #include "signal/input_file.h"

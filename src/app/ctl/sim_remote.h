@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/services.h"
 #include "remote/instance/behavior_side.h"
 #include "remote/instance/control_side.h"

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "run_channel.h"
 #include "scenario/judge/checks.h"
 #include "scenario/run.h"

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/assembly/assembly.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"

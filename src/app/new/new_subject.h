@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "new_options.h"
 
 namespace kadans {

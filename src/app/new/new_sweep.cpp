@@ -8,12 +8,14 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/assembly/assembled_plant.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
 #include "kadans/signal/input_error.h"
 #include "new_files.h"
 #include "new_subject.h"
+#include "scenario/disturb/quantities.h"
 #include "signal/shell_word.h"
 
 namespace kadans {

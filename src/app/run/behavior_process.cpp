@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/terminal.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"

@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembled_plant.h"
+#include "app/assembly/robot.h"
 #include "app/author/file_checks.h"
 #include "app/commands.h"
 #include "app/option_checks.h"

@@ -16,7 +16,7 @@
 
 #include <unistd.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/author/file_checks.h"
 #include "app/commands.h"
 #include "app/sim/input_files.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "scenario/disturb/disturbances.h"
 
 namespace kadans {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/sim/played_behaviors.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"

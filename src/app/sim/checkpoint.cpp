@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "kadans/signal/input_error.h"
 #include "signal/number_text.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/commands.h"
 #include "app/run/run_choices.h"
 #include "telemetry/record/run_inputs.h"

@@ -1,6 +1,6 @@
 #include "played_behaviors.h"
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "config/robot/project_root.h"
 #include "script/check/check_behavior.h"
 

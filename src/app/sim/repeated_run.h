@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/commands.h"
 #include "input_files.h"
 #include "kadans/signal/state_hash.h"

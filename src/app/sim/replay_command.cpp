@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/run/observers.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/run/run_choices.h"
 #include "scenario/disturb/disturbances.h"
 #include "telemetry/record/run_inputs.h"

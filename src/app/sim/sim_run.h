@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/commands.h"
 #include "app/ctl/sim_remote.h"
 #include "app/run/observers.h"

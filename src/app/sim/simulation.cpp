@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/ctl/sim_remote.h"
 #include "app/record_options.h"
 #include "app/run/observers.h"

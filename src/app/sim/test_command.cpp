@@ -14,7 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 #include "app/commands.h"
 #include "app/line_editor.h"
 #include "app/option_checks.h"

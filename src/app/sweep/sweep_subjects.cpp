@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/sim/played_behaviors.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"

@@ -15,6 +15,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/assembly/assembled_plant.h"
 #include "app/commission/bench_session.h"
 #include "app/commission/commission.h"
 #include "app/program.h"

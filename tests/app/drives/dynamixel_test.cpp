@@ -1,7 +1,7 @@
 // JIWIY on Dynamixel servos: its whole control system, the driver, the packets and the servos, on virtual time.
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/program.h"
 
 using namespace kadans;

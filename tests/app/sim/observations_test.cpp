@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/program.h"
 #include "kadans/signal/input_error.h"
 #include "supervisor/world/perception_message.h"

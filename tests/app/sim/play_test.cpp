@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/program.h"
 
 using namespace kadans;

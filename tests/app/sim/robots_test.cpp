@@ -6,7 +6,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/program.h"
 #include "app/run/served_world.h"
 #include "app/services.h"

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 
 using namespace kadans;
 

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "signal/input_file.h"
 
 namespace kick_test {

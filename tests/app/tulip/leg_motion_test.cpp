@@ -5,7 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
+#include "engine/lockstep.h"
 #include "engine/transaction.h"
 #include "kadans/model/dynamics.h"
 #include "kadans/plant/bullet/bullet_world.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 
 namespace kadans::bench {
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "chain_robot.h"
+#include "engine/lockstep.h"
 #include "kadans/plant/ideal_world.h"
 
 namespace kadans::bench {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 
 namespace kadans::bench {
 

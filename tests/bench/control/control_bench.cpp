@@ -1,3 +1,4 @@
+#include "app/assembly/assembly.h"
 #include "bench/report.h"
 #include "chain_rig.h"
 #include "kadans/testing/allocation_count.h"

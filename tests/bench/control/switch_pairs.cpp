@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "bench/report.h"
 
 namespace kadans::bench {

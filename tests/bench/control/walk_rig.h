@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/assembly.h"
+#include "app/assembly/robot.h"
 
 namespace kadans::bench {
 

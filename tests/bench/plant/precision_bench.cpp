@@ -17,7 +17,7 @@
 #include <optional>
 
 #include "../report.h"
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "engines.h"
 #include "kadans/model/kinematics.h"
 #include "standing.h"

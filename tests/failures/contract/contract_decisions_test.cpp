@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
-#include "app/assembly.h"
+#include "app/assembly/assembly.h"
 #include "app/program.h"
 #include "failures/live_program.h"
 #include "kadans/signal/random.h"

@@ -1,10 +1,12 @@
 // Makes a robot's control objects from its configuration.
+#include "robot.h"
+
 #include <algorithm>
 #include <map>
 #include <stdexcept>
 
-#include "assembly.h"
 #include "control/plugin_library.h"
+#include "kadans/estimate/velocity_filter.h"
 
 namespace kadans {
 

@@ -4,15 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "app/run/fed_plant.h"
-#include "app/run/read_only_plant.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
-#include "kadans/plant/emulated_drives.h"
 #include "kadans/signal/nearest_name.h"
-#include "plant/imu/emulator/imu_world.h"
-#include "plant/imu/imu_plant.h"
-#include "scenario/disturb/planned_faults.h"
 
 namespace kadans {
 namespace {
@@ -102,15 +96,6 @@ void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
 
 }  // namespace
 
-PlantVariant plant_variant(const ScenarioConfig& scenario, const RobotConfig& robot) {
-  PlantVariant variant{.model = robot.model, .plant = robot.plant};
-  variant.plant.world = world_for(scenario.world, robot.model, scenario.file);
-  variant.sees = !scenario.sight.ball.name.empty();
-  variant.sight = scenario.sight.settings;
-  variant.perception = scenario.perception;
-  return variant;
-}
-
 std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept) {
@@ -146,7 +131,8 @@ Assembly::Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, Ru
       named_log_(number == 0 ? nullptr : std::make_shared<NamedLog>(scenario.name, log)),
       link_(link),
       outside_(outside),
-      robot_(read_robot(scenario.robot, scenario.plugins)) {
+      robot_(read_robot(scenario.robot, scenario.plugins)),
+      plant_(scenario, robot_.config, variant_, seed, number, link) {
   control_system_ = make_control_system(robot_);
   robot_.config.engine.joystick = has_joystick(scenario, robot_.config);
   try {
@@ -186,13 +172,12 @@ void Assembly::complete() {
   try {
     make_plant();
     if (scenario_.read_only) {
-      read_only_ = std::make_unique<ReadOnlyPlant>(plant());
       // Nobody enables the drives, and torque that is asked for moves nothing.
       robot_.config.safety.drives.enable_s = std::numeric_limits<double>::infinity();
       robot_.config.safety.sensors.stuck_ticks = std::numeric_limits<std::uint32_t>::max();
     }
     sets_ = std::make_unique<ControlSets>(catalog, std::move(control_system_->objects));
-    robot_.config.safety.drive_words = (has_bus() ? bus_type() : plant_type()).drive_words();
+    robot_.config.safety.drive_words = plant_.drive_words();
     estimator_ =
         std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
     safety_ = std::make_unique<Safety>(robot_.config.safety, robot_.config.model);
@@ -201,9 +186,9 @@ void Assembly::complete() {
   }
   exchange_ = std::make_unique<EngineExchange>();
   foreign_first_ = catalog.signals.size();
-  plant().declare_signals(catalog.signals);
-  if (const TruthSource* source = truth_source()) {
-    const bool several = shared_ != nullptr && shared_->robot_count() > 1;
+  plant_.plant().declare_signals(catalog.signals);
+  if (const TruthSource* source = plant_.truth_source()) {
+    const bool several = plant_.world() != nullptr && plant_.world()->robot_count() > 1;
     truth_ = std::make_unique<TruthSignals>(*source, catalog, feet_of(variant_.plant), feet_settle_s,
                                             variant_.plant.world, several);
     const std::span<const SignalId> left_out = truth_->unhashed();
@@ -225,10 +210,8 @@ void Assembly::complete() {
   foreign_end_ = catalog.signals.size();
   for (std::size_t i = 0; i < upkeep_count_; ++i) unhashed_.push_back(static_cast<SignalId>(upkeep_first_ + i));
   show_others();
-  if (linked_ || elsewhere_) last_word_ = std::make_unique<LastWord>(plant());
-  Plant& seen = last_word_ ? static_cast<Plant&>(*last_word_) : plant();
-  control_ =
-      std::make_unique<ControlEngine>(robot_.config.engine, seen, *estimator_, *safety_, *sets_, catalog, *exchange_);
+  control_ = std::make_unique<ControlEngine>(robot_.config.engine, plant_.seen(), *estimator_, *safety_, *sets_,
+                                             catalog, *exchange_);
   for (SignalId id = 0; id < catalog.signals.size(); ++id) {
     if (catalog.signals.info(id).name.starts_with("odometry.")) unhashed_.push_back(id);
   }
@@ -344,136 +327,16 @@ void Assembly::start_in_pose() {
   for (const auto& [joint, position_rad] : pose->position_rad) variant_.plant.position_rad[joint] = position_rad;
 }
 
-const PlantType& plant_type_named(const RobotConfig& robot, const std::string& file, const PlacedName& name,
-                                  bool (PlantType::*is)() const noexcept) {
-  const std::vector<std::string> names = plant_type_names(robot.plant_types, is);
-  if (std::ranges::find(names, name.name) == names.end()) refuse_unknown(file, name, "type of plant", names);
-  return kadans::plant_type(robot.plant_types, name.name);
-}
-
-// A file names a model, the command line whatever drives.
-const PlantType& Assembly::plant_type() const {
-  const TextPlace place = scenario_.plant_place, world = scenario_.world.place;
-  const PlantType& type =
-      place.line > 0 ? plant_type_named(robot_.config, scenario_.file, {scenario_.plant, place}, &PlantType::is_model)
-                     : plant_type_named(robot_.config, "--plant", {scenario_.plant, place});
-  if (world.line > 0 && !type.has_objects())
-    refuse(scenario_.file, world, "world: the plant " + scenario_.plant + " has none");
-  if (!scenario_.robots.empty() && !type.has_objects())
-    refuse(scenario_.file, scenario_.robots.front().plant_place, "robots: the plant " + scenario_.plant + " has one");
-  return type;
-}
-
-PlantSite plant_site(const RobotConfig& robot, const std::string& peer) {
-  PlantSite site{.file = robot.file,
-                 .layout = {.robot = robot.name,
-                            .joints = robot.model.joint_names(),
-                            .feet = {},
-                            .sensors = {},
-                            .period_ns = robot.engine.control_period_ns()},
-                 .peer = peer,
-                 .damping_Nms_per_rad = robot.safety.damping_Nms_per_rad,
-                 .transmissions = robot.model.transmissions};
-  for (const FootSettings& foot : robot.plant.feet) site.layout.feet.push_back(foot.link);
-  for (const SensorChannel& sensor : robot.plant.channels) site.layout.sensors.push_back(sensor.name);
-  return site;
-}
-
-std::unique_ptr<Plant> make_bus(const RobotConfig& robot, const PlantType& type, const std::string& peer,
-                                const std::string& imu) {
-  std::unique_ptr<Plant> plant = type.make_plant(plant_site(robot, peer));
-  imu::SerialImuSettings beside = serial_imu_at(robot, type, "--imu", imu);
-  if (!beside.given()) return plant;
-  return std::make_unique<imu::ImuPlant>(std::move(plant), std::move(beside), robot.plant.imu.pose.orientation);
-}
-
-imu::SerialImuSettings serial_imu_at(const RobotConfig& robot, const PlantType& type, const char* option,
-                                     const std::string& device) {
-  imu::SerialImuSettings settings = robot.serial_imu;
-  if (!settings.given() && !device.empty())
-    throw InputError({.file = option, .message = robot.file + " says no plant.serial_imu (docs/imu.md)"});
-  if (!device.empty()) {
-    settings.device = device;
-    settings.place = {.file = option};
-  }
-  return type.has_imu() ? imu::SerialImuSettings() : settings;
-}
-
-void Assembly::make_plant() {
-  const PlantType& type = plant_type();
-  if (!type.is_model()) {
-    elsewhere_ = make_bus(robot_.config, type, scenario_.peer, scenario_.imu);
-    if (scenario_.repeats) elsewhere_ = std::make_unique<FedPlant>(std::move(elsewhere_), *link_);
-    return;
-  }
-  if (number_ == 0) make_world(type);
-  if (link_ != nullptr) linked_ = std::make_unique<LinkedPlant>(*link_, *world());
-}
-
 // The others' engines are made when all robots are in the world, and before the first's, which shows their signals.
-void Assembly::make_world(const PlantType& type) {
-  if (others_.empty()) {
-    sound_ = type.make_world({variant_.model, variant_.plant, seed_});
-  } else {
-    std::vector<WorldSite> sites{{variant_.model, variant_.plant, seed_}};
-    for (const auto& other : others_) sites.push_back({other->variant_.model, other->variant_.plant, other->seed_});
-    sound_ = type.make_shared_world(sites);
-  }
-  if (has_bus()) stand_behind_bus();
-  join(*sound_);
+void Assembly::make_plant() {
+  if (number_ > 0) return;
+  std::vector<WorldSite> sites{{variant_.model, variant_.plant, seed_}};
+  for (const auto& other : others_) sites.push_back({other->variant_.model, other->variant_.plant, other->seed_});
+  plant_.make(sites);
   for (const auto& other : others_) {
-    other->join(*sound_);
+    other->plant_.join(plant_);
     other->complete();
   }
-}
-
-const PlantType& Assembly::bus_type() const {
-  return plant_type_named(robot_.config, scenario_.file, scenario_.bus.type, &PlantType::has_wired_world);
-}
-
-// What befalls the IMU on its line is told to that, the rest to the bus.
-void Assembly::stand_behind_bus() {
-  const PlantType& type = bus_type();
-  const imu::SerialImuSettings beside = serial_imu_at(robot_.config, type, "", "");
-  PlantSite site = plant_site(robot_.config, "");
-  site.seed = seed_;
-  std::vector<EmulatedFault> faults, faults_of_imu;
-  for (const PlacedName& one : scenario_.bus.faults) {
-    try {
-      const EmulatedFault fault = emulated_fault(one.name);
-      (beside.given() && fault.of == "imu" ? faults_of_imu : faults).push_back(fault);
-    } catch (const std::invalid_argument& error) {
-      refuse(scenario_.file, one.place, "bus.faults: " + one.name + ": " + error.what());
-    }
-  }
-  try {
-    sound_ = type.make_wired_world(std::move(sound_), site, faults);
-    if (beside.given())
-      sound_ = std::make_unique<imu::ImuWorld>(std::move(sound_), beside, robot_.config.plant.imu.pose.orientation,
-                                               faults_of_imu, seed_);
-  } catch (const std::invalid_argument& error) {
-    refuse(scenario_.file, scenario_.bus.type.place, std::string("bus.faults: ") + error.what());
-  }
-  (void)sound_->robot(0).open();
-}
-
-void Assembly::join(World& world) {
-  shared_ = &world;
-  faulty_ = make_faulty_plant(scenario_, variant_, robot_.config.engine, seed_, world, number_);
-}
-
-World* Assembly::world() noexcept { return faulty_ ? faulty_.get() : shared_; }
-
-WorldRobot& Assembly::world_robot() noexcept { return faulty_ ? *faulty_ : shared_->robot(number_); }
-
-Plant& Assembly::plant() noexcept {
-  if (read_only_) return *read_only_;
-  if (elsewhere_) return *elsewhere_;
-  return linked_ ? static_cast<Plant&>(*linked_) : world_robot();
-}
-
-const TruthSource* Assembly::truth_source() noexcept {
-  return linked_ ? static_cast<const TruthSource*>(linked_.get()) : shared_ == nullptr ? nullptr : &world_robot();
 }
 
 void Assembly::make_joystick_player() {
@@ -510,8 +373,8 @@ void Assembly::make_behaviors() {
   BehaviorHost* host = filtered_ ? filtered_.get() : &played();
   lockstep_.reset();
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host);
-  if (shared_ == nullptr || linked_ || number_ > 0) return;
-  lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *world(), *control_, *behaviors_);
+  if (!plant_.in_lockstep() || number_ > 0) return;
+  lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_.world(), *control_, *behaviors_);
   try {
     for (const auto& other : others_) lockstep_->add(other->robot_.config.engine, *other->control_, *other->behaviors_);
     if (supervisor_) lockstep_->supervise(*behaviors_, *supervisor_);
@@ -534,8 +397,8 @@ void Assembly::read_foreign_signals_from(std::span<const double> row, bool of_be
 }
 
 RunParts Assembly::parts_in(Lockstep& lockstep) {
-  RunParts parts{.world = *world(),
-                 .robot = world_robot(),
+  RunParts parts{.world = *plant_.world(),
+                 .robot = plant_.robot(),
                  .control = *control_,
                  .behaviors = *behaviors_,
                  .lockstep = lockstep,
@@ -548,7 +411,7 @@ RunParts Assembly::parts_in(Lockstep& lockstep) {
                  .observed = supervisor_.get(),
                  .unhashed = unhashed_,
                  .name = number_ == 0 ? "" : scenario_.name,
-                 .faulty = number_ == 0 ? nullptr : faulty_.get()};
+                 .faulty = number_ == 0 ? nullptr : plant_.faulty()};
   for (const auto& one : perception_) parts.perception.push_back(one.get());
   for (const auto& one : recorded_) parts.recorded.push_back(one.get());
   for (const auto& other : others_) parts.others.push_back(other->parts_in(lockstep));

@@ -1,23 +1,15 @@
-// Assembles a robot from its files, and the further robots of its world: the only place that names concrete types
-// together. The order of the members is the way of the data; each member keeps references to earlier ones.
+// Assembles a robot from its files, and the further robots of its world. The order of the members is the way of the
+// data; each member keeps references to earlier ones.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "config/robot/robot_config.h"
-#include "config/scenario/scenario_config.h"
+#include "assembled_plant.h"
 #include "engine/lockstep.h"
-#include "kadans/control/control_object_types.h"
-#include "kadans/plant/plant_type.h"
-#include "kadans/plant/world.h"
-#include "realtime/engine_tasks.h"
-#include "run/last_word.h"
+#include "robot.h"
 #include "scenario/disturb/disturbances.h"
-#include "scenario/disturb/planned_faults.h"
-#include "scenario/disturb/quantities.h"
 #include "scenario/run.h"
 #include "script/host/script_host.h"
 #include "script/process/process_host.h"
@@ -29,45 +21,10 @@
 
 namespace kadans {
 
-void add_shipped_types(ControlObjectTypes& types);
-
-// A robot as its files describe it, and the known types of control objects.
-struct Robot {
-  ControlObjectTypes types;  // shipped types, types registered by this program, types of the robot's plug-ins
-  RobotConfig config;
-};
-// Loads the plug-ins that the file names; they stay loaded. Throws InputError with all mistakes, and for a plug-in that
-// the gate does not let in.
-Robot read_robot(const std::filesystem::path& file, const PluginGate& gate = {});
-
-// The control objects of a configuration with their parameters set, and the catalog that describes them.
-struct ControlSystem {
-  Catalog catalog;
-  std::vector<std::unique_ptr<ControlObject>> objects;
-};
-// Throws InputError with the place of the mistake in the configuration.
-std::unique_ptr<ControlSystem> make_control_system(const Robot& robot);
-
 // Makes the host of a scenario's behaviors. Throws InputError.
 std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, const RobotConfig& robot,
                                              const Catalog& catalog, std::uint64_t seed, BehaviorLog& log,
                                              std::span<const std::byte> kept = {});
-// The type of plant of this name for which `is` holds: a shipped one, one of this program, or one of the robot's
-// plug-ins. Throws InputError that lists the known names.
-const PlantType& plant_type_named(const RobotConfig& robot, const std::string& file, const PlacedName& name,
-                                  bool (PlantType::*is)() const noexcept = nullptr);
-// The data from which a plant that is no model is made. `peer` is its address; "": the one in the configuration.
-PlantSite plant_site(const RobotConfig& robot, const std::string& peer);
-// The robot's IMU beside a bus of this type, at the device that the command line names, else at the configuration's;
-// not given() where it has none. Throws InputError.
-imu::SerialImuSettings serial_imu_at(const RobotConfig& robot, const PlantType& type, const char* option,
-                                     const std::string& device);
-// What reaches the drives of this type, and the IMU beside them. It is not open yet. Throws InputError.
-std::unique_ptr<Plant> make_bus(const RobotConfig& robot, const PlantType& type, const std::string& peer,
-                                const std::string& imu);
-
-// The plant as the files have it: no start pose, nothing set or drawn.
-PlantVariant plant_variant(const ScenarioConfig& scenario, const RobotConfig& robot);
 
 class Assembly {
  public:
@@ -110,10 +67,10 @@ class Assembly {
   ControlSets& sets() noexcept { return *sets_; }
   const ControlSets& sets() const noexcept { return *sets_; }
   BehaviorEngine& behaviors() noexcept { return *behaviors_; }
-  Plant& plant() noexcept;  // not open yet
+  Plant& plant() noexcept { return plant_.plant(); }  // not open yet
   // Through which the engine sees the plant when it has a thread of its own; else nullptr.
-  LastWord* last_word() noexcept { return last_word_.get(); }
-  World* world() noexcept;                                 // with its faults; nullptr: there is none
+  LastWord* last_word() noexcept { return plant_.last_word(); }
+  World* world() noexcept { return plant_.world(); }       // with its faults; nullptr: there is none
   TruthSignals* truth() noexcept { return truth_.get(); }  // nullptr: there is none
   // The quantities that were set or drawn for this run; further robots' as NAME.<quantity>.
   const std::vector<QuantityValue>& quantities() const noexcept { return quantities_; }
@@ -156,15 +113,7 @@ class Assembly {
   void show_others();
   void vary();
   void start_in_pose();
-  const PlantType& plant_type() const;
   void make_plant();
-  void make_world(const PlantType& type);
-  bool has_bus() const noexcept { return !scenario_.bus.type.name.empty(); }
-  const PlantType& bus_type() const;
-  void stand_behind_bus();
-  void join(World& world);
-  WorldRobot& world_robot() noexcept;
-  const TruthSource* truth_source() noexcept;
   void make_joystick_player();
   void make_sight();
   void make_perception();
@@ -185,14 +134,8 @@ class Assembly {
   PlantVariant variant_;
   std::vector<QuantityValue> quantities_;
   std::vector<ScenarioConfig> further_;  // as this scenario completes them
-  std::unique_ptr<World> sound_;         // of the first robot; the others are in it
-  World* shared_ = nullptr;              // the same
-  std::unique_ptr<FaultyPlant> faulty_;  // wraps the robot when the scenario has faults of the plant
+  AssembledPlant plant_;                 // the others' are in the first's world
   std::vector<std::unique_ptr<Assembly>> others_;
-  std::unique_ptr<LinkedPlant> linked_;  // when the world is on another thread
-  std::unique_ptr<Plant> elsewhere_;     // when there is no world
-  std::unique_ptr<Plant> read_only_;     // when the drives are asked for nothing; stands before the plant
-  std::unique_ptr<LastWord> last_word_;
   std::unique_ptr<ControlSystem> control_system_;
   std::unique_ptr<ControlSets> sets_;
   std::unique_ptr<Estimator> estimator_;
