@@ -90,6 +90,12 @@ TEST_CASE("A drill begins in the middle of a match, and its seed scatters ball a
   CHECK(drill_ball(match, 1).x_m != drill_ball(match, 2).x_m);
   CHECK(drill_ball(match, 1).x_m < -0.1);  // in front of home, which plays toward -x in the world
   CHECK(scenario_of(match, 1) != scenario_of(match, 2));
+  MatchConfig crowd = read_match(matches / "drill_messages.json");
+  crowd.begins->ball_scatter_m = crowd.begins->robots_scatter_m = 0.3;
+  for (TeamSetup& team : crowd.teams) {
+    for (auto& place : team.places) place = Pose2{};
+  }
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) CHECK_NOTHROW(PlayedMatch(crowd, seed));  // none is in another one
   for (int i = 0; i < 5; ++i) one.step(), other.step();
   CHECK(one.result().playing_s > 0.05);
   CHECK(one.result().robots.at(0).errors == 0);

@@ -332,7 +332,12 @@ void Assembly::make_plant() {
   if (number_ > 0) return;
   std::vector<WorldSite> sites{{variant_.model, variant_.plant, seed_}};
   for (const auto& other : others_) sites.push_back({other->variant_.model, other->variant_.plant, other->seed_});
-  plant_.make(sites);
+  try {
+    plant_.make(sites);
+  } catch (const std::invalid_argument& error) {
+    if (others_.empty()) throw;
+    refuse(scenario_.file, scenario_.robots.front().plant_place, std::string("robots: ") + error.what());
+  }
   for (const auto& other : others_) {
     other->plant_.join(plant_);
     other->complete();

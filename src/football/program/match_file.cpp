@@ -149,15 +149,36 @@ std::string number(double value) {
   return text.data();
 }
 
-// Where a robot stands, which thinks that it stands in place_before.
-Pose2 drill_place(const MatchConfig& match, RobotId id, std::uint64_t seed) {
-  Pose2 place = place_before(match, id);
-  if (!match.begins) return place;
+constexpr double apart_m = 0.6;  // robots that stand set out, with their arms
+constexpr int draws_max = 100;
+
+// In the world. It is drawn again while it is nearer than that to one of the others, or to a post.
+Pose2 drill_place(const MatchConfig& match, RobotId id, std::uint64_t seed, const std::vector<Pose2>& others) {
+  const double sign = id.side == Side::home ? -1 : 1;
+  if (!match.begins) return world_pose(place_before(match, id), sign);
   RandomStream random(seed, "football.place of " + robot_name(id));
-  place.x_m += match.begins->robots_scatter_m * random.normal();
-  place.y_m += match.begins->robots_scatter_m * random.normal();
-  place.theta_rad = wrapped(place.theta_rad + match.begins->robots_scatter_rad * random.normal());
-  return place;
+  Pose2 at;
+  for (int draw = 0; draw < draws_max; ++draw) {
+    Pose2 place = place_before(match, id);
+    place.x_m += match.begins->robots_scatter_m * random.normal();
+    place.y_m += match.begins->robots_scatter_m * random.normal();
+    place.theta_rad = wrapped(place.theta_rad + match.begins->robots_scatter_rad * random.normal());
+    at = world_pose(place, sign);
+    const auto near = [&](const Pose2& other) { return distance(at.at(), other.at()) < apart_m; };
+    if (std::ranges::none_of(others, near)) break;
+  }
+  return at;
+}
+
+// Where the robots stand, which think that they stand in place_before.
+std::vector<Pose2> drill_places(const MatchConfig& match, std::uint64_t seed) {
+  const Field field = match.field();
+  const double post_x_m = field.goal_line_x_m(), post_y_m = (field.goal.width_m + field.goal.post_m) / 2;
+  std::vector<Pose2> taken{
+      {post_x_m, post_y_m, 0}, {post_x_m, -post_y_m, 0}, {-post_x_m, post_y_m, 0}, {-post_x_m, -post_y_m, 0}};
+  const auto posts = static_cast<std::ptrdiff_t>(taken.size());
+  for (const RobotId id : match.robots()) taken.push_back(drill_place(match, id, seed, taken));
+  return {taken.begin() + posts, taken.end()};
 }
 
 std::string world_model() {
@@ -209,8 +230,7 @@ std::string differing(double share) {
          range("imu.gyro_noise_rad_s", 0.005, 0.005, 0.015) + " }";
 }
 
-std::string robot_fields(const MatchConfig& match, RobotId id, std::uint64_t seed) {
-  const Pose2 at = world_pose(drill_place(match, id, seed), id.side == Side::home ? -1 : 1);
+std::string robot_fields(const MatchConfig& match, RobotId id, const Pose2& at) {
   const SensesConfig& senses = match.senses;
   return "\"robot\": " + json_text(match.team(id.side).robot) +
          ", \"start_pose\": \"set_out\",\n    \"set\": { \"start.x_m\": " + number(at.x_m) +
@@ -402,19 +422,22 @@ std::string scenario_of(const MatchConfig& match, std::uint64_t seed) {
   const Field field = match.field();
   const Ball ball = league_ball(match.division);
   const std::vector<RobotId> robots = match.robots();
+  const std::vector<Pose2> places = drill_places(match, seed);
+  // The ball of a drill is put in its place, or beside who stands there, once all are in the world.
+  const double ball_x_m = match.begins ? field.length_m / 2 + field.border_m + 1 : 0;
   std::string text = "{ \"name\": " + json_text(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
-                     robot_fields(match, robots.front(), seed) +
+                     robot_fields(match, robots.front(), places.front()) +
                      ",\n  \"robot_name\": " + json_text(robot_name(robots.front())) + ", \"robots\": [";
   for (std::size_t i = 1; i < robots.size(); ++i) {
     text += std::string(i == 1 ? "" : ",") + "\n    { \"name\": " + json_text(robot_name(robots[i])) + ", " +
-            robot_fields(match, robots[i], seed) + " }";
+            robot_fields(match, robots[i], places[i]) + " }";
   }
   text += "],\n  \"network\": { \"delay_s\": " + number(match.delay_s) + ", \"jitter_s\": " + number(match.jitter_s) +
           ", \"lost\": " + number(match.lost) +
           " },\n  \"world\": [\n    { \"kind\": \"ball\", \"name\": \"ball\", \"radius_m\": " + number(ball.radius_m) +
           ", \"mass_kg\": " + number(ball.mass_kg) + ", \"rolling_friction_m\": " + number(match.rolling_friction_m) +
-          ", \"restitution\": 0.6, \"position_m\": [0, 0, " + number(ball.radius_m) + "] }" + goals(field) +
-          painted(field) + "]\n}\n";
+          ", \"restitution\": 0.6, \"position_m\": [" + number(ball_x_m) + ", 0, " + number(ball.radius_m) + "] }" +
+          goals(field) + painted(field) + "]\n}\n";
   return text;
 }
 

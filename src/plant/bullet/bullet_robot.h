@@ -34,6 +34,7 @@ class BulletRobot final : public WorldRobot {
   void end_step(double dt_s);  // throws std::runtime_error when the model diverges
   void sample(std::int64_t dt_ns);
   ContactWorld& world() noexcept { return world_; }
+  const btMultiBody& multibody() const noexcept { return body_.multibody(); }
 
   void hash_body(StateHash& hash) const noexcept;
   void hash_contacts(StateHash& hash) const noexcept;

@@ -1,12 +1,15 @@
 #include "kadans/plant/bullet/bullet_world.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "bullet_robot.h"
 #include "convert.h"
 #include "plant/bullet/contact/robot_contacts.h"
+#include "plant/bullet/contact/room.h"
 #include "plant_settings_check.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 
@@ -48,6 +51,7 @@ class BulletWorld::Inside {
       worlds_.push_back(&robots_.back()->world());
     }
     for (const auto& robot : robots_) robot->stand_among(worlds_);
+    check_starts(sites);
     if (robots_.size() > 1) contacts_ = std::make_unique<RobotContacts>(worlds_);
   }
 
@@ -82,6 +86,26 @@ class BulletWorld::Inside {
 
  private:
   double time_s() const { return static_cast<double>(time_ns_) * 1e-9; }
+
+  std::string name_of(const btMultiBodyLinkCollider& link, std::span<const WorldSite> sites) const {
+    const auto of = [&](const auto& robot) { return &robot->multibody() == link.m_multiBody; };
+    const auto number = static_cast<std::size_t>(std::ranges::find_if(robots_, of) - robots_.begin());
+    const std::string name = "link '" + sites[number].model.links[model_link(link.m_link)].name + "'";
+    return sites.size() == 1 ? name : name + " of robot " + std::to_string(number + 1);
+  }
+
+  // Throws std::invalid_argument when a robot starts deep in another one or in an object.
+  void check_starts(std::span<const WorldSite> sites) const {
+    const Deepest deepest = deepest_in_others(worlds_);
+    if (!(deepest.depth_m > start_depth_max_m)) return;
+    const int object = deepest.other->getUserIndex();
+    const std::string other =
+        object < 0 ? name_of(static_cast<const btMultiBodyLinkCollider&>(*deepest.other), sites)
+                   : "the world's '" + settings_.front().world.objects[static_cast<std::size_t>(object)].name + "'";
+    throw std::invalid_argument("start: " + name_of(*deepest.link, sites) + " is " +
+                                printed("%.0f", 1000 * deepest.depth_m) + " mm deep in " + other +
+                                "; start elsewhere (start.x_m, start.y_m)");
+  }
 
   void check_objects() const {
     for (std::size_t i = 0; i < objects_.size(); ++i) {

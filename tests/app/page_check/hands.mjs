@@ -41,8 +41,9 @@ export async function check_theme(page) {
   check(true, 'the theme switches by key and button');
 }
 
-// Tabs on until what has the focus fits.
+// Tabs on until what has the focus fits; on a busy machine the page may have lost the run for a moment, and it is disabled.
 async function tab_to(page, selector) {
+  await page.waitForSelector(`${selector}:enabled`);
   for (let i = 0; i < 80; ++i) {
     if (await page.evaluate((wanted) => document.activeElement?.matches(wanted), selector)) return;
     await page.keyboard.press('Tab');

@@ -81,6 +81,22 @@ TEST_CASE("A robot that is carried into another one is put down beside it, and n
   CHECK(std::abs(pair.truth(1).base.position_m[0] - 0.02) < 0.02);
 }
 
+TEST_CASE("Robots that start deep in each other or in an object are refused, with links and depth") {
+  const Robot first = box_at(4, {0, 0, 0.1}), second = box_at(4, {0.15, 0, 0.1});
+  CHECK_THROWS_WITH_AS(BulletWorld(sites(first, second)),
+                       "start: link 'box' of robot 1 is 50 mm deep in link 'box' of robot 2; start elsewhere "
+                       "(start.x_m, start.y_m)",
+                       std::invalid_argument);
+  CHECK_NOTHROW(BulletWorld(sites(first, box_at(4, {0.197, 0, 0.1}))));
+  Robot before = box_at(4, {0, 0, 0.1});
+  WorldObject wall{.name = "wall", .shape = WorldBox{{0.1, 1, 1}}};
+  wall.pose.position_m = {0.12, 0, 0.5};
+  before.settings.world.objects = {wall};
+  CHECK_THROWS_WITH_AS(BulletWorld(before.model, before.settings, 1),
+                       "start: link 'box' is 30 mm deep in the world's 'wall'; start elsewhere (start.x_m, start.y_m)",
+                       std::invalid_argument);
+}
+
 TEST_CASE("A robot moves bit for bit as without another one that it does not touch, first or second, also in a fall") {
   const Robot robot = tulip(Drives::rigid);
   const Robot far = at(tulip(Drives::rigid), {0.1, 5, 0});

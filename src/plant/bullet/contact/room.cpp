@@ -1,9 +1,12 @@
 #include "room.h"
 
+#include <algorithm>
 #include <vector>
 
+#include "object_contact.h"
 #include "plant/bullet/body.h"
 #include "signal/number_text.h"
+#include "touch_points.h"
 
 namespace kadans::bullet {
 namespace {
@@ -30,6 +33,30 @@ bool overlap(const Bounds& a, const Bounds& b) {
   return true;
 }
 
+bool boxes_meet(const btCollisionObject& a, const btCollisionObject& b) {
+  Bounds bounds_a, bounds_b;
+  a.getCollisionShape()->getAabb(a.getWorldTransform(), bounds_a.lower, bounds_a.upper);
+  b.getCollisionShape()->getAabb(b.getWorldTransform(), bounds_b.lower, bounds_b.upper);
+  return overlap(bounds_a, bounds_b);
+}
+
+double depth_between_m(const btCollisionObject& a, const btCollisionObject& b) {
+  if (!boxes_meet(a, b)) return 0;
+  const auto& shape_a = static_cast<const btCompoundShape&>(*a.getCollisionShape());
+  const auto& shape_b = static_cast<const btCompoundShape&>(*b.getCollisionShape());
+  double depth_m = 0;
+  for (int i = 0; i < shape_a.getNumChildShapes(); ++i) {
+    for (int j = 0; j < shape_b.getNumChildShapes(); ++j) {
+      const TouchPoints points = touch_points(static_cast<const btConvexShape&>(*shape_a.getChildShape(i)),
+                                              a.getWorldTransform() * shape_a.getChildTransform(i),
+                                              static_cast<const btConvexShape&>(*shape_b.getChildShape(j)),
+                                              b.getWorldTransform() * shape_b.getChildTransform(j));
+      for (const TouchPoint& point : points) depth_m = std::max(depth_m, -point.distance_m);
+    }
+  }
+  return depth_m;
+}
+
 }  // namespace
 
 bool is_crowded(const btMultiBody& body, std::span<ContactWorld* const> worlds) {
@@ -46,6 +73,25 @@ bool is_crowded(const btMultiBody& body, std::span<ContactWorld* const> worlds) 
     }
   }
   return false;
+}
+
+Deepest deepest_in_others(std::span<ContactWorld* const> worlds) {
+  std::vector<const btCollisionObject*> all;
+  for (const ContactWorld* world : worlds) {
+    for (const btCollisionObject* collider : world->colliders()) all.push_back(collider);
+  }
+  Deepest deepest;
+  for (const btCollisionObject* one : all) {
+    const btMultiBodyLinkCollider* link = in_world(*one) ? nullptr : btMultiBodyLinkCollider::upcast(one);
+    if (link == nullptr) continue;
+    for (const btCollisionObject* other : all) {
+      const btMultiBodyLinkCollider* theirs = btMultiBodyLinkCollider::upcast(other);
+      if (theirs != nullptr && theirs->m_multiBody == link->m_multiBody) continue;
+      const double depth_m = depth_between_m(*link, *other);
+      if (depth_m > deepest.depth_m) deepest = {link, other, depth_m};
+    }
+  }
+  return deepest;
 }
 
 std::string no_room(const std::string& hand) {

@@ -15,6 +15,15 @@ inline constexpr double room_step_m = 0.1, room_max_m = 3;
 // May allocate.
 bool is_crowded(const btMultiBody& body, std::span<ContactWorld* const> worlds);
 
+// Where a part of a robot lies deepest in another robot, or in an object.
+struct Deepest {
+  const btMultiBodyLinkCollider* link = nullptr;
+  const btCollisionObject* other = nullptr;
+  double depth_m = 0;
+};
+// May allocate.
+Deepest deepest_in_others(std::span<ContactWorld* const> worlds);
+
 // "carry: other robots and objects leave no room within 3 m of this place".
 std::string no_room(const std::string& hand);
 
