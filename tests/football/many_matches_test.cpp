@@ -81,6 +81,41 @@ TEST_CASE("A summary counts who wins, falls by robot and minute, and who stands 
   CHECK(summary_text(summaries_of({all})).find("crashed by signal 11") != std::string::npos);
 }
 
+TEST_CASE("A match that broke off counts in no share or mean, and it and the first error are told with their command") {
+  VariantResults all;
+  all.variant = {drill, {"home.parameters=passes=0, dives=0"}};
+  all.results = {result_of(1, 2, 0, 0, 3), result_of(2, 1, 1, 40, 30)};
+  all.results[1].ended = "the model diverges at 1 s";
+  all.results[1].robots[0].errors = 2;
+  all.results[1].robots[0].first_error = "1.00 s  home_1.team: a.lua:3: boom";
+  const MatchSummary s = summary_of(all);
+  CHECK(s.matches == 2);
+  CHECK(s.drawn.of == 1);
+  CHECK(s.drawn.hits == 0);
+  CHECK(s.falls_per_minute.mean == 0);
+  CHECK(s.ended_by_itself.of == 2);
+  const std::string text = summary_text({s}), command = drill + " --seed 2 --set 'home.parameters=passes=0, dives=0': ";
+  CHECK(text.find(command + "the model diverges at 1 s\n") != std::string::npos);
+  CHECK(text.find("2 errors of decisions or behaviors, the first:") != std::string::npos);
+  CHECK(text.find(command + "1.00 s  home_1.team: a.lua:3: boom\n") != std::string::npos);
+  CHECK_FALSE(all_well({s}));
+}
+
+TEST_CASE("Results of a team that has changed since are those of another one, wherever its folder is") {
+  const fs::path team = folder / "teams" / "one", out = folder / "of_one";
+  fs::remove_all(folder);
+  fs::create_directories(team);
+  fs::copy_file(KADANS_SOURCE_DIR "/behaviors/football/team.lua", team / "team.lua");
+  const ManyMatches plan{
+      .files = {drill}, .settings = {"home.team=" + team.string()}, .varied = {}, .seed = 5, .cases = 1};
+  const ManyChoices choices{.out = out.string(), .shard = {}, .jobs = 1, .program = "/bin/false"};
+  (void)play_many(plan, choices, never);
+  (void)play_many(plan, choices, never);
+  std::ofstream(team / "team.lua", std::ios::app) << "-- another one\n";
+  CHECK_THROWS_WITH_AS(play_many(plan, choices, never), doctest::Contains("another version of the teams"),
+                       kadans::InputError);
+}
+
 TEST_CASE("A result that is written is read again as it was") {
   const MatchConfig match = read_match(drill);
   MatchResult result = result_of(9, 2, 1, 3, 4.25);
@@ -88,6 +123,8 @@ TEST_CASE("A result that is written is read again as it was") {
   result.state_hash = 0xfedcba9876543210U;
   result.over_budget = {0, 7};
   result.messages_left = {11, 12};
+  result.robots[0].errors = 2;
+  result.robots[0].first_error = "1.00 s  home_1.team: a.lua:3: \"boom\"";
   const fs::path file = folder / "result.json";
   fs::create_directories(folder);
   std::ofstream(file) << json_of(result, match);

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "signal/shell_word.h"
+#include "kadans/signal/shell_word.h"
 
 using namespace kadans;
 

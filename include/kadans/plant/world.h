@@ -74,9 +74,9 @@ class WorldRobot : public Plant, public TruthSource {
   // such link, or a number is not finite.
   virtual void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) = 0;
   // A person lifts the robot, its tilt and joints as they are, and puts it down at rest with its base over this place
-  // and turned to this heading; where it would lie in another robot or a free object, beside it, to the left or to the
-  // right. Throws std::invalid_argument when the robot cannot be lifted, when there is no room within 3 m, or when a
-  // number is not finite.
+  // and turned to this heading; where it would lie in another robot or an object, beside it, to the left or to the
+  // right; on what stands there, it stands. Throws std::invalid_argument when the robot cannot be lifted, when there is
+  // no room within 3 m, or when a number is not finite.
   virtual void carry(double x_m, double y_m, double heading_rad) {
     (void)x_m, (void)y_m, (void)heading_rad;
     throw std::invalid_argument("carry: this robot is fixed in its place");
@@ -104,8 +104,8 @@ class World {
   // Lets time pass. Throws std::runtime_error when the model fails (a state that is not finite).
   virtual void step(std::int64_t dt_ns) = 0;
   // A person puts a free object, turned as at the start, at rest with its centre here; where it would lie in a robot or
-  // in another free object, beside that. Throws std::invalid_argument when there is no such object, it is not free,
-  // there is no room within 3 m, or a number is not finite.
+  // in another object, beside that. Throws std::invalid_argument when there is no such object, it is not free, it would
+  // lie in the ground, there is no room within 3 m, or a number is not finite.
   virtual void put(std::size_t object, const Vec3& position_m) {
     (void)object, (void)position_m;
     throw std::invalid_argument("put: this world has no objects");

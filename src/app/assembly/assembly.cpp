@@ -293,6 +293,9 @@ void Assembly::show_others() {
         unhashed_.push_back(static_cast<SignalId>(control_system_->catalog.signals.size()));
       Signal signal = theirs.info(id);
       signal.name.insert(0, other->scenario_.name + ".");
+      if (control_system_->catalog.signals.find(signal.name))
+        refuse(scenario_.file, other->scenario_.plant_place,
+               "name " + in_quotes(other->scenario_.name) + ": its signal would be the first robot's " + signal.name);
       control_system_->catalog.signals.add(std::move(signal), &other->control_->row()[id]);
     }
   }

@@ -102,7 +102,8 @@ fs::path robot_of_behavior(const fs::path& behavior) {
   const std::vector<fs::path> robots = robots_in(configs);
   if (robots.size() == 1) return robots.front();
   throw InputError({.file = behavior.string(),
-                    .message = "no robot goes with it: there is no " + own.string() + "; name one with --robot FILE"});
+                    .message = "no robot goes with it: there is no " + own.string() +
+                               "; name one: kadans behavior with --robot FILE, kadans repl with a scenario"});
 }
 
 fs::path only_robot(const fs::path& folder, const std::string& named) {

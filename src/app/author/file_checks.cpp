@@ -19,10 +19,10 @@
 #include "estimate/estimator.h"
 #include "kadans/plant/bullet/bullet_world.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "robot_description.h"
 #include "scenario/judge/checks.h"
 #include "script/check/check_behavior.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 

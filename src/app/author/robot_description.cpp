@@ -4,10 +4,10 @@
 #include <system_error>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "model/urdf/xacro_values.h"
 #include "realtime/machine/child_process.h"
 #include "signal/input_file.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

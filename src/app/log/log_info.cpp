@@ -6,9 +6,9 @@
 #include "app/sim/input_files.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
+#include "kadans/signal/shell_word.h"
 #include "log_verbs.h"
 #include "signal/number_text.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

@@ -8,10 +8,10 @@
 #include <CLI/CLI.hpp>
 
 #include "app/terminal.h"
+#include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "new_subject.h"
 #include "signal/number_text.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

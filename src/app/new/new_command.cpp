@@ -7,10 +7,10 @@
 
 #include "app/terminal.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "realtime/machine/child_process.h"
 #include "signal/durable_file.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 

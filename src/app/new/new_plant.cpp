@@ -11,10 +11,10 @@
 
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
+#include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "new_subject.h"
 #include "plant_wire.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

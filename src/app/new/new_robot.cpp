@@ -22,9 +22,9 @@
 #include "kadans/model/urdf.h"
 #include "kadans/plant/bullet/bullet_world.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "signal/input_file.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {
@@ -387,7 +387,7 @@ void tell(const RobotModel& model, const StandingPose& stance, const std::vector
   }
 }
 
-// Runs the scenario, and leaves a picture of its end beside the URDF. The exit code of the run.
+// Runs the scenario, and leaves its record and a picture of its end beside the URDF. The exit code of the run.
 int run_and_draw(const fs::path& scenario, const fs::path& picture) {
   const std::string record = fs::absolute(picture).replace_extension(".mcap").string();
   const int code = run_kadans({"sim", fs::absolute(scenario).string(), "--record", record});
@@ -396,8 +396,6 @@ int run_and_draw(const fs::path& scenario, const fs::path& picture) {
     if (!missing.empty()) std::fprintf(stderr, "No picture: %s\n", missing.c_str());
     if (missing.empty()) (void)run_kadans({"render", record, "--at", "10", "-o", picture.string()});
   }
-  std::error_code ignored;
-  fs::remove(record, ignored);
   return code;
 }
 
@@ -418,8 +416,9 @@ void add_new_robot(CLI::App& made, NewRobotOptions& options) {
 
 int run_new_robot(const NewRobotOptions& options) {
   const UrdfPackages packages = packages_of(options.packages);
+  std::vector<InputProblem> warnings;
   const RobotDescription description = read_robot_description(
-      options.urdf, {.mesh_hull = mesh_hull, .mesh_triangles = mesh_triangles, .packages = packages});
+      options.urdf, {.mesh_hull = mesh_hull, .mesh_triangles = mesh_triangles, .packages = packages}, &warnings);
   const RobotModel& model = description.model;
   const std::string name = options.name.empty() ? name_from(model.name) : options.name;
   if (name.empty() || name != name_from(name))
@@ -457,6 +456,7 @@ int run_new_robot(const NewRobotOptions& options) {
     if (error) throw InputError({.file = from, .message = "cannot be copied: " + error.message()});
   }
   std::fflush(stdout);
+  for (const InputProblem& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.text().c_str());
   tell(model, stance, holds);
   const std::string shown = shell_word(fs::relative(scenario, project).string());
   const std::string at = project == "." ? "" : "cd " + shell_word(project.string()) + " && ";

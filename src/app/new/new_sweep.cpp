@@ -13,10 +13,10 @@
 #include "config/json/foreign_json.h"
 #include "config/robot/project_root.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "new_subject.h"
 #include "scenario/disturb/quantities.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

@@ -7,8 +7,8 @@
 #include "app/terminal.h"
 #include "config/json/problems.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "realtime/machine/child_process.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

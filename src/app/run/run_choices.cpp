@@ -3,8 +3,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "kadans/signal/shell_word.h"
 #include "signal/number_text.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

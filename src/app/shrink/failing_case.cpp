@@ -5,8 +5,8 @@
 
 #include "app/author/file_checks.h"
 #include "campaign/sweep/sweep_results.h"
+#include "kadans/signal/shell_word.h"
 #include "signal/number_text.h"
-#include "signal/shell_word.h"
 #include "telemetry/record/record_folder.h"
 
 namespace kadans {

@@ -18,9 +18,9 @@
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
 #include "failing_case.h"
+#include "kadans/signal/shell_word.h"
 #include "reduced_scenario.h"
 #include "signal/durable_file.h"
-#include "signal/shell_word.h"
 #include "trial_runs.h"
 
 namespace kadans {

@@ -11,9 +11,9 @@
 #include "app/terminal.h"
 #include "hash_trail.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "repeated_run.h"
 #include "scenario/report/report.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

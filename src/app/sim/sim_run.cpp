@@ -11,8 +11,8 @@
 #include "app/terminal.h"
 #include "config/plan/experiment_plans.h"
 #include "input_files.h"
+#include "kadans/signal/shell_word.h"
 #include "played_behaviors.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

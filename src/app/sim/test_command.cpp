@@ -28,11 +28,11 @@
 #include "config/robot/project_root.h"
 #include "input_files.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/shell_word.h"
 #include "played_behaviors.h"
 #include "script/check/check_behavior.h"
 #include "signal/durable_file.h"
 #include "signal/number_text.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 

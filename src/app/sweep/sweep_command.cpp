@@ -13,8 +13,8 @@
 #include "campaign/sweep/sweep_summary.h"
 #include "config/json/problems.h"
 #include "kadans/campaign/shard.h"
+#include "kadans/signal/shell_word.h"
 #include "signal/durable_file.h"
-#include "signal/shell_word.h"
 #include "sweep_run.h"
 #include "sweep_subjects.h"
 

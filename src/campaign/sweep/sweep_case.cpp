@@ -9,8 +9,8 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/nearest_name.h"
 #include "kadans/signal/random.h"
+#include "kadans/signal/shell_word.h"
 #include "signal/number_text.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

@@ -7,10 +7,10 @@
 #include "config/scenario/play_item.h"
 #include "kadans/model/urdf.h"
 #include "kadans/signal/nearest_name.h"
+#include "kadans/signal/shell_word.h"
 #include "mesh_hull.h"
 #include "project_root.h"
 #include "robot_reader.h"
-#include "signal/shell_word.h"
 
 namespace kadans {
 namespace {

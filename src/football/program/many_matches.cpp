@@ -5,12 +5,14 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "kadans/campaign/job_pool.h"
 #include "kadans/config/input_object.h"
 #include "kadans/signal/content_hash.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/output_file.h"
+#include "kadans/signal/shell_word.h"
 #include "match_report.h"
 
 namespace kadans::football {
@@ -21,6 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t matches_max = 100'000, variants_max = 1000;
 constexpr double wall_limit_s = 6 * 3600;  // of a match
 constexpr const char* plan_file = "plan.json";
+constexpr int depth_of_folders = 16;  // no deeper ones are looked at
 
 struct Case {
   std::size_t number = 0, variant = 0;
@@ -45,23 +48,32 @@ std::string bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// Of the program, and of the files that matches are made of: all that stands in the folders of the working directory
-// that a project has.
-std::string hash_of_players(const ManyMatches& plan) {
+// Of the program, and of the files that matches are made of: those of the folders of the working directory that a
+// project has, and what the matches name elsewhere. The folder of the results may be in one of those.
+std::string hash_of_players(const ManyMatches& plan, const fs::path& results) {
   ContentHash hash;
   hash.add_file("/proc/self/exe");
-  std::vector<fs::path> files(plan.files.begin(), plan.files.end());
-  for (const char* folder : {"behaviors", "models", "config"}) {
+  std::set<fs::path> files;
+  const fs::path own = fs::weakly_canonical(results);
+  const auto add = [&](const fs::path& folder, int depth_max) {
     std::error_code ignored;
     for (fs::recursive_directory_iterator entry(folder, ignored), end; !ignored && entry != end;
          entry.increment(ignored)) {
-      const fs::path& file = entry->path();
-      if (entry->is_regular_file() &&
-          (file.extension() == ".lua" || file.filename() == "robot.json" || file.extension() == ".urdf"))
-        files.push_back(file);
+      const std::string kind = entry->path().extension().string();
+      if (entry->is_directory() && (entry.depth() == depth_max || fs::weakly_canonical(entry->path()) == own))
+        entry.disable_recursion_pending();
+      if (entry->is_regular_file() && (kind == ".lua" || kind == ".json" || kind == ".urdf"))
+        files.insert(entry->path().lexically_normal());
+    }
+  };
+  for (const char* folder : {"behaviors", "models", "config"}) add(folder, depth_of_folders);
+  for (const MatchVariant& variant : variants_of(plan)) {
+    add(fs::path(variant.file).parent_path(), 0);
+    for (const TeamSetup& team : read_match(variant.file, variant.settings).teams) {
+      add(team.folder, depth_of_folders);
+      add(fs::path(team.robot).parent_path(), 0);
     }
   }
-  std::ranges::sort(files);
   for (const fs::path& file : files) {
     hash.add(file.generic_string());
     hash.add_file(file);
@@ -106,7 +118,7 @@ ManyMatches read_plan(const fs::path& file) {
 }
 
 void keep_plan(const fs::path& folder, const ManyMatches& plan) {
-  const std::string text = json_of_plan(plan, hash_of_players(plan));
+  const std::string text = json_of_plan(plan, hash_of_players(plan, folder));
   const fs::path file = folder / plan_file;
   if (fs::exists(file) && bytes_of(file) != text)
     throw InputError({.file = file.string(),
@@ -197,8 +209,8 @@ std::string MatchVariant::name() const {
 }
 
 std::string command_of(const MatchVariant& variant, std::uint64_t seed) {
-  std::string command = "kadans-football match " + variant.file + " --seed " + std::to_string(seed);
-  for (const std::string& setting : variant.settings) command += " --set " + setting;
+  std::string command = "kadans-football match " + shell_word(variant.file) + " --seed " + std::to_string(seed);
+  for (const std::string& setting : variant.settings) command += " --set " + shell_word(setting);
   return command;
 }
 

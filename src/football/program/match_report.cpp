@@ -22,16 +22,18 @@ std::string json_of(const Decision& decision) {
 }
 
 std::string json_of(const PlayedRobot& robot) {
+  const std::string error = robot.errors > 0 ? ", \"first_error\": " + json_text(robot.first_error) : "";
   return "{\"name\": " + json_text(robot.name) +
          line_of(
              ", \"falls\": %llu, \"penalties\": %llu, \"messages\": %llu, \"errors\": %llu, \"upright_s\": %.2f, "
              "\"played_s\": %.2f, \"still_max_s\": %.2f, \"frozen_max_s\": %.2f, \"off_median_m\": %.3f, "
              "\"off_most_m\": %.3f, "
-             "\"off_median_rad\": %.4f}",
+             "\"off_median_rad\": %.4f",
              static_cast<unsigned long long>(robot.falls), static_cast<unsigned long long>(robot.penalties),
              static_cast<unsigned long long>(robot.messages), static_cast<unsigned long long>(robot.errors),
              robot.upright_s, robot.played_s, robot.still_max_s, robot.frozen_max_s, robot.off_median_m,
-             robot.off_most_m, robot.off_median_rad);
+             robot.off_most_m, robot.off_median_rad) +
+         error + "}";
 }
 
 template <typename T>
@@ -56,6 +58,12 @@ std::string text_of(const MatchResult& result, const MatchConfig& match) {
         robot.name.c_str(), static_cast<unsigned long long>(robot.falls),
         static_cast<unsigned long long>(robot.penalties), static_cast<unsigned long long>(robot.messages),
         robot.still_max_s, robot.frozen_max_s, robot.off_median_m);
+  for (const PlayedRobot& robot : result.robots) {
+    if (robot.errors > 0)
+      text += line_of("  %s: %llu errors of its decisions or behaviors, the first:\n", robot.name.c_str(),
+                      static_cast<unsigned long long>(robot.errors)) +
+              "    " + robot.first_error + "\n";
+  }
   return text + line_of("  seed %llu, %.1f s, %.1f s of them in play, hash %016llx",
                         static_cast<unsigned long long>(result.seed), result.simulated_s, result.playing_s,
                         static_cast<unsigned long long>(result.state_hash));
@@ -99,6 +107,7 @@ void read_robot(InputObject& f, MatchResult& result) {
   f.whole("penalties", robot.penalties, 0, count_max, "", true);
   f.whole("messages", robot.messages, 0, count_max, "", true);
   f.whole("errors", robot.errors, 0, count_max, "", true);
+  f.text("first_error", robot.first_error, "");
   for (const auto& [key, value] : {std::pair{"upright_s", &robot.upright_s},
                                    {"played_s", &robot.played_s},
                                    {"still_max_s", &robot.still_max_s},

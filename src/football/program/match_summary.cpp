@@ -107,12 +107,20 @@ std::string json_of(const MatchSummary& s) {
 
 }  // namespace
 
-MatchSummary summary_of(const VariantResults& all) {
+MatchSummary summary_of(const VariantResults& played) {
   MatchSummary s;
-  s.matches = all.results.size();
-  s.variant = all.variant;
-  s.missing = all.missing;
-  s.ended_by_itself = share_of(all, ended_by_itself);
+  s.matches = played.results.size();
+  s.variant = played.variant;
+  s.missing = played.missing;
+  s.ended_by_itself = share_of(played, ended_by_itself);
+  VariantResults all;  // a match that broke off tells nothing of the teams
+  for (const MatchResult& result : played.results) {
+    if (ended_by_itself(result)) {
+      all.results.push_back(result);
+    } else {
+      s.missing.push_back(command_of(played.variant, result.seed) + ": " + result.ended);
+    }
+  }
   s.home_won = share_of(all, [](const MatchResult& r) { return r.score[0] > r.score[1]; });
   s.drawn = share_of(all, [](const MatchResult& r) { return r.score[0] == r.score[1]; });
   s.away_won = share_of(all, [](const MatchResult& r) { return r.score[0] < r.score[1]; });
@@ -138,8 +146,12 @@ MatchSummary summary_of(const VariantResults& all) {
     return worst(r, [](const PlayedRobot& p) { return p.off_median_rad; });
   });
   s.messages = statistics_of(all, "messages", most_messages);
-  for (const MatchResult& result : all.results) {
-    for (const PlayedRobot& robot : result.robots) s.errors += robot.errors;
+  for (const MatchResult& result : played.results) {
+    for (const PlayedRobot& robot : result.robots) {
+      if (robot.errors > 0 && s.errors == 0)
+        s.first_error = command_of(played.variant, result.seed) + ": " + robot.first_error;
+      s.errors += robot.errors;
+    }
   }
   return s;
 }
@@ -178,7 +190,8 @@ std::string summary_text(const std::vector<MatchSummary>& all) {
       text += line_of("within the messages' budget", s.within_budget);
     }
     if (s.errors > 0)
-      text += told("  %llu errors of decisions or behaviors\n", static_cast<unsigned long long>(s.errors));
+      text += told("  %llu errors of decisions or behaviors, the first:\n", static_cast<unsigned long long>(s.errors)) +
+              "    " + s.first_error + "\n";
     if (!s.missing.empty()) text += told("  %zu without a result:\n", s.missing.size());
     for (std::size_t i = 0; i < std::min(s.missing.size(), missing_told); ++i) text += "    " + s.missing[i] + "\n";
   }

@@ -16,7 +16,7 @@ struct Share {
 
 struct MatchSummary {
   MatchVariant variant;
-  std::vector<std::string> missing;  // without a result: why, and the command that plays it
+  std::vector<std::string> missing;  // without a result, or broken off: why, and the command that plays it
   std::size_t matches = 0;
   Share ended_by_itself, home_won, drawn, away_won, with_goals;
   Share still_below_limit;                         // no robot stood still for longer in play, waiting or not
@@ -28,6 +28,7 @@ struct MatchSummary {
   SampleStatistics off_m, off_rad;                 // median of where a robot thought to be; of the worst robot
   SampleStatistics messages;                       // a team
   std::uint64_t errors = 0;                        // of decisions and behaviors
+  std::string first_error;                         // after the command that plays its match
 };
 
 inline constexpr double still_limit_s = 20;

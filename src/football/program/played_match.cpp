@@ -340,7 +340,10 @@ void PlayedMatch::note_lines() {
   for (SaidLine& line : played_in_->take_lines()) {
     if (line.who.find('.') == std::string::npos) line.who.insert(0, first + ".");
     for (Player& player : players_) {
-      if (line.kind == SaidLine::Kind::error && line.who.starts_with(player.told.name + ".")) ++player.told.errors;
+      if (line.kind != SaidLine::Kind::error || !line.who.starts_with(player.told.name + ".")) continue;
+      if (++player.told.errors > 1) continue;
+      const std::string text = text_of(line);
+      player.told.first_error = text.substr(std::min(text.find_first_not_of(' '), text.size()));
     }
     lines_.push_back(text_of(line));
   }

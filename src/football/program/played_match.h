@@ -21,6 +21,7 @@ struct PlayedRobot {
   RobotId id;
   std::string name;
   std::uint64_t falls = 0, messages = 0, penalties = 0, errors = 0;
+  std::string first_error;  // what it said of the first of its errors
   double upright_s = 0, played_s = 0;
   double still_max_s = 0;   // in play: the longest time without moving; one that waits for the ball counts, too
   double frozen_max_s = 0;  // of such a time, the most during which it had to move (PlayedMatch::has_to_move)

@@ -5,11 +5,20 @@
 #include <string>
 
 #include "convert.h"
+#include "plant/bullet/body.h"
 #include "plant/bullet/contact/object_contact.h"
 #include "plant/bullet/contact/room.h"
+#include "signal/number_text.h"
 
 namespace kadans::bullet {
 namespace {
+
+// Of the shape's lowest point over a plane, whose normal is its z.
+double over_ground_m(const btConvexShape& shape, const btTransform& pose, const btTransform& ground) {
+  const btVector3 up = ground.getBasis().getColumn(2);
+  const btVector3 lowest = pose * shape.localGetSupportingVertex(pose.getBasis().transpose() * -up);
+  return up.dot(lowest - ground.getOrigin());
+}
 
 constexpr int ways = 8;  // away from a place in which there is no room
 
@@ -176,6 +185,11 @@ void WorldObjects::put(std::size_t number, const btVector3& position_m, std::spa
   if (object.multibody == nullptr || object.multibody->getNumLinks() > 0)
     throw std::invalid_argument("put: '" + object.settings.name + "' is not free");
   if (!bullet::finite(position_m)) throw std::invalid_argument("put: the place must be finite");
+  const btTransform asked(to_bullet(object.settings.pose).getBasis(), position_m);
+  const double under_m = -over_ground_m(*object.parts[0].shape, asked, to_bullet(ground_pose(settings_)));
+  if (under_m > start_depth_max_m)
+    throw std::invalid_argument("put: '" + object.settings.name + "' would lie " + printed("%.0f", 1000 * under_m) +
+                                " mm deep in the ground");
   btMultiBody& body = *object.multibody;
   const btTransform was = body.getBaseWorldTransform();
   const auto move = [&](const btTransform& to) {
@@ -183,7 +197,7 @@ void WorldObjects::put(std::size_t number, const btVector3& position_m, std::spa
     object.parts[0].collider->setWorldTransform(to);
   };
   const auto put_down = [&](const btVector3& aside_m) {
-    move(btTransform(to_bullet(object.settings.pose).getBasis(), position_m + aside_m));
+    move(btTransform(asked.getBasis(), position_m + aside_m));
     return !is_crowded(body, worlds);
   };
   body.clearVelocities();

@@ -214,6 +214,23 @@ TEST_CASE("A ball that is put into a robot, or a robot onto a ball, comes to lie
   CHECK(std::abs(truth.objects[0].pose.position_m[0] - 2) < 1e-3);
 }
 
+TEST_CASE("Nothing is put into what is fixed, or into the ground") {
+  Robot robot = box(4, {0.4, 0.2, 0.2});
+  robot.settings.world.objects = {object("ball", WorldBall{.radius_m = 0.1, .mass_kg = 0.4}, {2, 0, 0.1}),
+                                  object("wall", WorldBox{{0.1, 0.1, 1}}, {4, 0, 0.5})};
+  BulletWorld plant(robot.model, robot.settings, 1);
+  run(plant, 100);
+  plant.put(0, {4, 0, 0.1});
+  plant.carry(4, 0, 0);  // its corners stand around the wall, which is in its middle
+  run(plant, 300);
+  const PlantTruth& truth = plant.truth();
+  CHECK(std::abs(truth.objects[0].pose.position_m[2] - 0.1) < 1e-3);
+  CHECK(std::hypot(truth.objects[0].pose.position_m[0] - 4, truth.objects[0].pose.position_m[1]) > 0.14);
+  CHECK(std::abs(truth.base.position_m[2] - 0.1) < 1e-3);
+  CHECK(std::abs(truth.base.position_m[1]) > 0.14);
+  CHECK_THROWS_WITH(plant.put(0, {0, 3, -1}), "put: 'ball' would lie 1100 mm deep in the ground");
+}
+
 TEST_CASE("A world that has settled allocates nothing more") {
   Robot robot = box(4, {0.22, 0.1, 0.03});
   robot.settings.world.objects = {object("step", WorldBox{{1, 1, 0.2}}, {0, 0, 0.1}),

@@ -61,15 +61,28 @@ double depth_between_m(const btCollisionObject& a, const btCollisionObject& b) {
 
 bool is_crowded(const btMultiBody& body, std::span<ContactWorld* const> worlds) {
   std::vector<Bounds> own, others;
+  std::vector<const btCollisionObject*> links, fixed;
   for (const ContactWorld* world : worlds) {
     for (const btCollisionObject* collider : world->colliders()) {
       const btMultiBodyLinkCollider* link = btMultiBodyLinkCollider::upcast(collider);
-      if (link != nullptr) add_boxes(*link, link->m_multiBody == &body ? own : others);
+      if (link == nullptr) {
+        fixed.push_back(collider);
+      } else if (link->m_multiBody == &body) {
+        links.push_back(collider);
+        add_boxes(*collider, own);
+      } else {
+        add_boxes(*collider, others);
+      }
     }
   }
   for (const Bounds& a : own) {
     for (const Bounds& b : others) {
       if (overlap(a, b)) return true;
+    }
+  }
+  for (const btCollisionObject* link : links) {
+    for (const btCollisionObject* thing : fixed) {
+      if (depth_between_m(*link, *thing) > start_depth_max_m) return true;
     }
   }
   return false;

@@ -11,8 +11,8 @@ namespace kadans::bullet {
 // How far from its place a thing is put down when something stands there, and in which steps.
 inline constexpr double room_step_m = 0.1, room_max_m = 3;
 
-// Whether a part of this body lies deep in another body that moves, by the boxes along the world's axes around both.
-// May allocate.
+// Whether a part of this body lies deep in another body that moves, by the boxes along the world's axes around both, or
+// in something fixed. May allocate.
 bool is_crowded(const btMultiBody& body, std::span<ContactWorld* const> worlds);
 
 // Where a part of a robot lies deepest in another robot, or in an object.
