@@ -423,8 +423,9 @@ std::string scenario_of(const MatchConfig& match, std::uint64_t seed) {
   const Ball ball = league_ball(match.division);
   const std::vector<RobotId> robots = match.robots();
   const std::vector<Pose2> places = drill_places(match, seed);
-  // The ball of a drill is put in its place, or beside who stands there, once all are in the world.
-  const double ball_x_m = match.begins ? field.length_m / 2 + field.border_m + 1 : 0;
+  // The ball of a drill is put in its place once all are in the world: until then nobody may stand in it.
+  const bool in_middle = std::ranges::any_of(places, [](const Pose2& at) { return norm(at.at()) < apart_m; });
+  const double ball_x_m = match.begins && in_middle ? field.length_m / 2 + field.border_m + 1 : 0;
   std::string text = "{ \"name\": " + json_text(robot_name(robots.front())) + ", \"duration_s\": 100000,\n    " +
                      robot_fields(match, robots.front(), places.front()) +
                      ",\n  \"robot_name\": " + json_text(robot_name(robots.front())) + ", \"robots\": [";
