@@ -36,11 +36,13 @@ void ContentHash::add_file(const fs::path& file) {
   add(read_input_file(file, file_max_bytes));
 }
 
-void ContentHash::add_folder(const fs::path& folder, std::string_view ending) {
+void ContentHash::add_folder(const fs::path& folder, std::string_view ending, const fs::path& leave_out) {
   std::vector<fs::path> files;
   std::error_code error;
   if (!fs::exists(folder, error) && !error) return add("no such folder");
   for (fs::recursive_directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+    if (!leave_out.empty() && i->is_directory(error) && fs::equivalent(i->path(), leave_out, error))
+      i.disable_recursion_pending();
     if (i->is_regular_file(error) && i->path().filename().string().ends_with(ending)) files.push_back(i->path());
   }
   if (error) throw InputError({.file = folder.string(), .message = "cannot be read: " + error.message()});

@@ -102,7 +102,7 @@ TEST_CASE("A match that broke off counts in no share or mean, and it and the fir
 }
 
 TEST_CASE("Results of a team that has changed since are those of another one, wherever its folder is") {
-  const fs::path team = folder / "teams" / "one", out = folder / "of_one";
+  const fs::path team = folder / "teams" / "one", out = team / "results";  // which are no part of the team
   fs::remove_all(folder);
   fs::create_directories(team);
   fs::copy_file(KADANS_SOURCE_DIR "/behaviors/football/team.lua", team / "team.lua");

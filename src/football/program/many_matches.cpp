@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t matches_max = 100'000, variants_max = 1000;
 constexpr double wall_limit_s = 6 * 3600;  // of a match
 constexpr const char* plan_file = "plan.json";
-constexpr int depth_of_folders = 16;  // no deeper ones are looked at
 
 struct Case {
   std::size_t number = 0, variant = 0;
@@ -53,26 +52,16 @@ std::string bytes_of(const fs::path& file) {
 std::string hash_of_players(const ManyMatches& plan, const fs::path& results) {
   ContentHash hash;
   hash.add_file("/proc/self/exe");
-  std::set<fs::path> files;
-  const fs::path own = fs::weakly_canonical(results);
-  const auto add = [&](const fs::path& folder, int depth_max) {
-    std::error_code ignored;
-    for (fs::recursive_directory_iterator entry(folder, ignored), end; !ignored && entry != end;
-         entry.increment(ignored)) {
-      const std::string kind = entry->path().extension().string();
-      if (entry->is_directory() && (entry.depth() == depth_max || fs::weakly_canonical(entry->path()) == own))
-        entry.disable_recursion_pending();
-      if (entry->is_regular_file() && (kind == ".lua" || kind == ".json" || kind == ".urdf"))
-        files.insert(entry->path().lexically_normal());
-    }
-  };
-  for (const char* folder : {"behaviors", "models", "config"}) add(folder, depth_of_folders);
+  std::set<fs::path> files(plan.files.begin(), plan.files.end()), folders{"behaviors", "models", "config"};
   for (const MatchVariant& variant : variants_of(plan)) {
-    add(fs::path(variant.file).parent_path(), 0);
     for (const TeamSetup& team : read_match(variant.file, variant.settings).teams) {
-      add(team.folder, depth_of_folders);
-      add(fs::path(team.robot).parent_path(), 0);
+      folders.insert(team.folder);
+      files.insert(team.robot);
     }
+  }
+  for (const fs::path& folder : folders) {
+    hash.add(folder.generic_string());
+    for (const char* ending : {".lua", ".json", ".urdf"}) hash.add_folder(folder, ending, results);
   }
   for (const fs::path& file : files) {
     hash.add(file.generic_string());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include <LinearMath/btAabbUtil2.h>
+
 #include "object_contact.h"
 #include "plant/bullet/body.h"
 #include "signal/number_text.h"
@@ -26,12 +28,7 @@ void add_boxes(const btCollisionObject& collider, std::vector<Bounds>& boxes) {
   }
 }
 
-bool overlap(const Bounds& a, const Bounds& b) {
-  for (int i = 0; i < 3; ++i) {
-    if (a.upper[i] <= b.lower[i] || b.upper[i] <= a.lower[i]) return false;
-  }
-  return true;
-}
+bool overlap(const Bounds& a, const Bounds& b) { return TestAabbAgainstAabb2(a.lower, a.upper, b.lower, b.upper); }
 
 bool boxes_meet(const btCollisionObject& a, const btCollisionObject& b) {
   Bounds bounds_a, bounds_b;
