@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # outside.sh COMPILER: installs, moves the installed tree, builds the project in outside/ against it, and runs what was
 # built and installed from a folder that is not ours.
-set -euo pipefail
+set -Eeuo pipefail
+trap 'echo "outside.sh:$LINENO: this failed: $BASH_COMMAND"' ERR
 here=$(dirname "$(realpath "$0")")
 work="$KADANS_BINARY_DIR/outside"
 rm -rf "$work"
@@ -9,8 +10,13 @@ mkdir -p "$work/elsewhere"
 
 cmake --install "$KADANS_BINARY_DIR" --prefix "$work/made" >"$work/install.log"
 mv "$work/made" "$work/moved"
-cmake -S "$here/outside" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$1" >"$work/configure.log"
-cmake --build "$work/build" --parallel "$(nproc)"
+
+# built SOURCE BUILD COMPILER: a project against the installed package. Its compilers are heard when they fail.
+built() {
+  cmake -S "$1" -B "$2" -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$3" >"$work/configure.log"
+  cmake --build "$2" --parallel "$(nproc)" >"$work/build.log" 2>&1 || { tail -n 100 "$work/build.log"; return 1; }
+}
+built "$here/outside" "$work/build" "$1"
 
 cd "$work/elsewhere"
 for program in "$work"/build/run_*; do
@@ -58,8 +64,7 @@ foreach(part IN ITEMS first_try second_try twenty_sim simulink openmodelica can_
   add_subdirectory(${part})
 endforeach()
 EOF
-  cmake -S written -B written/build -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$1" >>"$work/configure.log"
-  cmake --build written/build --parallel "$(nproc)"
+  built written written/build "$1"
   ctest --test-dir written/build --output-on-failure
   written/build/first_try/kadans_first_try check "$share/config/tulip/robot.json"
   # What two instances would share was found in the compiled code.
@@ -71,8 +76,7 @@ fi
 # The plug-in of plugins/unitree, built by itself: it needs nothing of the tree.
 if [ -x "$work/moved/bin/kadans" ] && command -v idlc >/dev/null; then
   cp -r "$here/../../plugins/unitree" unitree
-  cmake -S unitree -B unitree/build -G Ninja -DCMAKE_PREFIX_PATH="$work/moved" -DCMAKE_CXX_COMPILER="$1" >>"$work/configure.log"
-  cmake --build unitree/build --parallel "$(nproc)"
+  built unitree unitree/build "$1"
   [ -s "$work/moved/lib/kadans/unitree.so" ] || { echo "the plug-in unitree is not installed"; exit 1; }
   cat >"$share/config/jiwiy/unitree.json" <<EOF
 { "based_on": "config/jiwiy/robot.json", "plugins": ["$PWD/unitree/build/unitree.so"],
