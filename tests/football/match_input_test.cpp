@@ -55,6 +55,8 @@ const Wrong wrong_with_team[] = {
     {R"("seed": 1, "seed": 2)", "3:12: key 'seed' stands twice"},
     {R"("rules": { "set_s": 3, "set_s": 4 })", "3:24: key 'set_s' stands twice"},
     {R"("begins": { "ball_x": 1 })", "did you mean 'ball_x_m'?"},
+    {R"("begins": { "ball_x_m": 5 })", "begins.ball_x_m is 5"},
+    {R"("begins": { "ball_y_m": -3.5 })", "begins.ball_y_m is -3.5"},
     // types
     {R"("rules": { "half_s": "long" })", "3:22: rules.half_s must be a number in s, not"},
     {R"("rules": [60])", "3:10: rules must be an object"},
@@ -216,7 +218,8 @@ TEST_CASE("What is wrong in a team is told with its file and line, before the ma
   }
 }
 
-TEST_CASE("What --set says stands in place of the file's, and is refused with its place as the file's is") {
+TEST_CASE(
+    "What --set says stands in place of the file's, and what is wrong in it is told with the setting that it is in") {
   const fs::path file = KADANS_SOURCE_DIR "/config/matches/two_against_two.json";
   const auto refused = [&](const std::vector<std::string>& settings) {
     return kadans::refusal("", "", [&] { (void)read_match(file, settings); });
@@ -228,9 +231,13 @@ TEST_CASE("What --set says stands in place of the file's, and is refused with it
   CHECK(match.team(Side::away).name == "them");
   CHECK(match.team(Side::away).players == 2);
   CHECK(match.rules.half_s == read_match(file).rules.half_s);
-  CHECK(has(refused({"network.lost=3"}), "network.lost is 3"));
-  CHECK(has(refused({"network.lots=0.3"}), "did you mean 'lost'?"));
+  const std::string several = refused({"network.delay_s=0.05", "network.lost=3", "seed=7", "network.jitter_s=-1"});
+  CHECK(has(several, "--set network.lost=3: network.lost is 3"));
+  CHECK(has(several, "--set network.jitter_s=-1: network.jitter_s is -1"));
+  CHECK(has(refused({"network.lots=0.3"}), "--set network.lots=0.3: unknown key 'lots'"));
   CHECK(has(refused({"home.team=behaviors/footbal"}), "did you mean 'football'?"));
+  CHECK(read_match(file, {"seed=7", "home.parameters=passes=0"}).team(Side::home).parameters_place.file ==
+        "--set home.parameters=passes=0");
   CHECK(has(refused({"network.lost"}), "must be KEY=VALUE"));
   CHECK(has(refused({"seed=1", "seed=2"}), "twice"));
 }

@@ -125,6 +125,20 @@ TEST_CASE("Where a match is served is read strictly") {
   for (const char* wrong : {"", ":", "7100", "127.0.0.1", "127.0.0.1:", "127.0.0.1:x", "127.0.0.1:0", "127.0.0.1:65530",
                             "127.0.0.1:71000", "127.0.0.1:7100x"})
     CHECK_THROWS_WITH_AS(ServedPlaces::of(wrong, ""), doctest::Contains("must be HOST:PORT"), kadans::InputError);
+  CHECK_THROWS_WITH_AS(ServedPlaces::of("field:7100", ""), doctest::Contains("--listen: 'field' is no address"),
+                       kadans::InputError);
+  CHECK_THROWS_WITH_AS(ServedPlaces::of("127.0.0.1:7100", "referee.local"),
+                       doctest::Contains("--referee: 'referee.local' is no address"), kadans::InputError);
+}
+
+TEST_CASE("A port that is taken is told with what it was for, and robots are written into the project alone") {
+  const MatchConfig match = read_match(matches + "striker_drill.json");
+  const DatagramPort taken("127.0.7.61", 7138);
+  CHECK_THROWS_WITH_AS(ServedMatch(match, 1, ServedPlaces::of("127.0.7.61:7100", "")),
+                       doctest::Contains("for the referee's packets, one of the 40 ports that serve takes"),
+                       kadans::InputError);
+  CHECK_THROWS_WITH_AS((void)write_robots(match, ServedPlaces::of("127.0.7.61:7100", ""), "/tmp/robots"),
+                       doctest::Contains("is not in the project"), kadans::InputError);
 }
 
 TEST_CASE("Datagrams come as they were sent, from whom, and a place that is none is refused") {

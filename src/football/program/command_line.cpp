@@ -65,11 +65,14 @@ void add_match(CLI::App& app, Options& o) {
       .add_option("--report", o.report,
                   "Write there the result (.json), all that was said (.txt) and where all were (.csv)")
       ->type_name("FOLDER");
-  match.add_option("--record", o.record, "Write a record (.mcap), for kadans view, render and log")->type_name("FILE");
+  CLI::Option* const record =
+      match.add_option("--record", o.record, "Write a record (.mcap), for kadans view, render and log")
+          ->type_name("FILE");
   match
       .add_option("--signals", o.signals,
                   "Record these signals: \"joint.*, base.*@100\" (default: what shows the match)")
-      ->type_name("PATTERNS");
+      ->type_name("PATTERNS")
+      ->needs(record);
   match
       .add_flag("--live{8765}", o.live,
                 "Show the match while it goes on, at the pace of the clock (default port: 8765)")
@@ -109,10 +112,12 @@ void add_serve(CLI::App& app, Options& o) {
   serve.add_option("--listen", o.listen, "Serve the first robot there, the next ones on the ports after it")
       ->required()
       ->type_name("HOST:PORT");
-  serve.add_option("--robots", o.robots, "Write the configurations of the robots and the commands that run them")
+  serve
+      .add_option("--robots", o.robots,
+                  "Write the configurations of the robots there, in the project, and tell the commands that run them")
       ->type_name("FOLDER");
-  serve.add_option("--referee", o.referee, "A game controller there is the referee, not the program's own")
-      ->type_name("HOST");
+  serve.add_option("--referee", o.referee, "A game controller at this address is the referee, not the program's own")
+      ->type_name("ADDRESS");
 }
 
 // What was meant by "mach" or "--sed"; "" when CLI11 says it well.

@@ -28,6 +28,8 @@ std::optional<sockaddr_in> address_of(const std::string& host, std::uint16_t por
 
 }  // namespace
 
+bool is_address(const std::string& host) { return address_of(host, 0).has_value(); }
+
 DatagramPort::DatagramPort(const std::string& host, std::uint16_t port) {
   const std::optional<sockaddr_in> address = address_of(host, port);
   if (!address) refuse_place(host, port, "is no address of IPv4, such as 127.0.0.1 or 0.0.0.0");

@@ -15,6 +15,8 @@ struct Received {
   std::vector<std::byte> bytes;
 };
 
+bool is_address(const std::string& host);  // of IPv4, in numbers: 127.0.0.1
+
 class DatagramPort {
  public:
   // Bound to this address and port; port 0: any free one. Throws InputError that says what the system said.

@@ -32,24 +32,58 @@ std::string json_value(const std::string& text) {
   return error == std::errc{} && end == text.data() + text.size() ? text : json_text(text);
 }
 
-// The text of a match file that is based on this one and says what is set. The keys of a match file are two deep.
-std::string set_text(const std::filesystem::path& file, const std::vector<std::string>& settings) {
-  std::map<std::string, std::string> objects;
-  std::string own;
+// The text of a match file that is based on this one and says what is set. Each line but the first is one setting's.
+// The keys of a match file are two deep.
+struct SetText {
+  std::string text;
+  std::vector<std::string> settings;  // of the lines from the second on
+};
+
+SetText set_text(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  std::map<std::string, std::vector<std::pair<std::string, std::string>>> objects;  // by name, each member's setting
+  SetText set{"{ \"based_on\": " + json_text(std::filesystem::absolute(file).lexically_normal().string()), {}};
+  const auto add = [&set](const std::string& text, const std::string& setting) {
+    set.text += "\n, " + text;
+    set.settings.push_back(setting);
+  };
   for (const std::string& setting : settings) {
     const std::size_t sign = setting.find('='), dot = setting.substr(0, sign).find('.');
     if (sign == std::string::npos || sign == 0)
       throw InputError({.file = "--set", .message = "'" + setting + "' must be KEY=VALUE, such as network.lost=0.3"});
-    const std::string value = json_value(setting.substr(sign + 1));
-    if (dot == std::string::npos) {
-      own += ", " + json_text(setting.substr(0, sign)) + ": " + value;
-      continue;
-    }
-    std::string& object = objects[setting.substr(0, dot)];
-    object += (object.empty() ? "" : ", ") + json_text(setting.substr(dot + 1, sign - dot - 1)) + ": " + value;
+    const std::size_t key = dot == std::string::npos ? 0 : dot + 1;
+    const std::string member = json_text(setting.substr(key, sign - key)) + ": " + json_value(setting.substr(sign + 1));
+    if (dot == std::string::npos)
+      add(member, setting);
+    else
+      objects[setting.substr(0, dot)].emplace_back(member, setting);
   }
-  for (const auto& [name, members] : objects) own += ", " + json_text(name) + ": { " + members + " }";
-  return "{ \"based_on\": " + json_text(std::filesystem::absolute(file).lexically_normal().string()) + own + " }";
+  for (const auto& [name, members] : objects) {
+    for (std::size_t i = 0; i < members.size(); ++i)
+      add((i == 0 ? json_text(name) + ": { " : "") + members[i].first, members[i].second);
+    set.text += " }";
+  }
+  set.text += " }";
+  return set;
+}
+
+// A mistake in what was set, with the setting in place of a line that nobody has written.
+void name_setting(InputProblem& problem, const std::string& file, const SetText& set) {
+  if (problem.file != file || problem.line < 2) return;
+  problem.file = "--set " + set.settings.at(static_cast<std::size_t>(problem.line) - 2);
+  problem.line = problem.column = 0;
+}
+
+void read_set(const std::filesystem::path& file, const std::vector<std::string>& settings, MatchConfig& match) {
+  const SetText set = set_text(file, settings);
+  const std::filesystem::path name = file.parent_path() / "--set";
+  try {
+    read_input_text(set.text, name, [&](InputObject& f) { match_fields(f, match); });
+  } catch (const InputError& error) {
+    std::vector<InputProblem> problems = error.problems();
+    for (InputProblem& problem : problems) name_setting(problem, name.string(), set);
+    throw InputError(std::move(problems));
+  }
+  for (TeamSetup& team : match.teams) name_setting(team.parameters_place, name.string(), set);
 }
 
 void read_rules(InputObject& f, MatchRules& rules) {
@@ -90,14 +124,16 @@ void read_place(InputObject& f, Pose2& place) {
   f.number("rad", place.theta_rad, {-3.2, 3.2, "rad"}, "where it faces, 0: the goal that the team attacks");
 }
 
-void read_begin(InputObject& f, DrillStart& begin) {
+void read_begin(InputObject& f, const Field& field, DrillStart& begin) {
   std::size_t with = 0, side = 0;
   f.choice("with", with, begin_names, "what it begins with: in play, or a free kick of some kind");
   f.choice("for", side, side_names, "who kicks");
   begin.restart = begin_restarts.at(with);
   begin.side = both_sides.at(side);
-  f.number("ball_x_m", begin.ball.x_m, {-15, 15, "m"}, "where the ball lies, in the frame of the team that kicks");
-  f.number("ball_y_m", begin.ball.y_m, {-10, 10, "m"}, "to its left");
+  const double ahead_m = field.length_m / 2, left_m = field.width_m / 2;
+  f.number("ball_x_m", begin.ball.x_m, {-ahead_m, ahead_m, "m"},
+           "where the ball lies, in the frame of the team that kicks");
+  f.number("ball_y_m", begin.ball.y_m, {-left_m, left_m, "m"}, "to its left");
   f.number("ball_scatter_m", begin.ball_scatter_m, {0, 10, "m"}, "standard deviation of that");
   f.number("robots_scatter_m", begin.robots_scatter_m, {0, 5, "m"},
            "standard deviation of where robots stand from where they think they do");
@@ -116,7 +152,7 @@ void read_team(InputObject& f, TeamSetup& team) {
   if (given) team.parameters_place = f.place("parameters");
   if (team.parameters.find_first_of("{}\"") != std::string::npos)
     f.refuse("parameters", "parameters are NAME=NUMBER, with commas between them");
-  f.object("places", "where robots stand when a drill begins", [&](InputObject& e) {
+  f.object("places", "where robots stand when a drill begins; who does not play is left out", [&](InputObject& e) {
     for (std::size_t i = 0; i < team_players_max; ++i) {
       Pose2 place;
       if (e.object(std::to_string(i + 1), "of the robot with this number",
@@ -357,8 +393,9 @@ void match_fields(InputObject& f, MatchConfig& match) {
   f.choice("field", size, division_names, "the field's size: S, M or L");
   match.division = static_cast<Division>(division);
   match.field_size = static_cast<FieldSize>(size);
+  Field field = league_field(Division::large, FieldSize::large);  // the schema's
   try {
-    (void)match.field();
+    if (f.reading()) field = match.field();
   } catch (const std::invalid_argument& error) {
     f.refuse("field", error.what());
   }
@@ -377,7 +414,8 @@ void match_fields(InputObject& f, MatchConfig& match) {
     e.number("playing_s", match.playing_s, {1, 1e5, "s"}, "after so long in playing");
   });
   DrillStart begin = match.begins.value_or(DrillStart{});
-  if (f.object("begins", "a drill: it begins in the middle of a match", [&](InputObject& e) { read_begin(e, begin); }))
+  if (f.object("begins", "a drill: it begins in the middle of a match",
+               [&](InputObject& e) { read_begin(e, field, begin); }))
     match.begins = begin;
   f.number("robots_differ", match.robots_differ, {0, 1},
            "0: all robots are as configured; 1: friction, masses, torque, gains and noise differ as in the sweeps");
@@ -394,11 +432,10 @@ MatchConfig read_match(const std::filesystem::path& file, const std::vector<std:
   MatchConfig match;
   match.file = file.string();
   match.teams[1].players = 0;
-  const auto read = [&](InputObject& f) { match_fields(f, match); };
   if (settings.empty())
-    read_input_object(file, read);
+    read_input_object(file, [&](InputObject& f) { match_fields(f, match); });
   else
-    read_input_text(set_text(file, settings), file.parent_path() / "--set", read);
+    read_set(file, settings, match);
   for (const Side side : both_sides) {
     TeamSetup& team = match.teams.at(index_of(side));
     if (team.name.empty()) team.name = side == Side::home ? "home" : "away";

@@ -102,7 +102,10 @@ std::string json_of(const MatchSummary& s) {
                                                                     {"off_rad", &s.off_rad},
                                                                     {"messages_of_a_team", &s.messages}};
   for (const auto& [name, value] : values) text += ",\n    \"" + std::string(name) + "\": " + json_of(*value);
-  return text + "}";
+  if (s.errors > 0) text += ",\n    \"first_error\": " + json_text(s.first_error);
+  std::string missing;
+  for (const std::string& one : s.missing) missing += (missing.empty() ? "" : ", ") + json_text(one);
+  return text + ",\n    \"without_result\": [" + missing + "]}";
 }
 
 }  // namespace

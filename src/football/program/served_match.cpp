@@ -47,6 +47,16 @@ std::uint16_t port_of(const ServedPlaces& places, std::uint16_t from, std::size_
   return static_cast<std::uint16_t>(places.port + from + number);
 }
 
+DatagramPort opened(const std::string& host, std::uint16_t port, const char* what) {
+  try {
+    return DatagramPort(host, port);
+  } catch (const InputError& error) {
+    throw InputError({.file = error.problems().front().file,
+                      .message = error.problems().front().message + ": for " + what + ", one of the " +
+                                 std::to_string(ports_taken) + " ports that serve takes"});
+  }
+}
+
 }  // namespace
 
 ServedPlaces ServedPlaces::of(const std::string& listen, const std::string& referee) {
@@ -60,6 +70,10 @@ ServedPlaces ServedPlaces::of(const std::string& listen, const std::string& refe
                       .message = "'" + listen + "' must be HOST:PORT, such as 127.0.0.1:7100: " +
                                  std::to_string(ports_taken) + " ports from there on are taken"});
   places.port = port;
+  for (const auto& [option, host] : {std::pair("--listen", places.host), std::pair("--referee", referee)}) {
+    if (!host.empty() && !is_address(host))
+      throw InputError({.file = option, .message = "'" + host + "' is no address of IPv4, such as 127.0.0.1"});
+  }
   return places;
 }
 
@@ -69,14 +83,15 @@ ServedMatch::ServedMatch(const MatchConfig& match, std::uint64_t seed, const Ser
       robots_(match.robots()),
       scenario_(scenario_of(match, seed), match.file, seed, plant_places(match, places)),
       out_("0.0.0.0", 0),
-      control_(places.referee.empty() ? places.host : "0.0.0.0",
-               places.referee.empty() ? port_of(places, control_at, 0) : control_port),
+      control_(places.referee.empty() ? opened(places.host, port_of(places, control_at, 0), "the referee's packets")
+                                      : DatagramPort("0.0.0.0", control_port)),
       messages_(robots_.size()),
       observed_(robots_.size()),
       odometry_(robots_.size()),
       hosts_(robots_.size()) {
   for (std::size_t side = 0; side < heard_.size(); ++side)
-    heard_.at(side) = std::make_unique<DatagramPort>(places.host, port_of(places, counted_from, side));
+    heard_.at(side).reset(
+        new DatagramPort(opened(places.host, port_of(places, counted_from, side), "the messages of a team")));
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     RandomStream random(seed, "football.odometry of " + robot_name(robots_[i]));
     odometry_[i].way_scale += odometry_sd * random.normal();
@@ -160,6 +175,12 @@ void ServedMatch::answer_referee(const RobotReturn& told) {
 }
 
 std::string write_robots(const MatchConfig& match, const ServedPlaces& places, const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path here = fs::current_path(), inside = fs::weakly_canonical(folder).lexically_relative(here);
+  if (inside.empty() || inside.begin()->string() == "..")
+    throw InputError({.file = "--robots",
+                      .message = "'" + folder + "' is not in the project " + here.string() +
+                                 ": the robots' configurations are based on others of it"});
   const std::vector<RobotId> robots = match.robots();
   const auto place = [&](std::uint16_t port) { return places.host + ":" + std::to_string(port); };
   std::string commands;
