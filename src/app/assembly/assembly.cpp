@@ -81,6 +81,9 @@ class NamedLog final : public BehaviorLog, private LineSink {
   BehaviorLog& log_;
 };
 
+// "left.joint.*.torque_scale" is for the further robot "left".
+bool is_of(const NumberEntry& entry, const ScenarioConfig& robot) { return entry.key.starts_with(robot.name + "."); }
+
 // Checks the behaviors' names in events; they are known only after loading.
 void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
   const std::vector<std::string> names = host.names();
@@ -106,6 +109,7 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
   for (const ScenarioEvent& event : scenario.events) {
     settings.events.push_back({std::llround(event.at_s * 1e9), event.order});
   }
+  settings.ordered_later = robot.supervisor.lost_list;
   settings.inputs = overridden(robot.input_events, scenario.joystick.buttons);
   settings.safe = safe_posture_of(robot.safe);
   if (scenario.on_wall_clock) settings.limits = limits_on_wall_clock(robot.engine);
@@ -156,6 +160,11 @@ void Assembly::begin_others() {
     robot.world.payload_links.clear();
     robot.world.carried.clear();
     robot.plugins = scenario_.plugins;
+    for (const NumberEntry& entry : scenario_.set_last) {
+      if (!is_of(entry, robot)) continue;
+      robot.set_last.push_back(entry);
+      robot.set_last.back().key.erase(0, robot.name.size() + 1);
+    }
     const std::uint64_t seed = RandomStream(seed_, "robot " + robot.name).next();
     others_.emplace_back(new Assembly(Begun{}, robot, seed, log_, nullptr, Outside(), others_.size() + 1));
     for (const QuantityValue& theirs : others_.back()->quantities_)
@@ -205,7 +214,7 @@ void Assembly::complete() {
     host_->declare_signals(catalog.signals);
     states_.assign(host_->signal_states().begin(), host_->signal_states().end());
   }
-  if (supervising_.given) make_supervisor(told);
+  if (supervising().given) make_supervisor(told);
   upkeep_count_ = catalog.signals.size() - upkeep_first_;
   foreign_end_ = catalog.signals.size();
   for (std::size_t i = 0; i < upkeep_count_; ++i) unhashed_.push_back(static_cast<SignalId>(upkeep_first_ + i));
@@ -218,7 +227,7 @@ void Assembly::complete() {
   if (host_) faulty_host_ = make_faulty_host(scenario_, *host_);
   if (supervisor_ && !scenario_.repeats)  // what is repeated was told what decided
     supervised_ = std::make_unique<SupervisedHost>(
-        supervising_, played(), SupervisedHost::Players{host_.get(), outside_.behaviors}, *supervisor_link_, told);
+        supervising(), played(), SupervisedHost::Players{host_.get(), outside_.behaviors}, *supervisor_link_, told);
   disturbances_ = std::make_unique<Disturbances>(scenario_, robot_.config.model);
   make_joystick_player();
   make_sight();
@@ -227,10 +236,11 @@ void Assembly::complete() {
 }
 
 void Assembly::take_supervisor() {
-  supervising_ = scenario_.supervisor.given ? scenario_.supervisor : robot_.config.supervisor;
+  SupervisorConfig& config = robot_.config.supervisor;
+  if (scenario_.supervisor.given) config = scenario_.supervisor;
   Catalog& catalog = control_system_->catalog;
-  catalog.seen = supervising_.seen;
-  if (scenario_.undecided) supervising_.decisions.clear();
+  catalog.seen = config.seen;
+  if (scenario_.undecided) config.decisions.clear();
   const auto ball = std::ranges::find(catalog.seen, "ball", &SeenInfo::name);
   if (variant_.sees && ball != catalog.seen.end())
     refuse(scenario_.file, scenario_.sight.ball.place,
@@ -241,10 +251,10 @@ void Assembly::take_supervisor() {
 void Assembly::open_sockets() {
   if (link_ == nullptr || scenario_.repeats) return;
   try {
-    const MessagesConfig& messages = supervising_.messages;
+    const MessagesConfig& messages = supervising().messages;
     if (!messages.name.empty()) messages_ = std::make_unique<Datagrams>(messages.listen, messages.to);
-    if (!supervising_.perception.empty())
-      perceived_ = std::make_unique<Datagrams>(supervising_.perception, std::vector<std::string>());
+    if (!supervising().perception.empty())
+      perceived_ = std::make_unique<Datagrams>(supervising().perception, std::vector<std::string>());
   } catch (const InputError& error) {
     throw InputError({.file = robot_.config.file, .message = std::string("supervisor: ") + error.what()});
   }
@@ -254,12 +264,12 @@ void Assembly::open_sockets() {
 // In lockstep it shares the behaviors' thread and log; a log is of one thread.
 void Assembly::make_supervisor(BehaviorLog& told) {
   open_sockets();
-  const bool named = !supervising_.messages.name.empty();
+  const bool named = !supervising().messages.name.empty();
   // A number that another start has not: of a run the time, of a simulation always the same.
   const auto boot = link_ == nullptr ? 1U : static_cast<std::uint32_t>(WallClock().now_ns() / 1'000'000);
   supervisor_link_ = std::make_unique<SupervisorLink>();
   supervisor_log_.add(supervisor_link_->lines);
-  supervisor_ = std::make_unique<Supervisor>(Supervisor::Settings{.config = supervising_,
+  supervisor_ = std::make_unique<Supervisor>(Supervisor::Settings{.config = supervising(),
                                                                   .root = project_root(scenario_.file),
                                                                   .folders = folders_of(scenario_),
                                                                   .seed = seed_,
@@ -306,6 +316,8 @@ void Assembly::show_others() {
 void Assembly::vary() {
   const RobotConfig& config = robot_.config;
   variant_ = plant_variant(scenario_, config);
+  if (variant_.plant.fixed_base && !scenario_.carried.empty())
+    refuse(scenario_.file, scenario_.carried.front().place, "carried: the robot is bolted down (plant.fixed_base)");
   if (!scenario_.start_pose.name.empty()) start_in_pose();
   if (!scenario_.placed.position_rad.empty()) {
     variant_.plant.position_rad = scenario_.placed.position_rad;
@@ -315,7 +327,12 @@ void Assembly::vary() {
   Quantities quantities(variant_, control_system_->catalog, number_ > 0);
   for (const NumberEntry& entry : scenario_.set) quantities.set(entry, quantities_, problems);
   for (const Variation& variation : scenario_.randomise) quantities.draw(variation, seed_, quantities_, problems);
-  for (const NumberEntry& entry : scenario_.set_last) quantities.set(entry, quantities_, problems);
+  const auto is_theirs = [this](const NumberEntry& entry) {
+    return std::ranges::any_of(scenario_.robots, [&](const ScenarioConfig& robot) { return is_of(entry, robot); });
+  };
+  for (const NumberEntry& entry : scenario_.set_last) {
+    if (!is_theirs(entry)) quantities.set(entry, quantities_, problems);
+  }
   problems.throw_if_any();
   for (const auto& object : control_system_->objects) object->parameters_changed();
 }

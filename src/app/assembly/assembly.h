@@ -93,7 +93,8 @@ class Assembly {
   }
   // In which the decisions run; nullptr: they run here, or there are none.
   const ProcessHost* decision_process() const noexcept { return supervisor_ ? supervisor_->process() : nullptr; }
-  const SupervisorConfig& supervising() const noexcept { return supervising_; }  // the scenario's or the robot's
+  // The scenario's or the robot's.
+  const SupervisorConfig& supervising() const noexcept { return robot_.config.supervisor; }
   void stop_deciding() noexcept {
     if (supervised_) supervised_->leave();
   }
@@ -147,7 +148,6 @@ class Assembly {
   std::size_t foreign_first_ = 0, foreign_end_ = 0;
   std::size_t upkeep_first_ = 0, upkeep_count_ = 0;  // the signals about the interpreter's own needs
   std::vector<SignalId> unhashed_;
-  SupervisorConfig supervising_;               // the scenario's or the robot's
   std::unique_ptr<SimulatedNetwork> network_;  // of all robots, the first robot's; in lockstep
   std::unique_ptr<MessageChannel> messages_, perceived_;
   MessageChannel* message_channel_ = nullptr;

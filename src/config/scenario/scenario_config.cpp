@@ -255,6 +255,7 @@ void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
            e.number("at_s", carry.at_s, {0, scenario_duration_max_s, "s"}, "time", Need::required);
            e.numbers("to_m", carry.to_m, {-1000, 1000, "m"}, "x and y of the base, in the world", Need::required);
            e.number("heading_rad", carry.heading_rad, {-7, 7, "rad"}, "its heading then; 0: along x");
+           carry.place = e.place("to_m");
            if (e.reading()) scenario.carried.push_back(carry);
          });
   f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {

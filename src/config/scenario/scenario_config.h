@@ -93,6 +93,7 @@ struct ScenarioPush {
 struct ScenarioCarry {
   double at_s = 0, heading_rad = 0;
   std::array<double, 2> to_m{};  // of the base
+  TextPlace place{};             // of to_m
 };
 
 // The fields of one push, with "impulse_Ns" or "force_N" (its peak).

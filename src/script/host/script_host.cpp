@@ -58,6 +58,7 @@ ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, Behavio
   for (const Event& event : settings.events) {
     events_.push_back({event.at_ns, event.order, load(event.order.list, true, problems)});
   }
+  (void)load(settings.ordered_later, true, problems);
   if (!problems.empty()) throw InputError(problems);
   std::ranges::stable_sort(events_, {}, &Due::at_ns);
   list_.append(first);

@@ -46,6 +46,8 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
     std::uint64_t seed = 1;
     ScriptLimits limits{};
     std::vector<Event> events{};  // in any order
+    std::vector<PlayItem>
+        ordered_later{};  // lists that orders will bring: loaded once, to find what is wrong with them
     SafePosture::Settings safe{};
     std::vector<InputEvent> inputs{};
     // Bytes from keep() of another process's host: the host plays these instead of `play` and continues where that one

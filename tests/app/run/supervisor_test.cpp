@@ -64,6 +64,16 @@ TEST_CASE("A simulation with a supervisor is the same bit for bit when it is run
   }
 }
 
+TEST_CASE("A list that takes over is checked before anything plays") {
+  const fs::path project = supervised_project("lost_list_checked");
+  write(project / "config/tulip/decides.json", R"({ "based_on": "config/tulip/robot.json",
+  "supervisor": { "decisions": "decide", "when_lost": "squat{depth_m=9}" } })");
+  ScenarioConfig scenario = read_scenario_config((project / "config/scenarios/squat.json").string());
+  scenario.robot = (project / "config/tulip/decides.json").string();
+  RunLog log;
+  CHECK_THROWS_WITH_AS(Assembly(scenario, 3, log), doctest::Contains("decides.json:2:58: "), InputError);
+}
+
 TEST_CASE("What perception says is put where the robot was: the ball stays within its noise while TULip walks") {
   ScenarioConfig scenario = read_scenario_config(project_scenarios + "fetch.json");
   ScenarioPerception& seen = scenario.perception.at(0);

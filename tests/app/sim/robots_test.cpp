@@ -57,6 +57,17 @@ TEST_CASE("The ground is the first robot's: a further one has no quantity of it"
   CHECK_THROWS_WITH_AS(Played{scenario}, doctest::Contains("'ground.friction'"), InputError);
 }
 
+TEST_CASE("A value that is set last goes to the robot whose name it begins with") {
+  ScenarioConfig scenario = with_left(20);
+  scenario.set_last = {{.key = "left.start.x_m", .value = 0.5}, {.key = "start.x_m", .value = 0.25}};
+  const Played played(scenario);
+  CHECK(played.robot.others().at(0)->quantities().back().name == "start.x_m");
+  CHECK(played.robot.others().at(0)->quantities().back().value == 0.5);
+  CHECK(std::ranges::count(played.robot.quantities(), 0.25, &QuantityValue::value) == 1);
+  scenario.set_last = {{.key = "left.start.z", .value = 0.5}};
+  CHECK_THROWS_WITH_AS(Played{scenario}, doctest::Contains("'start.z'"), InputError);
+}
+
 TEST_CASE("A robot's signals are the same, bit for bit, when another one plays far away in its world") {
   const ScenarioConfig one = squat(), two = with_left(20);
   Played alone(one), together(two);
