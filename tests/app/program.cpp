@@ -5,10 +5,13 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <stdexcept>
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -27,6 +30,20 @@ std::string command_in(const fs::path& where, const std::string& how) {
 int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
 }  // namespace
+
+// The address of a socket can be had once; the system takes it back with the process.
+int own_dds_domain() {
+  constexpr int domains = 230;
+  const int claim = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  for (int i = 0; i < domains; ++i) {
+    const int domain = 1 + (getpid() + i) % domains;
+    sockaddr_un name{};
+    name.sun_family = AF_UNIX;
+    std::snprintf(name.sun_path + 1, sizeof name.sun_path - 1, "kadans-tests-dds-%d", domain);
+    if (bind(claim, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0) return domain;
+  }
+  throw std::runtime_error("no DDS domain is free");
+}
 
 Outcome run(const std::string& arguments, const fs::path& where) {
   const fs::path out = where / "stdout.txt", err = where / "stderr.txt";

@@ -48,6 +48,9 @@ class Running {
   bool ended_ = false;
 };
 
+// Of DDS: one that no other process of these tests has while this one runs.
+int own_dds_domain();
+
 // A fresh folder below the build folder, emptied first, this process's own; gone when the process ends.
 std::filesystem::path fresh_folder(const std::string& name);
 // The same with copies of the project's config, models and behaviors in it.

@@ -26,10 +26,9 @@ finish() {
 trap finish EXIT
 
 : >"$work/serve.txt"
-port=$((20000 + $$ % 10000))
 arguments=()
 for setting in "${settings[@]}"; do arguments+=(--set "$setting"); done
-"$build/kadans-football" serve "$match" --listen "127.0.0.1:$port" --robots "$work" --json "${arguments[@]}" "${elsewhere[@]}" >"$work/result.json" 2>"$work/serve.txt" &
+"$build/kadans-football" serve "$match" --listen 127.0.7.64:27100 --robots "$work" --json "${arguments[@]}" "${elsewhere[@]}" >"$work/result.json" 2>"$work/serve.txt" &
 serve=$!
 pids+=("$serve")
 until grep -q "^serves" "$work/serve.txt"; do

@@ -114,13 +114,13 @@ EOF
   twice=$("$kadans" check --plugins "$share/config/jiwiy/twice.json" 2>&1) && { echo "two objects share the state of one code"; exit 1; }
   grep -q 'two objects of the type would disturb each other' <<<"$twice" || { echo "$twice"; exit 1; }
   # The written plant, against its own emulator.
-  port=$((20000 + $$ % 20000))
+  place=127.0.7.63:27200
   trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
   sed -i 's|"[^"]*can_drives.so"|"plugins/can_drives.so"|' "$share/config/jiwiy/can_drives.json"
   cp written/build/can_drives/can_drives.so "$share/plugins"
   echo "{ \"based_on\": \"config/jiwiy/can_drives.json\", $patient }" >"$share/config/jiwiy/patient.json"
-  "$kadans" plant "$share/config/jiwiy/patient.json" --as can_drives --listen 127.0.0.1:$port --soft --once &
-  "$kadans" run "$share/config/jiwiy/patient.json" --plant can_drives --peer 127.0.0.1:$port --soft --no-ctl --json --duration 1 | tee run.json
+  "$kadans" plant "$share/config/jiwiy/patient.json" --as can_drives --listen $place --soft --once &
+  "$kadans" run "$share/config/jiwiy/patient.json" --plant can_drives --peer $place --soft --no-ctl --json --duration 1 | tee run.json
   wait $!
   grep -Eq '"received": ?[0-9]{2,}' run.json || { echo "the written plant was not driven"; exit 1; }
   "$work/moved/bin/kadans" --version

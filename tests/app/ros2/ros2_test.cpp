@@ -9,7 +9,6 @@
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "app/program.h"
 #include "kadans/model/kinematics.h"
@@ -26,7 +25,7 @@ namespace {
 
 const std::string program_path = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
 const std::string peer_path = (fs::path(KADANS_BINARY_DIR) / "tests/ros2_peer").string();
-const std::string domain = std::to_string(1 + getpid() % 231);
+const std::string domain = std::to_string(own_dds_domain());
 
 // Runs `commands` while `started` goes on in the background; `peer` and `ctl` stand for the programs.
 int beside(const fs::path& project, const std::string& started, const std::string& commands) {

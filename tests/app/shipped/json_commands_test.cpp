@@ -9,7 +9,6 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include "app/command_line.h"
 #include "app/program.h"
@@ -265,14 +264,14 @@ TEST_CASE("--json of every verb of ctl is one object a line, whether it is done 
 
 TEST_CASE("--json of a plant that is served, and of the run that drives it, is one object each") {
   const auto folder = project("json_plant");
-  const std::string port = std::to_string(20000 + getpid() % 20000);
+  const std::string place = "127.0.7.62:27300";
   const std::string program = "'" KADANS_BINARY_DIR "/kadans' ";
-  write(folder / "both.sh", "export XDG_RUNTIME_DIR=\"$PWD/none\"\n" + program +
-                                "plant config/tulip/robot.json --plant ideal --soft --once --json --listen 127.0.0.1:" +
-                                port + " >plant.out 2>plant.err &\n" + program +
-                                "run config/tulip/robot.json --plant udp --soft --no-ctl --duration 0.2 --json --peer "
-                                "127.0.0.1:" +
-                                port + " >run.out 2>run.err || kill %1\nwait\n");
+  write(folder / "both.sh",
+        "export XDG_RUNTIME_DIR=\"$PWD/none\"\n" + program +
+            "plant config/tulip/robot.json --plant ideal --soft --once --json --listen " + place +
+            " >plant.out 2>plant.err &\n" + program +
+            "run config/tulip/robot.json --plant udp --soft --no-ctl --duration 0.2 --json --peer " + place +
+            " >run.out 2>run.err || kill %1\nwait\n");
   REQUIRE(std::system(("cd '" + folder.string() + "' && bash both.sh").c_str()) == 0);
   const std::string out = read(folder / "plant.out"), drove = read(folder / "run.out");
   CHECK_MESSAGE(nlohmann::json::accept(out), out << read(folder / "plant.err"));

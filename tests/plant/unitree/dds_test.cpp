@@ -5,7 +5,6 @@
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "app/program.h"
 
@@ -17,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string domain = std::to_string(1 + getpid() % 200);
+const std::string domain = std::to_string(own_dds_domain());
 const std::string place = "lo:" + domain;
 
 // The project of the robot in the folder dog.
