@@ -98,7 +98,7 @@ TEST_CASE("A robot that is bolted down is not carried: that is known before it b
   CHECK_THROWS_WITH_AS(Simulation(R"({ "name": "x", "robot": "config/jiwiy/robot.json", "duration_s": 1,
     "carried": [{ "at_s": 0.5, "to_m": [1, 0] }] })",
                                   scenario_file, 1),
-                       doctest::Contains("side_by_side.json:2:42: carried: the robot is bolted down"), InputError);
+                       doctest::Contains("side_by_side.json:2:40: carried: the robot is bolted down"), InputError);
 }
 
 }  // namespace simulation_test
