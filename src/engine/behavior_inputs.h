@@ -17,6 +17,7 @@
 
 #include "kadans/signal/command.h"
 #include "kadans/signal/status.h"
+#include "signal/byte_order.h"
 
 namespace kadans {
 
@@ -24,9 +25,10 @@ class BehaviorInputs {
  public:
   // Kinds of what people ask of the host, which knows how to read the bytes. Decisions are asked questions, too, and
   // take more: what is seen of the world and what plays, in each tick; the files again; a message of another robot; and
-  // what they decided in the tick, by which a repetition is compared.
-  enum class Asked : std::uint8_t { order, question, note, seen, plays, reload, heard, decided };
-  static constexpr Asked last_asked = Asked::decided;
+  // what they decided in the tick, by which a repetition is compared. `taken_over`: the process in which they ran is
+  // gone, and another one goes on with this tick, from what the last one left.
+  enum class Asked : std::uint8_t { order, question, note, seen, plays, reload, heard, decided, taken_over };
+  static constexpr Asked last_asked = Asked::taken_over;
 
   virtual ~BehaviorInputs() = default;
   BehaviorInputs() = default;
@@ -46,6 +48,11 @@ class BehaviorInputs {
   // A script's file was read.
   virtual void file_read(const std::string& /*path*/, std::string_view /*text*/) {}
   virtual void asked(Asked /*kind*/, std::span<const std::byte> /*bytes*/) { looks_ = 0; }
+
+  // From a process of its own to the one that writes the record: what was told since, as bytes that are passed on
+  // there.
+  virtual void take(ByteWriter& /*told*/) {}
+  virtual void pass_on(std::span<const std::byte> /*told*/) {}
 
  protected:
   std::uint32_t looks_ = 0;  // at the clock, since a tick began or ended or somebody asked

@@ -93,6 +93,7 @@ struct Harm {
     link.answer.decided_size = static_cast<std::uint32_t>(random.next() % 4 == 0 ? random.next() : random.next() % 64);
     for (std::size_t i = 0; i < 64; ++i)
       link.answer.decided[i] = std::byte(random.next() % 3 == 0 ? random.next() & 0xff : random.next() % 2);
+    link.answer.told_size = static_cast<std::uint32_t>(random.next() % 8 == 0 ? random.next() : random.next() % 64);
     for (auto& numbers : link.answer.status) numbers.fill(static_cast<std::uint32_t>(random.next()));
     answer();
   }

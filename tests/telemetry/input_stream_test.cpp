@@ -324,4 +324,59 @@ TEST_CASE("What the behavior thread took is read in its order, damage and a miss
   CHECK_FALSE(read_all(message.bytes().subspan(first), rest));
 }
 
+TEST_CASE("What another process took is passed on, also from the next one, and what is missing or rubbish is noticed") {
+  using Kind = BehaviorInput::Kind;
+  using Asked = BehaviorInputs::Asked;
+  const auto told = [](RecordedInputs& by, double parameter) {
+    by.file_read("/project/behaviors/a.lua", "return 1");
+    (void)by.parameter(parameter);
+    by.asked(Asked::decided, {});
+    ByteWriter bytes;
+    by.take(bytes);
+    return std::vector<std::byte>(bytes.bytes().begin(), bytes.bytes().end());
+  };
+  RecordedInputs one("/project"), next("/project"), record("/project");
+  const std::vector<std::byte> first = told(one, 0.5), second = told(one, 0.6), third = told(one, 0.7),
+                               anew = told(next, 0.8);
+  const auto read = [&record](std::vector<BehaviorInput>& all) {
+    ByteWriter message;
+    record.take(message);
+    return read_all(message.bytes(), all);
+  };
+  record.tick_begins({}, 0);
+  for (const auto* bytes : {&first, &second, &anew}) record.pass_on(*bytes);
+  record.tick_ends();
+  std::vector<BehaviorInput> all;
+  REQUIRE(read(all));
+  REQUIRE(all.size() == 9);  // the file once
+  CHECK(all[1].path == "behaviors/a.lua");
+  CHECK(all[2].value == 0.5);
+  CHECK(all[3].how == Asked::decided);
+  CHECK(all[4].value == 0.6);
+  CHECK(all[6].value == 0.8);
+  record.pass_on(third);  // of a process that is gone: its numbers do not go on from the last one's
+  record.tick_begins({}, 0);
+  ByteWriter gap;
+  record.take(gap);
+  CHECK(number_of_behavior_input(ByteReader(gap.bytes())) == 10);
+
+  RandomStream random(13, "rubbish");
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<std::byte> damaged = first;
+    damaged[random.next() % damaged.size()] = static_cast<std::byte>(random.next());
+    if (i % 2 == 0) damaged.resize(random.next() % damaged.size());
+    RecordedInputs fresh("/project");
+    fresh.pass_on(damaged);
+    ByteWriter message;
+    fresh.take(message);
+    std::vector<BehaviorInput> some;
+    (void)read_all(message.bytes(), some);
+    for (const BehaviorInput& input : some) {
+      const bool may = input.kind == Kind::file || input.kind == Kind::private_file || input.kind == Kind::parameter ||
+                       input.kind == Kind::time_over || input.kind == Kind::asked;
+      CHECK(may);
+    }
+  }
+}
+
 }  // namespace input_stream_test

@@ -1,6 +1,7 @@
 #include "behavior_process.h"
 
 #include <cmath>
+#include <optional>
 
 #include "app/assembly/assembly.h"
 #include "app/terminal.h"
@@ -11,6 +12,7 @@
 #include "remote/instance/run_description.h"
 #include "run_threads.h"
 #include "script/process/behavior_server.h"
+#include "telemetry/record/recorded_inputs.h"
 
 namespace kadans {
 namespace {
@@ -70,6 +72,12 @@ ScenarioConfig live_scenario(const RunOptions& options) {
   return scenario;
 }
 
+std::vector<std::string> private_files(const RobotConfig& robot) {
+  std::vector<std::string> patterns;
+  for (const PlacedName& pattern : robot.record.private_files) patterns.push_back(pattern.name);
+  return patterns;
+}
+
 std::unique_ptr<ProcessHost> start_behavior_process(const RunOptions& options, BehaviorLog& log) {
   ProcessHost::Settings settings = process_settings(options, "behavior-process");
   if (!options.play.empty()) settings.arguments.insert(settings.arguments.end(), {"--play", options.play});
@@ -82,6 +90,7 @@ std::unique_ptr<ProcessHost> start_decision_process(const RunOptions& options, B
   ProcessHost::Settings settings = process_settings(options, "decision-process");
   settings.answer_ns = period_ns / 2;
   settings.setup.decides = 1;
+  settings.setup.tells = options.record.empty() ? 0 : 1;
   settings.setup.priority = 0;
   settings.setup.locks_memory = 0;
   return std::make_unique<ProcessHost>(std::move(settings), log);
@@ -110,10 +119,15 @@ int run_behavior_process(const RunOptions& options) {
   SpokenLines lines(link);
   BehaviorLog log{&lines};
   if (link.setup.decides != 0) {
-    Decisions decisions(decision_settings(robot.config.supervisor, project_root(scenario.file), folders_of(scenario),
-                                          scenario.seed, scenario.on_wall_clock),
-                        system->catalog, log);
-    ServedDecisions served(decisions, log, bytes);
+    Behavior::Settings settings = decision_settings(robot.config.supervisor, project_root(scenario.file),
+                                                    folders_of(scenario), scenario.seed, scenario.on_wall_clock);
+    BehaviorInputs* inputs = nullptr;
+    std::optional<RecordedInputs> taken;
+    if (link.setup.tells != 0)
+      inputs = &taken.emplace(project_root(scenario.file).string(), private_files(robot.config));
+    settings.limits.inputs = &inputs;
+    Decisions decisions(settings, system->catalog, log);
+    ServedDecisions served(decisions, log, bytes, inputs);
     settle(link.setup);
     return BehaviorServer(link, bell, served, log, lines, system->catalog, sets).serve();
   }

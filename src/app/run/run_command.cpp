@@ -341,12 +341,10 @@ class WallClockRun {
   }
 
   void take_inputs(const RunInputs& inputs) {
-    std::vector<std::string> private_files;
-    for (const PlacedName& pattern : assembly_.robot().record.private_files) private_files.push_back(pattern.name);
     const std::string root = project_root(scenario_.file).string();
-    taken_.emplace(root, private_files);
-    if (assembly_.supervisor() != nullptr && assembly_.supervisor()->decisions() != nullptr)
-      taken_to_decide_.emplace(root, std::move(private_files));
+    taken_.emplace(root, private_files(assembly_.robot()));
+    if (assembly_.supervisor() != nullptr && assembly_.supervisor()->decider() != nullptr)
+      taken_to_decide_.emplace(root, private_files(assembly_.robot()));
     for (const InputFile& file : inputs.files) {
       if (!file.text) continue;
       taken_->knows(file.path, *file.text);

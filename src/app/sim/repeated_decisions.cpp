@@ -1,6 +1,7 @@
 #include "repeated_decisions.h"
 
 #include <algorithm>
+#include <exception>
 #include <memory>
 #include <utility>
 
@@ -90,6 +91,9 @@ void RepeatedDecisions::take(const BehaviorInput& input) {
       decisions_.ask(std::move(question), snapshot_);
       break;
     }
+    case Asked::taken_over:
+      take_over();
+      break;
     case Asked::decided:
       (void)decisions_.tick(snapshot_, report_);
       ++ticks_;
@@ -99,6 +103,18 @@ void RepeatedDecisions::take(const BehaviorInput& input) {
     case Asked::order:
     case Asked::note:
       break;  // of behaviors
+  }
+}
+
+// The process that was to go on did so from what the last one left, which is what is here; before the first tick, from
+// nothing.
+void RepeatedDecisions::take_over() {
+  if (ticks_ == 0) return;
+  try {
+    const std::string why = decisions_.take_over(snapshot_);
+    if (!why.empty()) part("they cannot go on as another process: " + why);
+  } catch (const std::exception& error) {
+    part(std::string("they cannot go on as another process: ") + error.what());
   }
 }
 

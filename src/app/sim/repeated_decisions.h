@@ -36,6 +36,7 @@ class RepeatedDecisions final : private BehaviorInputs {
  private:
   void repeat_tick(const Snapshot& newest);
   void take(const BehaviorInput& input);
+  void take_over();
   void compare(std::span<const std::byte> recorded);
   void part(const std::string& what);
 

@@ -40,7 +40,7 @@ std::uint64_t hash_of_kept(const std::byte* bytes, std::size_t size) noexcept;
 struct BehaviorLink {
   static constexpr std::size_t behaviors_max = 32, name_bytes = 64, order_bytes = 8192, question_bytes = 4096;
   static constexpr std::size_t reply_bytes = std::size_t{512} << 10U;  // only pages that are written take memory
-  static constexpr std::size_t decided_bytes = std::size_t{64} << 10U;
+  static constexpr std::size_t decided_bytes = std::size_t{64} << 10U, told_bytes = std::size_t{512} << 10U;
   using Name = std::array<char, name_bytes>;
   using Numbers = std::array<std::uint32_t, 5>;
   using PlayNumbers = std::array<std::uint32_t, 7>;
@@ -55,6 +55,7 @@ struct BehaviorLink {
     std::uint32_t locks_memory = 0;
     std::uint32_t on_wall_clock = 0;            // ScenarioConfig::on_wall_clock
     std::uint32_t decides = 0;                  // it runs the decisions, and plays no behaviors
+    std::uint32_t tells = 0;                    // of decisions: it tells what they take, for a record
     alignas(8) std::uint64_t memory_bytes = 0;  // memory limit beyond what it has when it begins to play; 0: no limit
     KeptState kept;                             // state from the process before; size 0: none
   };
@@ -96,6 +97,8 @@ struct BehaviorLink {
     PlayReport plays;                // of behaviors: what plays now
     std::uint32_t decided_size = 0;  // of decisions: what they ask for
     std::array<std::byte, decided_bytes> decided{};
+    std::uint32_t told_size = 0;  // and what they took: BehaviorInputs::take
+    std::array<std::byte, told_bytes> told{};
     // To each question, and to each order that was refused, behind its number.
     std::uint32_t reply_size = 0;
     std::array<std::byte, reply_bytes> replies{};

@@ -184,6 +184,10 @@ void BehaviorServer::tell_plays() noexcept {
   const std::span<const std::byte> decided = host_.decided();
   link_.answer.decided_size = static_cast<std::uint32_t>(std::min(decided.size(), BehaviorLink::decided_bytes));
   std::ranges::copy(decided.first(link_.answer.decided_size), link_.answer.decided.begin());
+  const std::span<const std::byte> told = host_.told();
+  const bool fits = told.size() <= BehaviorLink::told_bytes;  // else the record lacks it, and says so
+  link_.answer.told_size = fits ? static_cast<std::uint32_t>(told.size()) : 0;
+  if (fits) std::ranges::copy(told, link_.answer.told.begin());
 }
 
 // Most ticks change nothing of it.

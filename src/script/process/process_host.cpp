@@ -184,11 +184,13 @@ void ChildAnswer::take_plays(BehaviorLink& link, PlayReport& plays) noexcept {
   for (PlayReport::Playing& one : plays.playing) one.name.back() = one.state.back() = '\0';
 }
 
-bool ChildAnswer::take_decided(BehaviorLink& link, std::vector<std::byte>& decided) {
-  const std::uint32_t size = once(link.answer.decided_size);
-  if (size > BehaviorLink::decided_bytes) return false;
+bool ChildAnswer::take_decided(BehaviorLink& link, std::vector<std::byte>& decided, std::vector<std::byte>& told) {
+  const std::uint32_t size = once(link.answer.decided_size), told_size = once(link.answer.told_size);
+  if (size > BehaviorLink::decided_bytes || told_size > BehaviorLink::told_bytes) return false;
   copy(std::span(link.answer.decided).first(size));
   decided.assign(bytes_.begin(), bytes_.end());
+  copy(std::span(link.answer.told).first(told_size));
+  told.assign(bytes_.begin(), bytes_.end());
   return true;
 }
 
@@ -474,7 +476,7 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
   if (commands.last_sequence() == asked_sequence_ || !stopping_) answer_.send_on(commands, asked_for_ns_);
   ChildAnswer::take_status(link, play_, behaviors_);
   ChildAnswer::take_plays(link, plays_);
-  if (!answer_.take_decided(link, decided_) || !take_replies()) return false;
+  if (!answer_.take_decided(link, decided_, told_) || !take_replies()) return false;
   ++answers_;
   order_deaths_ = 0;
   policy_.answered();

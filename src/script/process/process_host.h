@@ -75,7 +75,7 @@ class ChildAnswer {
   static void take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept;
   // What plays now, all but what PlayStatus has.
   static void take_plays(BehaviorLink& link, PlayReport& plays) noexcept;
-  [[nodiscard]] bool take_decided(BehaviorLink& link, std::vector<std::byte>& decided);
+  [[nodiscard]] bool take_decided(BehaviorLink& link, std::vector<std::byte>& decided, std::vector<std::byte>& told);
 
  private:
   bool tell_line(std::span<const std::byte> line, BehaviorLog& log, std::int64_t time_ns);
@@ -156,9 +156,12 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
 
   // Of behaviors, after a tick: what plays now; the counts of orders are the caller's.
   void report(PlayReport& plays) const noexcept;
-  // Of decisions, before a tick: what plays now. After it: what they ask for, when answers() has grown.
+  // Of decisions, before a tick: what plays now. After it: what they ask for and what they took, when answers() has
+  // grown. requests() grows in the ticks whose snapshot an answer is about.
   void show(const PlayReport& plays) noexcept { shown_ = plays; }
   std::span<const std::byte> decided() const noexcept { return decided_; }
+  std::span<const std::byte> told() const noexcept { return told_; }
+  std::uint32_t requests() const noexcept { return number_; }
   std::uint64_t answers() const noexcept { return answers_; }
   // What they ask for breaks the rules: the process is killed and replaced.
   void end_for_rubbish() noexcept { bury("it wrote rubbish", true); }
@@ -214,7 +217,7 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   std::optional<std::vector<std::byte>> kept_{std::in_place};  // empty: no answer yet; nullopt: cannot be kept
   PlayStatus play_;
   PlayReport plays_, shown_;
-  std::vector<std::byte> decided_;
+  std::vector<std::byte> decided_, told_;
   std::uint64_t answers_ = 0;
   std::deque<BehaviorStatus> behaviors_;
   Queue orders_, questions_;

@@ -36,6 +36,8 @@ class ServedHost : public OrderTaker {
   // Of behaviors: what plays after the tick. Of decisions: what they decided in it, as bytes.
   virtual void report(PlayReport& /*plays*/) const noexcept {}
   virtual std::span<const std::byte> decided() const noexcept { return {}; }
+  // Of decisions whose run is recorded: what they took in it, and before.
+  virtual std::span<const std::byte> told() noexcept { return {}; }
 };
 
 // Behaviors.

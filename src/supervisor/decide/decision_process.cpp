@@ -46,11 +46,19 @@ bool DecisionProcess::tick(const Snapshot& snapshot, const PlayReport& report) n
   decided_.orders.clear();
   decided_.messages.clear();
   process_->show(report);
+  const std::uint32_t requests = process_->requests();
   process_->tick(snapshot, silence_);
+  if (inputs_ != nullptr && process_->requests() != requests) {
+    asked_with_.tick = snapshot.tick, asked_with_.time_ns = snapshot.time_ns;
+    seen_with_ = *seen_;
+  }
   take_replies();
   if (std::exchange(answers_, process_->answers()) == process_->answers()) return false;
   try {
-    if (take_decided()) return true;
+    if (take_decided()) {
+      tell_taken();
+      return true;
+    }
   } catch (const std::exception&) {  // no memory for what it says
   }
   decided_.orders.clear();
@@ -70,6 +78,17 @@ bool DecisionProcess::take_decided() {
   return std::ranges::all_of(decided_.messages, [](const PlayedEvent& message) {
     return is_event(message) && message.name.starts_with(message_event_prefix);
   });
+}
+
+// The process has told what it took since; of ticks whose answer did not come nobody knows it, and none of them counts.
+void DecisionProcess::tell_taken() {
+  if (inputs_ == nullptr) return;
+  inputs_->tick_begins(asked_with_, asked_with_.time_ns);
+  inputs_->asked(BehaviorInputs::Asked::seen, std::as_bytes(std::span(&seen_with_, 1)));
+  if (std::exchange(takeovers_, process_->takeovers()) != takeovers_)
+    inputs_->asked(BehaviorInputs::Asked::taken_over, {});
+  inputs_->pass_on(process_->told());
+  inputs_->tick_ends();
 }
 
 bool DecisionProcess::may_play(const PlayOrder& order) const {
@@ -121,6 +140,11 @@ void DecisionProcess::ask(std::unique_ptr<DecisionQuestion> question, const Snap
 
 void ServedDecisions::order(const PlayOrder& order) {
   if (order.kind != PlayOrder::Kind::emit) throw InputError({.message = "decisions take events alone"});
+  if (inputs_ != nullptr) {
+    event_.clear();
+    put_event(order.event, event_);
+    inputs_->asked(BehaviorInputs::Asked::heard, event_.bytes());
+  }
   if (const std::string why = decisions_.refusal(order.event); !why.empty()) throw InputError({.message = why});
 }
 
@@ -133,15 +157,32 @@ void ServedDecisions::begin_tick(const Snapshot& snapshot) noexcept {
 
 void ServedDecisions::tick(const Snapshot& snapshot, const PlayReport& plays, CommandSender& /*commands*/) noexcept {
   if (!lost_.empty()) return;
+  if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::plays, std::as_bytes(std::span(&plays, 1)));
   (void)decisions_.tick(snapshot, plays);
   bytes_.clear();
   put_decided(decisions_.failed(), decisions_.decided(), bytes_);
+  if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::decided, bytes_.bytes());
   if (bytes_.size() <= BehaviorLink::decided_bytes) return;
   bytes_.clear();
   put_decided(decisions_.failed(), {}, bytes_);
   log_.message(snapshot.time_ns, Severity::error, decisions_.name(),
                "what it asked for in a tick was lost: it is more than " +
                    std::to_string(BehaviorLink::decided_bytes / 1024) + " kB");
+}
+
+BehaviorReply ServedDecisions::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
+  if (inputs_ != nullptr) {
+    event_.clear();
+    put_question(question, event_);
+    inputs_->asked(BehaviorInputs::Asked::question, event_.bytes());
+  }
+  return decisions_.reply(question, snapshot);
+}
+
+std::span<const std::byte> ServedDecisions::told() noexcept {
+  told_.clear();
+  if (inputs_ != nullptr) inputs_->take(told_);
+  return told_.bytes();
 }
 
 std::string ServedDecisions::keep(ByteWriter& bytes, std::int64_t /*time_ns*/) { return decisions_.keep(bytes); }

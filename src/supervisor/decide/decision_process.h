@@ -14,6 +14,8 @@
 
 #include "decider.h"
 #include "decisions.h"
+#include "engine/behavior_inputs.h"
+#include "kadans/signal/status.h"
 #include "script/process/process_host.h"
 #include "script/process/served_host.h"
 #include "signal/byte_order.h"
@@ -29,6 +31,9 @@ class DecisionProcess final : public Decider {
   // Reads the files, too: throws InputError with what is wrong in them, or when the process does not start.
   DecisionProcess(const Behavior::Settings& settings, Catalog& catalog, BehaviorLog& log, const Start& start,
                   std::int64_t period_ns);
+
+  // Before the loop: what the decisions took is told tick by tick, with what they saw of the world; nullptr: to nobody.
+  void take_inputs_by(BehaviorInputs* inputs, const SeenEntries* seen) noexcept { inputs_ = inputs, seen_ = seen; }
 
   void declare_signals(SignalTable& signals, std::vector<SignalState>& states) override;
   const std::string& name() const noexcept override { return name_; }
@@ -48,6 +53,7 @@ class DecisionProcess final : public Decider {
   };
 
   bool take_decided();
+  void tell_taken();
   bool may_play(const PlayOrder& order) const;
   void take_replies();
 
@@ -59,7 +65,11 @@ class DecisionProcess final : public Decider {
   std::unique_ptr<ProcessHost> process_;
   std::deque<Asked> asked_;  // messages that wait for their answer
   std::deque<std::pair<std::uint32_t, std::unique_ptr<DecisionQuestion>>> questions_;  // likewise
-  std::uint64_t answers_ = 0;
+  std::uint64_t answers_ = 0, takeovers_ = 0;
+  BehaviorInputs* inputs_ = nullptr;
+  const SeenEntries* seen_ = nullptr;
+  Snapshot asked_with_;  // the time of the last request's snapshot, and what was seen then
+  SeenEntries seen_with_{};
   CommandQueue nowhere_;  // decisions send no commands
   CommandSender silence_{nowhere_};
   bool failed_ = false;
@@ -68,9 +78,10 @@ class DecisionProcess final : public Decider {
 // The thread of that process.
 class ServedDecisions final : public ServedHost {
  public:
-  // Goes on from the kept bytes in its first tick, if there are any; they must live until then.
-  ServedDecisions(Decisions& decisions, BehaviorLog& log, std::span<const std::byte> kept)
-      : decisions_(decisions), log_(log), kept_(kept) {
+  // Goes on from the kept bytes in its first tick, if there are any; they must live until then. `inputs` is told what
+  // the decisions take, and tells it on; nullptr: nobody records it.
+  ServedDecisions(Decisions& decisions, BehaviorLog& log, std::span<const std::byte> kept, BehaviorInputs* inputs)
+      : decisions_(decisions), log_(log), kept_(kept), inputs_(inputs) {
     status_.phase.store(1, std::memory_order_relaxed);
   }
 
@@ -81,18 +92,18 @@ class ServedDecisions final : public ServedHost {
   void begin_tick(const Snapshot& snapshot) noexcept override;
   void tick(const Snapshot& snapshot, const PlayReport& plays, CommandSender& commands) noexcept override;
   const std::string& lost() const noexcept override { return lost_; }
-  BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot) override {
-    return decisions_.reply(question, snapshot);
-  }
+  BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot) override;
   std::string keep(ByteWriter& bytes, std::int64_t time_ns) override;
   std::span<const std::byte> decided() const noexcept override { return bytes_.bytes(); }
+  std::span<const std::byte> told() noexcept override;
 
  private:
   Decisions& decisions_;
   BehaviorLog& log_;
   std::span<const std::byte> kept_;
+  BehaviorInputs* inputs_;
   PlayStatus status_;
-  ByteWriter bytes_;
+  ByteWriter bytes_, told_, event_;
   std::string lost_;
 };
 

@@ -48,8 +48,9 @@ std::unique_ptr<Behavior> Decisions::load() const {
 }
 
 void Decisions::declare_signals(SignalTable& signals, std::vector<SignalState>& states) {
-  add_signal_states(behavior_->chart(), behavior_->status().declare_numbered(signals, behavior_->name()), signals,
-                    states);
+  shown_.region_paths = behavior_->status().region_paths;
+  add_signal_states(behavior_->chart(), shown_.declare_numbered(signals, behavior_->name()), signals, states);
+  shown_.copy_numbers(behavior_->status());
 }
 
 void Decisions::tell(const char* event, const std::string& why) noexcept {
@@ -81,6 +82,7 @@ bool Decisions::tick(const Snapshot& snapshot, const PlayReport& report) noexcep
   hear(report);
   behavior_->show_plays(&report);
   (void)behavior_->tick(snapshot, silence_);
+  shown_.copy_numbers(behavior_->status());
   if (behavior_->failed()) {
     log_.message(snapshot.time_ns, BehaviorLog::Severity::error, behavior_->name(), behavior_->error().text());
   } else {
@@ -173,6 +175,14 @@ std::string Decisions::go_on(ByteReader& bytes, const Snapshot& snapshot) noexce
   for (std::uint32_t* count : {&refused_, &not_done_, &taken_over_}) *count = bytes.take<std::uint32_t>();
   asked_ = bytes.take<std::uint8_t>() != 0;
   return behavior_->go_on(bytes, snapshot, silence_) ? "" : behavior_->error().text();
+}
+
+std::string Decisions::take_over(const Snapshot& snapshot) {
+  ByteWriter kept;
+  if (std::string why = keep(kept); !why.empty()) return why;
+  behavior_ = load();
+  ByteReader bytes(kept.bytes());
+  return go_on(bytes, snapshot);
 }
 
 }  // namespace kadans

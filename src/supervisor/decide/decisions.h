@@ -41,6 +41,8 @@ class Decisions final : public Decider {
   std::string keep(ByteWriter& bytes);
   // Before the first tick: goes on from bytes of keep(). Returns "", or why not.
   std::string go_on(ByteReader& bytes, const Snapshot& snapshot) noexcept;
+  // Between two ticks: as another process goes on that takes over. Returns "", or why not.
+  std::string take_over(const Snapshot& snapshot);
 
   Behavior& behavior() noexcept { return *behavior_; }
   const Behavior& behavior() const noexcept { return *behavior_; }
@@ -58,6 +60,7 @@ class Decisions final : public Decider {
   CommandQueue nowhere_;  // decisions send no commands
   CommandSender silence_{nowhere_};
   std::unique_ptr<Behavior> behavior_;
+  BehaviorStatus shown_;                                       // of that one, which may be replaced by another
   std::uint32_t refused_ = 0, not_done_ = 0, taken_over_ = 0;  // as the report had them
   bool asked_ = false;                                         // something was played whose end was not told yet
 };

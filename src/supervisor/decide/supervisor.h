@@ -69,9 +69,12 @@ class Supervisor final : public Supervising, public ObservationSink {
   // Before the loop: saved files of the decisions are reloaded. Throws std::runtime_error when nothing can be watched.
   void watch();
 
-  // Before the loop: what decisions that run here take is told, so that they can be repeated; nullptr: to nobody. In
-  // each of their ticks what is seen and what plays come first, and what was decided last.
-  void take_inputs_by(BehaviorInputs* inputs) noexcept { inputs_ = inputs; }
+  // Before the loop: what the decisions take is told, so that they can be repeated; nullptr: to nobody. In each of
+  // their ticks what is seen comes first; what plays comes before what was decided.
+  void take_inputs_by(BehaviorInputs* inputs) noexcept {
+    if (process_ != nullptr) return process_->take_inputs_by(inputs, &world_.entries());
+    inputs_ = inputs;
+  }
 
   std::int64_t period_ns() const noexcept override { return period_ns_; }
   void tick(std::int64_t time_ns) noexcept override;

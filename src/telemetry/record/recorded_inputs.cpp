@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "kadans/signal/nearest_name.h"
 #include "run_inputs.h"
@@ -91,16 +92,20 @@ void RecordedInputs::file_read(const std::string& path, std::string_view text) {
   if (flight_ != nullptr) return;
   const std::filesystem::path below = std::filesystem::path(path).lexically_relative(root_);
   const std::string name = below.empty() || *below.begin() == ".." ? path : below.generic_string();
-  const std::size_t hash = std::hash<std::string_view>()(text);
-  const auto [known, added] = hash_of_.try_emplace(name, hash);
-  if (!added && known->second == hash) return;
-  known->second = hash;
+  if (is_known(name, text)) return;
   const bool left_out =
       std::ranges::any_of(private_files_, [&](const std::string& pattern) { return matches(pattern, name); });
   begin(left_out ? BehaviorInput::Kind::private_file : BehaviorInput::Kind::file);
   event_.put_string(name);
   event_.put_string(left_out ? content_hash(text) : text);
   push();
+}
+
+// From now on it is.
+bool RecordedInputs::is_known(const std::string& name, std::string_view text) {
+  const std::size_t hash = std::hash<std::string_view>()(text);
+  const auto [known, added] = hash_of_.try_emplace(name, hash);
+  return !added && std::exchange(known->second, hash) == hash;
 }
 
 namespace {
@@ -184,6 +189,34 @@ void RecordedInputs::take(ByteWriter& message) {
     ring.drop(waiting);
   };
   flight_ != nullptr ? take_all(*flight_) : take_all(*ring_);
+}
+
+void RecordedInputs::pass_on(std::span<const std::byte> told) {
+  using Kind = BehaviorInput::Kind;
+  ByteReader reader(told);
+  while (reader.left() > 0) {
+    const std::uint32_t number = number_of_behavior_input(reader);
+    if (number != std::exchange(expected_, number) && number != 0)
+      ++number_;  // so that it is noticed; 0: a new process
+    ByteReader event = reader;
+    const auto size = event.take<std::uint32_t>();
+    (void)event.take<std::uint32_t>();
+    const std::span<const std::byte> bytes = event.take_bytes(size);
+    BehaviorInput input;
+    if (!take_behavior_input(reader, expected_, input) || input.kind == Kind::tick_begins ||
+        input.kind == Kind::tick_ends || input.kind == Kind::sent || input.kind == Kind::newer ||
+        input.kind == Kind::handed_down) {
+      ++number_;
+      return;
+    }
+    const bool file = input.kind == Kind::file || input.kind == Kind::private_file;
+    if (file && is_known(input.path, input.text)) continue;
+    event_.clear();
+    event_.put(std::uint32_t{0});
+    event_.put(number_++);
+    event_.put(bytes);
+    push();
+  }
 }
 
 void EventSorter::sort(std::span<const std::byte> events, ByteWriter* record, ByteWriter* flight) {

@@ -88,8 +88,10 @@ class RecordedInputs final : public BehaviorInputs, public HandedDownSink {
   void asked(Asked kind, std::span<const std::byte> bytes) override;
   void handed_down(std::uint32_t storage, std::int64_t number, std::span<const std::byte> value) noexcept override;
 
-  // Record thread: moves what waits to the end of `message`.
-  void take(ByteWriter& message);
+  // Record thread, or that of a process of its own: moves what waits to the end of `message`.
+  void take(ByteWriter& message) override;
+  // What take() gave in another process, which may be hostile. Where something is missing, it is missing here, too.
+  void pass_on(std::span<const std::byte> told) override;
   std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
@@ -98,12 +100,14 @@ class RecordedInputs final : public BehaviorInputs, public HandedDownSink {
 
   void begin(BehaviorInput::Kind kind);
   void push() noexcept;
+  bool is_known(const std::string& name, std::string_view text);
 
   std::string root_;
   std::vector<std::string> private_files_;
   std::unordered_map<std::string, std::size_t> hash_of_;
   ByteWriter event_;
   std::uint32_t number_ = 0;
+  std::uint32_t expected_ = 0;        // of those that are passed on
   std::unique_ptr<Bytes> ring_;       // one of the two
   std::unique_ptr<FewBytes> flight_;  // nothing but what this needs is told
   std::atomic<std::uint32_t> dropped_{0};

@@ -71,7 +71,7 @@ TEST_CASE("A list that takes over is checked before anything plays") {
   ScenarioConfig scenario = read_scenario_config((project / "config/scenarios/squat.json").string());
   scenario.robot = (project / "config/tulip/decides.json").string();
   RunLog log;
-  CHECK_THROWS_WITH_AS(Assembly(scenario, 3, log), doctest::Contains("decides.json:2:58: "), InputError);
+  CHECK_THROWS_WITH_AS(Assembly(scenario, 3, log), doctest::Contains("decides.json:2:61: "), InputError);
 }
 
 TEST_CASE("What perception says is put where the robot was: the ball stays within its noise while TULip walks") {
@@ -107,7 +107,10 @@ TEST_CASE("kadans run plays what the decisions want, on threads, and its record 
   CHECK_MESSAGE(has(outcome.out, " ticks of the decisions"), outcome.out);
 }
 
-TEST_CASE("Decisions of a run are repeated from its record, and what they ask for otherwise is told with its time") {
+namespace {
+
+void decide_again(const char* how) {
+  CAPTURE(how);
   const fs::path project = supervised_project("repeated_decisions");
   write(project / "behaviors/tulip/decide.lua", R"(local k = require "kadans"
 local P = k.params { depth_m = { 0.05, min = 0, max = 0.1, unit = "m", doc = "how deep" } }
@@ -128,7 +131,8 @@ return k.decisions "decide" {
   Running robot(
       project,
       "run config/tulip/decides.json --plant ideal --duration 1000 --threads-on-virtual-time --record run.mcap "
-      "--flight 0 --ctl ctl -v 2>&1");
+      "--flight 0 --ctl ctl -v " +
+          std::string(how) + " 2>&1");
   REQUIRE(robot.says("decide: "));
   CHECK(edit(project / "behaviors/tulip/decide.lua", "return k.decisions", "-- again\nreturn k.decisions"));
   for (const char* order : {"why decide", "reload decide"})
@@ -146,6 +150,14 @@ return k.decisions "decide" {
                 (other.out + other.err));
   check_damaged(project / "run.mcap");
 }
+
+}  // namespace
+
+TEST_CASE("Decisions of a run are repeated from its record, and what they ask for otherwise is told with its time") {
+  decide_again("");
+}
+
+TEST_CASE("Decisions in a process of their own are repeated, too") { decide_again("--decisions process"); }
 
 TEST_CASE("A simulation with decisions is repeated from its record alone, which holds what they may play") {
   const fs::path folder = fresh_folder("supervised_record");
@@ -171,13 +183,15 @@ TEST_CASE("Decisions play the same in a thread and in a process, over behaviors 
     const Outcome outcome = run("replay run.mcap --json", project);
     CHECK_MESSAGE(outcome.exit_code == 0, (outcome.out + outcome.err));
     CHECK(nlohmann::json::parse(outcome.out)["same"] == true);
+    CHECK_MESSAGE(has(outcome.out, " ticks of the decisions"), outcome.out);
   }
 }
 
 TEST_CASE("Decisions in a process of their own are refused with their place when they are wrong") {
   const fs::path project = supervised_project("supervised_process_wrong");
   REQUIRE(edit(project / "behaviors/tulip/decide.lua", "to = \"squat\"", "to = \"sqat\""));
-  const Outcome outcome = run("run config/tulip/decides.json --plant ideal --duration 1 --decisions process", project);
+  const Outcome outcome =
+      run("run config/tulip/decides.json --plant ideal --soft --duration 1 --decisions process", project);
   CHECK(outcome.exit_code == 2);
   CHECK_MESSAGE(has(outcome.err, "behaviors/tulip/decide.lua:6:"), outcome.err);
 }

@@ -23,13 +23,23 @@ using doctest::description;
 namespace {
 
 // Decisions that let the robot squat, and count their ticks; each tenth tick goes on to the next state. A transition is
-// told when its tick counts. A message would be told of a tick that does not count, too.
+// told when its tick counts. A message would be told of a tick that does not count, too. What `run` counts begins anew
+// with each process.
 const char* const counting = R"(local k = require "kadans"
+k.events { ["robot.waits"] = { ticks = { "", min = 0, max = 1000 } } }
 local states = { initial = "tens_0", vars = { ticks = 0 } }
 for i = 0, 59 do
   states[i + 1] = k.state("tens_" .. i) {
     enter = i == 0 and function(m) m:replace("squat{repeats=100}") end or nil,
     during = function(m) m.vars.ticks = m.vars.ticks + 1 end,
+    run = function(m)
+      local waited = 0
+      while true do
+        m:wait(0.01)
+        waited = waited + 1
+        m:send("robot.waits", { ticks = waited })
+      end
+    end,
     { when = function(_, m) return m.vars.ticks >= 10 * (i + 1) end, to = "tens_" .. i + 1 },
   }
 end
@@ -102,8 +112,8 @@ TEST_SUITE_BEGIN("contract");
 TEST_CASE("behaviors go on, the next process decides on in the state in which it was, no tick of it counts twice" *
           description("the decisions' process is killed or crashes, at any moment")) {
   constexpr int kills = 5;
-  LiveProgram program(supervised("decisions_killed", "\"go_on\""),
-                      "config/tulip/decides.json --threads-on-virtual-time --decisions process");
+  const std::filesystem::path project = supervised("decisions_killed", "\"go_on\"");
+  LiveProgram program(project, "config/tulip/decides.json --threads-on-virtual-time --decisions process");
   RandomStream random(1, "kills");
   for (int i = 0; i < kills; ++i) {
     // Each process has answered ten ticks before it dies: it is replaced at once then. One that dies sooner is replaced
@@ -132,6 +142,10 @@ TEST_CASE("behaviors go on, the next process decides on in the state in which it
     CHECK(program.heard("decide: tens_" + std::to_string(tens) + " -> ") == 1);
   }
   CHECK(program.recorded("safety.faults", 0, result["duration_s"]).max == 0);
+  // All of them decide the same again from the record, each from what the one before left.
+  const program::Outcome replay = program::run("replay out.mcap", project);
+  CHECK_MESSAGE(replay.exit_code == 0, (replay.out + replay.err));
+  CHECK_MESSAGE(has(replay.out, " ticks of the decisions"), replay.out);
 }
 
 TEST_CASE("they stay over, and their last state is told" *

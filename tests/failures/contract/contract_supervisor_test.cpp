@@ -149,6 +149,9 @@ TEST_CASE("the running version goes on, the error shows file:line, and a version
   CHECK(ended.said("begins anew"));
   CHECK(ended.said("decides again"));
   CHECK(ended.plays() == "squat");
+  Assembly& robot = ended.made();  // its signals are those of the one that decides now
+  const SignalId heap = robot.catalog().signals.find("behavior.decide.heap_bytes").value();
+  CHECK(robot.control().row()[heap] == robot.supervisor()->decisions()->behavior().status().heap_bytes.load());
 }
 
 TEST_CASE("what plays goes on, the decisions hear why, and nothing else changes" *
