@@ -164,6 +164,8 @@ TEST_CASE("Further robots of a scenario have names of their own, and take the fi
   refused(text(R"({"name": "b"}], "robot_name": "b", "pushes": [)"), ":1:107: another robot has the name 'b'");
   refused(text(R"({"name": "last"})"),
           ":1:107: name 'last': checks read last.SIGNAL as the signal's value one tick before");
+  refused(text(R"({"name": "joint"})"),
+          ":1:107: name 'joint': `set` and --set read joint.KEY as a quantity of the first robot");
   refused(text(R"({"name": "b", "faults": [{"kind": "clock_missed", "size": 2}]})"),
           ":1:122: robots[0].faults: clock_missed is a fault of all robots: it belongs to the scenario's own faults");
   refused(text("{}"),

@@ -92,6 +92,21 @@ TEST_CASE("A condition holds or not, over several signals and the time") {
   CHECK(result.at_s == 1);
 }
 
+TEST_CASE("A name that holds what is otherwise an operator is a signal's where there is such a signal") {
+  const double unused = 0;
+  SignalTable signals;
+  for (const char* name : {"plant.left-knee.rad", "plant.left", "knee.rad", "arm/1.rad", "arm"})
+    signals.add({name, "", ""}, &unused);
+  const auto holds = [&](const char* that) {
+    Checks checks(signals, {{.name = "n", .kind = CheckKind::always, .that = that}});
+    checks.update(0, std::vector<double>{5, 9, 2, 3, 8});
+    return checks.results().front().passed;
+  };
+  CHECK(holds("left-knee.rad == 5 and last.left-knee.rad-1 == 4"));
+  CHECK(holds("left - knee.rad == 7 and left-1 == 8"));
+  CHECK(holds("arm/1.rad == 3 and arm/2 == 4 and arm/1.0 == 8 and (arm/1.rad)*knee.rad==6"));
+}
+
 TEST_CASE("within wants the condition soon after each time that `when` becomes true") {
   const ScenarioCheck check{
       .name = "n", .kind = CheckKind::within, .that = "x > 5", .when = "x < 1 and x > -1", .within_s = 2};

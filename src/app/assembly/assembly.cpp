@@ -109,7 +109,7 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
   for (const ScenarioEvent& event : scenario.events) {
     settings.events.push_back({std::llround(event.at_s * 1e9), event.order});
   }
-  settings.ordered_later = robot.supervisor.lost_list;
+  if (!scenario.repeats) settings.ordered_later = robot.supervisor.lost_list;  // an old record may lack their modules
   settings.inputs = overridden(robot.input_events, scenario.joystick.buttons);
   settings.safe = safe_posture_of(robot.safe);
   if (scenario.on_wall_clock) settings.limits = limits_on_wall_clock(robot.engine);
@@ -297,16 +297,25 @@ void Assembly::make_perception() {
 void Assembly::show_others() {
   for (const auto& other : others_) {
     const SignalTable& theirs = other->catalog().signals;
+    std::vector<SignalState> states = other->states_;
     for (SignalId id = 0; id < theirs.size(); ++id) {
-      if (id - other->upkeep_first_ < other->upkeep_count_) continue;
-      if (std::ranges::binary_search(other->unhashed_, id))
-        unhashed_.push_back(static_cast<SignalId>(control_system_->catalog.signals.size()));
+      const bool upkeep = id - other->upkeep_first_ < other->upkeep_count_;
+      if (upkeep && std::ranges::find(other->states_, id, &SignalState::signal) == other->states_.end()) continue;
+      const auto shown = static_cast<SignalId>(control_system_->catalog.signals.size());
+      for (std::size_t i = 0; i < states.size(); ++i) {
+        if (other->states_[i].signal == id) states[i].signal = shown;
+      }
+      if (upkeep || std::ranges::binary_search(other->unhashed_, id)) unhashed_.push_back(shown);
       Signal signal = theirs.info(id);
       signal.name.insert(0, other->scenario_.name + ".");
       if (control_system_->catalog.signals.find(signal.name))
         refuse(scenario_.file, other->scenario_.plant_place,
                "name " + in_quotes(other->scenario_.name) + ": its signal would be the first robot's " + signal.name);
       control_system_->catalog.signals.add(std::move(signal), &other->control_->row()[id]);
+    }
+    for (SignalState& state : states) {
+      state.robot = other->scenario_.name;
+      states_.push_back(std::move(state));
     }
   }
 }

@@ -325,6 +325,11 @@ void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig
   check_robot_name(robot.name, robot.plant_place, scenario, problems);
   if (robot.name == "last")
     problems.add(robot.plant_place, "name 'last': checks read last.SIGNAL as the signal's value one tick before");
+  constexpr std::array quantities{"actuation", "control", "ground", "imu",       "joint",
+                                  "link",      "start",   "sight",  "perception"};
+  if (std::ranges::find(quantities, robot.name) != quantities.end())
+    problems.add(robot.plant_place, "name " + in_quotes(robot.name) + ": `set` and --set read " + robot.name +
+                                        ".KEY as a quantity of the first robot");
   robot.file = scenario.file;
   robot.plant = scenario.plant;
   robot.robot = scenario.robot;

@@ -32,17 +32,32 @@ std::size_t number_end(std::string_view text, std::size_t at) {
   return at;
 }
 
+std::optional<SignalId> find_signal(const SignalTable& signals, std::string_view name) {
+  if (const auto id = signals.find(name)) return id;
+  return signals.find("plant." + std::string(name));
+}
+
+// Where the longest name of a signal ends that begins at `at` and holds what is otherwise an operator; else where the
+// dotted name does.
+std::size_t name_end(const SignalTable& signals, std::string_view text, std::size_t at) {
+  constexpr std::string_view ends = " \t\n()<>=~,\"'";
+  std::size_t plain = at;
+  while (plain < text.size() && continues_name(text[plain])) ++plain;
+  std::size_t end = std::min(text.find_first_of(ends, at), text.size());
+  for (; end > plain; --end) {
+    if (end < text.size() && continues_name(text[end])) continue;  // in the middle of a word
+    const std::string_view name = text.substr(at, end - at);
+    if (find_signal(signals, name.starts_with(tick_before) ? name.substr(tick_before.size()) : name)) return end;
+  }
+  return plain;
+}
+
 // Its place in the table of values, from 1; it becomes one of the condition's signals and of those in use.
 std::ptrdiff_t place_of(SignalId signal, std::vector<SignalId>& of_condition, std::vector<SignalId>& used) {
   if (std::ranges::find(of_condition, signal) == of_condition.end()) of_condition.push_back(signal);
   auto place = std::ranges::find(used, signal);
   if (place == used.end()) place = used.insert(place, signal);
   return place - used.begin() + 1;
-}
-
-std::optional<SignalId> find_signal(const SignalTable& signals, std::string_view name) {
-  if (const auto id = signals.find(name)) return id;
-  return signals.find("plant." + std::string(name));
 }
 
 }  // namespace
@@ -139,7 +154,8 @@ bool SignalExpressions::translate_state(std::string_view text, std::size_t& at, 
   const std::string path(text.substr(quote + 1, end - quote - 1));
   std::string any;
   for (const SignalState& state : states_) {
-    if (path != state.path && path != state.behavior + "." + state.path) continue;
+    const auto names = state.names();
+    if (std::ranges::find(names, path) == names.end()) continue;
     const std::string value = "values[" + std::to_string(place_of(state.signal, condition.signals, used)) + "]";
     any += (any.empty() ? "(" : " or ") + value + " >= " + number_text(state.first) + " and " + value + " < " +
            number_text(state.end);
@@ -147,8 +163,7 @@ bool SignalExpressions::translate_state(std::string_view text, std::size_t& at, 
   if (any.empty()) {
     std::vector<std::string> known;
     for (const SignalState& state : states_) {
-      known.push_back(state.path);
-      known.push_back(state.behavior + "." + state.path);
+      for (std::string& name : state.names()) known.push_back(std::move(name));
     }
     error = {static_cast<int>(quote) + 2, states_.empty()
                                               ? "no states are known here: what plays is not loaded in this process"
@@ -170,7 +185,7 @@ bool SignalExpressions::translate(std::string_view text, Condition& condition, s
     if (digit) {
       at = number_end(text, at + 1);
     } else if (starts_name(text[at])) {
-      while (at < text.size() && continues_name(text[at])) ++at;
+      at = name_end(signals_, text, at);
     } else {
       ++at;
     }

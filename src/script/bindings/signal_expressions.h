@@ -4,11 +4,15 @@
 // A dotted name is a signal; "plant." may be left out when no other signal has the shorter name. With the prefix
 // "last." it is the signal's value one tick before (in the first tick the value of that tick). time_s is the time. The
 // functions of `math` can be used without its name. state("act.arm.wave") is true while a behavior is in that state,
-// and state("greet.act.arm.wave") while the behavior `greet` is. All conditions of a run are in one sandboxed Lua
-// state. They are compiled once and evaluated together, each tick under one budget. One thread at a time.
+// and state("greet.act.arm.wave") while the behavior `greet` is; of a further robot `left` state("left.act.arm.wave").
+// Where the longest name that stands there is a signal's, it is that one: joint.left-knee.position_rad.
+//
+// All conditions of a run are in one sandboxed Lua state. They are compiled once and evaluated together, each tick
+// under one budget. One thread at a time.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -25,6 +29,12 @@ struct SignalState {
   std::string behavior;  // as in the signal's name
   SignalId signal = 0;
   double first = 0, end = 0;
+  std::string robot{};  // a further robot of the scenario; "": the first one
+
+  std::array<std::string, 2> names() const {
+    const std::string of = robot.empty() ? "" : robot + ".";
+    return {of + path, of + behavior + "." + path};
+  }
 };
 
 // Why a condition's text is refused.

@@ -115,6 +115,23 @@ TEST_CASE("A check may look at another robot, and a robot that is pushed falls a
   CHECK(result.checks.at(0).passed);
 }
 
+TEST_CASE("A check may ask in which state a behavior of another robot is") {
+  ScenarioConfig scenario = with_left(20);
+  scenario.behaviors.clear();
+  Played played(scenario);
+  Checks checks(played.robot.catalog().signals,
+                {{.name = "left squats", .kind = CheckKind::eventually, .that = "state('left.squat.squat')"},
+                 {.name = "without the behavior", .kind = CheckKind::eventually, .that = "state('left.squat')"},
+                 {.name = "at rest before", .kind = CheckKind::always, .that = "not state('left.rest')", .until_s = 1}},
+                "scenario.json", played.robot.signal_states());
+  const RunResult result = run_scenario(played.robot.parts(), 3, checks, {});
+  for (const CheckResult& check : result.checks) CHECK_MESSAGE(check.passed, check.name);
+  CHECK_THROWS_WITH_AS(Checks(played.robot.catalog().signals,
+                              {{.name = "n", .kind = CheckKind::always, .that = "state('left.squat.squit')"}},
+                              "scenario.json", played.robot.signal_states()),
+                       doctest::Contains("did you mean 'left.squat.squat'?"), InputError);
+}
+
 TEST_CASE("A further robot's faults are its own, told with its name, and the first one goes on as without them") {
   ScenarioConfig sound = with_left(20), faulty = with_left(20);
   using Kind = ScenarioFault::Kind;
