@@ -55,7 +55,7 @@ const Wrong wrong_with_team[] = {
     {R"("seed": 1, "seed": 2)", "3:12: key 'seed' stands twice"},
     {R"("rules": { "set_s": 3, "set_s": 4 })", "3:24: key 'set_s' stands twice"},
     {R"("begins": { "ball_x": 1 })", "did you mean 'ball_x_m'?"},
-    {R"("begins": { "ball_x_m": 5 })", "begins.ball_x_m is 5"},
+    {R"("begins": { "ball_x_m": 4.45 })", "begins.ball_x_m is 4.45"},
     {R"("begins": { "ball_y_m": -3.5 })", "begins.ball_y_m is -3.5"},
     // types
     {R"("rules": { "half_s": "long" })", "3:22: rules.half_s must be a number in s, not"},
@@ -236,6 +236,7 @@ TEST_CASE(
   CHECK(has(several, "--set network.jitter_s=-1: network.jitter_s is -1"));
   CHECK(has(refused({"network.lots=0.3"}), "--set network.lots=0.3: unknown key 'lots'"));
   CHECK(has(refused({"home.team=behaviors/footbal"}), "did you mean 'football'?"));
+  CHECK(has(refused({"division=large", "seed=7"}), "--set division=large --set seed=7: "));
   CHECK(read_match(file, {"seed=7", "home.parameters=passes=0"}).team(Side::home).parameters_place.file ==
         "--set home.parameters=passes=0");
   CHECK(has(refused({"network.lost"}), "must be KEY=VALUE"));

@@ -2,12 +2,14 @@
 #include "football/program/served_match.h"
 
 #include <deque>
+#include <filesystem>
 #include <string>
 
 #include <doctest/doctest.h>
 
 #include "football/program/played_match.h"
 #include "kadans/signal/input_error.h"
+#include "temporary_folder.h"
 
 namespace served_match_test {
 
@@ -139,6 +141,10 @@ TEST_CASE("A port that is taken is told with what it was for, and robots are wri
                        kadans::InputError);
   CHECK_THROWS_WITH_AS((void)write_robots(match, ServedPlaces::of("127.0.7.61:7100", ""), "/tmp/robots"),
                        doctest::Contains("is not in the project"), kadans::InputError);
+  const kadans::test::TemporaryFolder own(std::filesystem::current_path());
+  const std::filesystem::path fresh = own.path().filename() / "none/yet";
+  const std::string commands = write_robots(match, ServedPlaces::of("127.0.7.61:7100", ""), fresh.string());
+  CHECK(commands == "kadans run " + (fresh / "tulip/home_1.json").string() + " --plant udp --peer 127.0.7.61:7100\n");
 }
 
 TEST_CASE("Datagrams come as they were sent, from whom, and a place that is none is refused") {

@@ -12,6 +12,7 @@
 namespace kadans::football {
 namespace {
 
+constexpr double within_m = 0.1;      // a drill's ball is at least so far within the lines
 constexpr double beside_gap_m = 1.0;  // between robots that stand beside the field
 constexpr std::string_view name_letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
 const std::array<std::string, 3> division_names{"small", "middle", "large"};
@@ -66,10 +67,13 @@ SetText set_text(const std::filesystem::path& file, const std::vector<std::strin
   return set;
 }
 
-// A mistake in what was set, with the setting in place of a line that nobody has written.
+// A mistake in what was set, with the setting in place of a line that nobody has written. One between settings and the
+// file stands in the first line.
 void name_setting(InputProblem& problem, const std::string& file, const SetText& set) {
-  if (problem.file != file || problem.line < 2) return;
-  problem.file = "--set " + set.settings.at(static_cast<std::size_t>(problem.line) - 2);
+  if (problem.file != file || problem.line < 1) return;
+  std::string all;
+  for (const std::string& setting : set.settings) all += (all.empty() ? "--set " : " --set ") + setting;
+  problem.file = problem.line == 1 ? all : "--set " + set.settings.at(static_cast<std::size_t>(problem.line) - 2);
   problem.line = problem.column = 0;
 }
 
@@ -130,7 +134,7 @@ void read_begin(InputObject& f, const Field& field, DrillStart& begin) {
   f.choice("for", side, side_names, "who kicks");
   begin.restart = begin_restarts.at(with);
   begin.side = both_sides.at(side);
-  const double ahead_m = field.length_m / 2, left_m = field.width_m / 2;
+  const double ahead_m = field.length_m / 2 - within_m, left_m = field.width_m / 2 - within_m;
   f.number("ball_x_m", begin.ball.x_m, {-ahead_m, ahead_m, "m"},
            "where the ball lies, in the frame of the team that kicks");
   f.number("ball_y_m", begin.ball.y_m, {-left_m, left_m, "m"}, "to its left");
@@ -448,7 +452,7 @@ MatchConfig read_match(const std::filesystem::path& file, const std::vector<std:
 Point drill_ball(const MatchConfig& match, std::uint64_t seed) {
   const DrillStart& begin = match.begins.value();
   RandomStream random(seed, "football.ball");
-  const double half_m = match.field().length_m / 2 - 0.1, side_m = match.field().width_m / 2 - 0.1;
+  const double half_m = match.field().length_m / 2 - within_m, side_m = match.field().width_m / 2 - within_m;
   const double x_m = std::clamp(begin.ball.x_m + begin.ball_scatter_m * random.normal(), -half_m, half_m);
   const double y_m = std::clamp(begin.ball.y_m + begin.ball_scatter_m * random.normal(), -side_m, side_m);
   const double sign = begin.side == Side::home ? -1 : 1;

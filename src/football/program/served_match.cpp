@@ -70,10 +70,12 @@ ServedPlaces ServedPlaces::of(const std::string& listen, const std::string& refe
                       .message = "'" + listen + "' must be HOST:PORT, such as 127.0.0.1:7100: " +
                                  std::to_string(ports_taken) + " ports from there on are taken"});
   places.port = port;
-  for (const auto& [option, host] : {std::pair("--listen", places.host), std::pair("--referee", referee)}) {
-    if (!host.empty() && !is_address(host))
+  const auto check = [](const char* option, const std::string& host) {
+    if (!is_address(host))
       throw InputError({.file = option, .message = "'" + host + "' is no address of IPv4, such as 127.0.0.1"});
-  }
+  };
+  check("--listen", places.host);
+  if (!referee.empty()) check("--referee", referee);
   return places;
 }
 
@@ -176,7 +178,7 @@ void ServedMatch::answer_referee(const RobotReturn& told) {
 
 std::string write_robots(const MatchConfig& match, const ServedPlaces& places, const std::string& folder) {
   namespace fs = std::filesystem;
-  const fs::path here = fs::current_path(), inside = fs::weakly_canonical(folder).lexically_relative(here);
+  const fs::path here = fs::current_path(), inside = fs::weakly_canonical(here / folder).lexically_relative(here);
   if (inside.empty() || inside.begin()->string() == "..")
     throw InputError({.file = "--robots",
                       .message = "'" + folder + "' is not in the project " + here.string() +
