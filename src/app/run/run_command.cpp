@@ -140,7 +140,8 @@ constexpr double state_period_s = 2;  // between saved states of the control eng
 // a record on a slow disk; and for virtual time that stands still.
 constexpr std::int64_t joining_ns = 500'000'000, stage_ns = 1'000'000'000, service_ns = 5'000'000'000,
                        record_ns = 10'000'000'000, standing_ns = 2'000'000'000;
-// With --soft others may keep the processor for seconds: a thread that waits for it does not hang.
+// With --soft others may keep the processor for seconds: a thread that ends late does not hang. A control thread that
+// stands still no longer reaches the drives, whatever the reason.
 constexpr std::int64_t soft_patience = 10;
 
 // "FOLDER/", or a folder that is there: numbered records in it.
@@ -348,9 +349,9 @@ class WallClockRun {
     if (assembly_.supervisor() != nullptr && assembly_.supervisor()->decider() != nullptr)
       taken_to_decide_.emplace(root, private_files(assembly_.robot()));
     for (const InputFile& file : inputs.files) {
-      if (!file.text) continue;
-      taken_->knows(file.path, *file.text);
-      if (taken_to_decide_) taken_to_decide_->knows(file.path, *file.text);
+      const std::string& known = file.text ? *file.text : file.hash;
+      taken_->knows(file.path, known);
+      if (taken_to_decide_) taken_to_decide_->knows(file.path, known);
     }
   }
 
@@ -370,15 +371,13 @@ class WallClockRun {
     return std::make_unique<JoystickTask>(settings, options_.joystick, parts_.control.exchange().joystick);
   }
 
-  std::int64_t soft() const noexcept { return options_.soft ? soft_patience : 1; }
-
   // Switches the drives off and closes the record, even when threads hang. Returns the names of hanging threads.
   std::vector<std::string> switch_off(RunThreads& threads, LastResort& last_resort) {
     const auto hangs = [](const std::vector<std::string>& hanging, const char* name) {
       return std::ranges::find(hanging, name) != hanging.end();
     };
-    const std::int64_t patience_ns = soft() * joining_ns;
-    last_resort.expect("switching the drives off", 3 * patience_ns + soft() * stage_ns);
+    const std::int64_t patience_ns = (options_.soft ? soft_patience : 1) * joining_ns;
+    last_resort.expect("switching the drives off", 3 * patience_ns + stage_ns);
     ActuationFrame off;
     off.joint_count = static_cast<std::uint32_t>(assembly_.robot().model.joints.size());
     // A control thread that stands still is not waited for.
@@ -390,7 +389,7 @@ class WallClockRun {
       print_error("the plant hangs: its drives' own watchdog must switch them off");
     }
     tell(threads.supervisor().now_ns());
-    last_resort.expect("closing the record", soft() * record_ns);
+    last_resort.expect("closing the record", record_ns);
     if (hangs(hanging, "record")) {
       print_error("the record is not complete: its thread hangs");
     } else if (!record_side_.end()) {
@@ -403,13 +402,13 @@ class WallClockRun {
   }
 
   void end_services(LastResort& last_resort) {
-    last_resort.expect("the service of ROS 2", soft() * service_ns);
+    last_resort.expect("the service of ROS 2", service_ns);
     ros2_.stop();
-    last_resort.expect("the live server", soft() * service_ns);
+    last_resort.expect("the live server", service_ns);
     live_.stop();
-    last_resort.expect("the server of kadans ctl", soft() * service_ns);
+    last_resort.expect("the server of kadans ctl", service_ns);
     ctl_.stop();
-    last_resort.expect("the end of the run", soft() * record_ns);
+    last_resort.expect("the end of the run", record_ns);
   }
 
   int end_before_start(RunThreads& threads, LastResort& last_resort) {
@@ -471,7 +470,7 @@ class WallClockRun {
   // Lets `seconds` pass. It does not wait for a control thread that stands still: then a thread hangs.
   void pass(RunThreads& threads, double seconds) {
     Wait& wait = threads.supervisor();
-    const std::int64_t patience_ns = options_.virtual_time ? standing_ns : soft() * joining_ns;
+    const std::int64_t patience_ns = options_.virtual_time ? standing_ns : joining_ns;
     const std::int64_t end_ns = wait.now_ns() + std::llround(seconds * 1e9);
     std::int64_t moved_ns = WallClock().now_ns();
     for (std::uint64_t ticks = control_.ticks(); !stands_still_ && wait.now_ns() < end_ns;) {
