@@ -50,9 +50,9 @@ class BehaviorInputs {
   virtual void asked(Asked /*kind*/, std::span<const std::byte> /*bytes*/) { looks_ = 0; }
 
   // From a process of its own to the one that writes the record: what was told since, as bytes that are passed on
-  // there.
-  virtual void take(ByteWriter& /*told*/) {}
-  virtual void pass_on(std::span<const std::byte> /*told*/) {}
+  // there. False: they are rubbish.
+  virtual void tell_on(ByteWriter& /*told*/) {}
+  [[nodiscard]] virtual bool pass_on(std::span<const std::byte> /*told*/) { return true; }
 
  protected:
   std::uint32_t looks_ = 0;  // at the clock, since a tick began or ended or somebody asked

@@ -344,7 +344,7 @@ TEST_CASE("What another process took is passed on, also from the next one, and w
     return read_all(message.bytes(), all);
   };
   record.tick_begins({}, 0);
-  for (const auto* bytes : {&first, &second, &anew}) record.pass_on(*bytes);
+  for (const auto* bytes : {&first, &second, &anew}) CHECK(record.pass_on(*bytes));
   record.tick_ends();
   std::vector<BehaviorInput> all;
   REQUIRE(read(all));
@@ -354,11 +354,21 @@ TEST_CASE("What another process took is passed on, also from the next one, and w
   CHECK(all[3].how == Asked::decided);
   CHECK(all[4].value == 0.6);
   CHECK(all[6].value == 0.8);
-  record.pass_on(third);  // of a process that is gone: its numbers do not go on from the last one's
+  CHECK(record.pass_on(third));  // of a process that is gone: its numbers do not go on from the last one's
   record.tick_begins({}, 0);
   ByteWriter gap;
   record.take(gap);
   CHECK(number_of_behavior_input(ByteReader(gap.bytes())) == 10);
+
+  RecordedInputs liar("/project");
+  liar.tick_begins({}, 0);  // of another process that is the record's own to tell
+  ByteWriter lie;
+  liar.take(lie);
+  CHECK_FALSE(record.pass_on(lie.bytes()));
+  liar.file_read(std::string(5000, 'a'), "");
+  lie.clear();
+  liar.take(lie);
+  CHECK_FALSE(record.pass_on(lie.bytes()));
 
   RandomStream random(13, "rubbish");
   for (int i = 0; i < 2000; ++i) {
@@ -366,7 +376,7 @@ TEST_CASE("What another process took is passed on, also from the next one, and w
     damaged[random.next() % damaged.size()] = static_cast<std::byte>(random.next());
     if (i % 2 == 0) damaged.resize(random.next() % damaged.size());
     RecordedInputs fresh("/project");
-    fresh.pass_on(damaged);
+    (void)fresh.pass_on(damaged);
     ByteWriter message;
     fresh.take(message);
     std::vector<BehaviorInput> some;

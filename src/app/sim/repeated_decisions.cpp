@@ -58,8 +58,11 @@ void RepeatedDecisions::repeat_tick(const Snapshot& newest) {
   copy_used(newest, snapshot_);
   looks_ = 0;
   for (const BehaviorInput& input : tick_.inputs()) write_file_(input);
-  for (const BehaviorInput& input : tick_.inputs()) {
-    if (input.kind == BehaviorInput::Kind::asked) take(input);
+  for (std::size_t i = 0; i < tick_.inputs().size(); ++i) {
+    const BehaviorInput& input = tick_.inputs()[i];
+    if (input.kind != BehaviorInput::Kind::asked) continue;
+    tick_.turn_to(i);
+    take(input);
   }
 }
 
@@ -106,12 +109,10 @@ void RepeatedDecisions::take(const BehaviorInput& input) {
   }
 }
 
-// The process that was to go on did so from what the last one left, which is what is here; before the first tick, from
-// nothing.
+// Another process went on from what the last one left, which is what is here.
 void RepeatedDecisions::take_over() {
-  if (ticks_ == 0) return;
   try {
-    const std::string why = decisions_.take_over(snapshot_);
+    const std::string why = decisions_.take_over(snapshot_, ticks_ == 0);
     if (!why.empty()) part("they cannot go on as another process: " + why);
   } catch (const std::exception& error) {
     part(std::string("they cannot go on as another process: ") + error.what());

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "config/robot/project_root.h"
+#include "event_text.h"
 
 namespace kadans {
 namespace {
@@ -204,6 +205,8 @@ std::vector<PlayItem> read_play_items(std::string_view text, TextPlace start, co
         argument.place = place_of(at);
         item.arguments.push_back(std::move(argument));
       }
+      if (const std::string why = out_of_bounds(item.arguments); !why.empty())
+        problems.add(place, "what to play: " + why);
       items.push_back(std::move(item));
     }
   } catch (const Mistake& mistake) {

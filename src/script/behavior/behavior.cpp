@@ -546,6 +546,13 @@ void Behavior::tell_active(std::int64_t time_ns) noexcept {
   parts_->log.active({time_ns, name(), told_paths_});
 }
 
+void Behavior::number_as(const Behavior& other) {
+  first_paths_ = other.first_paths_;
+  status_.region_paths = other.status_.region_paths;
+  number_states();
+  publish_status();
+}
+
 // After its chart was loaded. A state that is new has the number of the one around it.
 void Behavior::number_states() {
   const std::vector<Chart::State>& states = chart().states;

@@ -120,6 +120,8 @@ class Behavior {
   std::uint64_t events_unhandled() const noexcept;
   std::size_t heap_bytes() const noexcept;
   const BehaviorStatus& status() const noexcept { return status_; }
+  // Before its first tick: its status has the numbers of the other one's states, in whose place it is.
+  void number_as(const Behavior& other);
   // The control sets of this behavior and of those that it calls, and the objects that they may move (all objects when
   // one of them has no set).
   SetMask control_sets() const noexcept;

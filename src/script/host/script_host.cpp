@@ -58,13 +58,19 @@ ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, Behavio
   for (const Event& event : settings.events) {
     events_.push_back({event.at_ns, event.order, load(event.order.list, true, problems)});
   }
-  (void)load(settings.ordered_later, true, problems);
+  if (settings.kept.empty()) check_ordered_later(problems);
   if (!problems.empty()) throw InputError(problems);
   std::ranges::stable_sort(events_, {}, &Due::at_ns);
   list_.append(first);
 }
 
 ScriptHost::~ScriptHost() = default;
+
+// What plays goes on in another process, whatever has been saved of it meanwhile.
+void ScriptHost::check_ordered_later(std::vector<InputProblem>& problems) {
+  for (const PlayList::Entry& entry : load(settings_.ordered_later, true, problems))
+    std::ranges::move(entry.behavior->files(), std::back_inserter(later_files_));
+}
 
 std::vector<PlayList::Entry> ScriptHost::load(const std::vector<PlayItem>& list, bool lasting,
                                               std::vector<InputProblem>& problems) {
@@ -193,7 +199,7 @@ void ScriptHost::declare_signals(SignalTable& signals) {
 }
 
 std::vector<std::filesystem::path> ScriptHost::files() const {
-  std::vector<std::filesystem::path> all;
+  std::vector<std::filesystem::path> all = later_files_;
   const auto add = [&all](const Behavior& behavior) {
     for (std::filesystem::path& file : behavior.files()) all.push_back(std::move(file));
   };

@@ -124,6 +124,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
     PlayOrder order;
     std::vector<PlayList::Entry> loaded{};
   };
+  void check_ordered_later(std::vector<InputProblem>& problems);
   std::vector<PlayList::Entry> load(const std::vector<PlayItem>& list, bool lasting,
                                     std::vector<InputProblem>& problems);
 
@@ -164,6 +165,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   std::vector<SignalState> signal_states_;
   std::string lost_;
   BehaviorInputs* inputs_ = nullptr;
+  std::vector<std::filesystem::path> later_files_;  // of what orders will bring
   LineWatch* line_watch_ = nullptr;
 };
 

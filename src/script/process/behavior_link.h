@@ -97,7 +97,7 @@ struct BehaviorLink {
     PlayReport plays;                // of behaviors: what plays now
     std::uint32_t decided_size = 0;  // of decisions: what they ask for
     std::array<std::byte, decided_bytes> decided{};
-    std::uint32_t told_size = 0;  // and what they took: BehaviorInputs::take
+    std::uint32_t told_size = 0;  // and what they took: BehaviorInputs::tell_on
     std::array<std::byte, told_bytes> told{};
     // To each question, and to each order that was refused, behind its number.
     std::uint32_t reply_size = 0;

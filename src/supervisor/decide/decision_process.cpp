@@ -54,13 +54,14 @@ bool DecisionProcess::tick(const Snapshot& snapshot, const PlayReport& report) n
   }
   take_replies();
   if (std::exchange(answers_, process_->answers()) == process_->answers()) return false;
+  bool sound = false;
   try {
-    if (take_decided()) {
-      tell_taken();
-      return true;
-    }
+    sound = take_decided();
   } catch (const std::exception&) {  // no memory for what it says
   }
+  // The next process goes on from this tick, whatever came of it here.
+  sound = tell_taken() && sound;
+  if (sound) return true;
   decided_.orders.clear();
   decided_.messages.clear();
   process_->end_for_rubbish();
@@ -81,14 +82,16 @@ bool DecisionProcess::take_decided() {
 }
 
 // The process has told what it took since; of ticks whose answer did not come nobody knows it, and none of them counts.
-void DecisionProcess::tell_taken() {
-  if (inputs_ == nullptr) return;
+bool DecisionProcess::tell_taken() {
+  if (inputs_ == nullptr) return true;
   inputs_->tick_begins(asked_with_, asked_with_.time_ns);
   inputs_->asked(BehaviorInputs::Asked::seen, std::as_bytes(std::span(&seen_with_, 1)));
-  if (std::exchange(takeovers_, process_->takeovers()) != takeovers_)
-    inputs_->asked(BehaviorInputs::Asked::taken_over, {});
-  inputs_->pass_on(process_->told());
+  const std::uint64_t takeovers = process_->takeovers();
+  if (takeovers != takeovers_) inputs_->asked(BehaviorInputs::Asked::taken_over, {});
+  takeovers_ = takeovers;
+  const bool sound = inputs_->pass_on(process_->told());
   inputs_->tick_ends();
+  return sound;
 }
 
 bool DecisionProcess::may_play(const PlayOrder& order) const {
@@ -181,7 +184,7 @@ BehaviorReply ServedDecisions::reply(const BehaviorQuestion& question, const Sna
 
 std::span<const std::byte> ServedDecisions::told() noexcept {
   told_.clear();
-  if (inputs_ != nullptr) inputs_->take(told_);
+  if (inputs_ != nullptr) inputs_->tell_on(told_);
   return told_.bytes();
 }
 

@@ -53,7 +53,7 @@ class DecisionProcess final : public Decider {
   };
 
   bool take_decided();
-  void tell_taken();
+  bool tell_taken();
   bool may_play(const PlayOrder& order) const;
   void take_replies();
 

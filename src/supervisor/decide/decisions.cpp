@@ -47,6 +47,13 @@ std::unique_ptr<Behavior> Decisions::load() const {
                         "\" { ... }"});
 }
 
+// Its signals go on with the numbers of the first one.
+void Decisions::load_anew() {
+  std::unique_ptr<Behavior> loaded = load();
+  loaded->number_as(*behavior_);
+  behavior_ = std::move(loaded);
+}
+
 void Decisions::declare_signals(SignalTable& signals, std::vector<SignalState>& states) {
   shown_.region_paths = behavior_->status().region_paths;
   add_signal_states(behavior_->chart(), shown_.declare_numbered(signals, behavior_->name()), signals, states);
@@ -138,7 +145,7 @@ BehaviorReply Decisions::read_again(const Snapshot& snapshot) noexcept {
                     (behavior_->finished() ? "it is over" : "the files are as they were loaded")};
   }
   try {
-    behavior_ = load();
+    load_anew();
     asked_ = false;
     log_.message(snapshot.time_ns, BehaviorLog::Severity::info, behavior_->name(), "begins anew");
     return {.text = behavior_->name() + ": begins anew"};
@@ -177,10 +184,11 @@ std::string Decisions::go_on(ByteReader& bytes, const Snapshot& snapshot) noexce
   return behavior_->go_on(bytes, snapshot, silence_) ? "" : behavior_->error().text();
 }
 
-std::string Decisions::take_over(const Snapshot& snapshot) {
+std::string Decisions::take_over(const Snapshot& snapshot, bool from_beginning) {
   ByteWriter kept;
-  if (std::string why = keep(kept); !why.empty()) return why;
-  behavior_ = load();
+  if (std::string why = keep(kept); !from_beginning && !why.empty()) return why;
+  load_anew();
+  if (from_beginning) return "";
   ByteReader bytes(kept.bytes());
   return go_on(bytes, snapshot);
 }

@@ -41,14 +41,16 @@ class Decisions final : public Decider {
   std::string keep(ByteWriter& bytes);
   // Before the first tick: goes on from bytes of keep(). Returns "", or why not.
   std::string go_on(ByteReader& bytes, const Snapshot& snapshot) noexcept;
-  // Between two ticks: as another process goes on that takes over. Returns "", or why not.
-  std::string take_over(const Snapshot& snapshot);
+  // Between two ticks: as another process goes on that takes over, from the beginning where there was no tick yet.
+  // Returns "", or why not. Throws InputError: the files are wrong by now.
+  std::string take_over(const Snapshot& snapshot, bool from_beginning);
 
   Behavior& behavior() noexcept { return *behavior_; }
   const Behavior& behavior() const noexcept { return *behavior_; }
 
  private:
   std::unique_ptr<Behavior> load() const;
+  void load_anew();
   BehaviorReply read_again(const Snapshot& snapshot) noexcept;
   void hear(const PlayReport& report) noexcept;
   void tell(const char* event, const std::string& why = "") noexcept;

@@ -200,8 +200,19 @@ bool TakenTick::read(BehaviorInputReader& reader) {
   return false;
 }
 
+void TakenTick::turn_to(std::size_t asked) noexcept {
+  const auto is_asked = [this](std::size_t i) { return inputs_[i].kind == BehaviorInput::Kind::asked; };
+  moment_ = end_ = asked;
+  if (inputs_[asked].how == BehaviorInputs::Asked::decided) {
+    while (moment_ > 0 && !is_asked(moment_ - 1)) --moment_;
+    return;
+  }
+  moment_ = ++end_;
+  while (end_ < inputs_.size() && !is_asked(end_)) ++end_;
+}
+
 double TakenTick::parameter(double newest) noexcept {
-  for (std::size_t i = moment_; i < inputs_.size(); ++i) {
+  for (std::size_t i = moment_; i < std::min(end_, inputs_.size()); ++i) {
     if (inputs_[i].kind != BehaviorInput::Kind::parameter) continue;
     moment_ = i + 1;
     return inputs_[i].value;
@@ -210,7 +221,8 @@ double TakenTick::parameter(double newest) noexcept {
 }
 
 bool TakenTick::time_is_over(std::uint32_t look) noexcept {
-  for (std::size_t i = moment_; i < inputs_.size() && inputs_[i].kind != BehaviorInput::Kind::parameter; ++i) {
+  for (std::size_t i = moment_; i < std::min(end_, inputs_.size()) && inputs_[i].kind != BehaviorInput::Kind::parameter;
+       ++i) {
     if (inputs_[i].kind != BehaviorInput::Kind::time_over || inputs_[i].number != look) continue;
     moment_ = i + 1;
     return true;

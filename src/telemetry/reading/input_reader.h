@@ -128,6 +128,10 @@ class TakenTick {
   std::uint64_t snapshot() const noexcept { return snapshot_; }  // as BehaviorInput has it
   const std::vector<BehaviorInput>& inputs() const noexcept { return inputs_; }
 
+  // Of decisions: from now on scripts get what they took while the input with this index, which was asked, was carried
+  // out. What decided told so afterwards, all else before.
+  void turn_to(std::size_t asked) noexcept;
+
   // What scripts get in the repetition, in their order: a parameter, and whether their time ended at this look.
   double parameter(double newest) noexcept;
   bool time_is_over(std::uint32_t look) noexcept;
@@ -136,7 +140,8 @@ class TakenTick {
   std::vector<BehaviorInput> inputs_;
   std::uint64_t snapshot_ = 0;
   bool begun_ = false;
-  std::size_t moment_ = 0;  // those before are used up
+  std::size_t moment_ = 0;      // those before are used up
+  std::size_t end_ = SIZE_MAX;  // and those from here on are of something else
 };
 
 }  // namespace kadans

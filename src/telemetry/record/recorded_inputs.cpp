@@ -14,6 +14,7 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t event_head = 2 * sizeof(std::uint32_t);  // bytes behind the head, number
+constexpr std::size_t files_max = 4096, path_bytes_max = 4096;
 
 }  // namespace
 
@@ -92,17 +93,20 @@ void RecordedInputs::file_read(const std::string& path, std::string_view text) {
   if (flight_ != nullptr) return;
   const std::filesystem::path below = std::filesystem::path(path).lexically_relative(root_);
   const std::string name = below.empty() || *below.begin() == ".." ? path : below.generic_string();
-  if (is_known(name, text)) return;
   const bool left_out =
       std::ranges::any_of(private_files_, [&](const std::string& pattern) { return matches(pattern, name); });
+  const std::string hash = left_out ? content_hash(text) : "";
+  if (left_out) text = hash;
+  if (is_known(name, text)) return;
   begin(left_out ? BehaviorInput::Kind::private_file : BehaviorInput::Kind::file);
   event_.put_string(name);
-  event_.put_string(left_out ? content_hash(text) : text);
+  event_.put_string(text);
   push();
 }
 
-// From now on it is.
+// From now on it is, but for those that are too many for a robot.
 bool RecordedInputs::is_known(const std::string& name, std::string_view text) {
+  if (hash_of_.size() >= files_max && !hash_of_.contains(name)) return false;
   const std::size_t hash = std::hash<std::string_view>()(text);
   const auto [known, added] = hash_of_.try_emplace(name, hash);
   return !added && std::exchange(known->second, hash) == hash;
@@ -191,7 +195,7 @@ void RecordedInputs::take(ByteWriter& message) {
   flight_ != nullptr ? take_all(*flight_) : take_all(*ring_);
 }
 
-void RecordedInputs::pass_on(std::span<const std::byte> told) {
+bool RecordedInputs::pass_on(std::span<const std::byte> told) {
   using Kind = BehaviorInput::Kind;
   ByteReader reader(told);
   while (reader.left() > 0) {
@@ -203,13 +207,14 @@ void RecordedInputs::pass_on(std::span<const std::byte> told) {
     (void)event.take<std::uint32_t>();
     const std::span<const std::byte> bytes = event.take_bytes(size);
     BehaviorInput input;
-    if (!take_behavior_input(reader, expected_, input) || input.kind == Kind::tick_begins ||
-        input.kind == Kind::tick_ends || input.kind == Kind::sent || input.kind == Kind::newer ||
-        input.kind == Kind::handed_down) {
-      ++number_;
-      return;
-    }
+    const bool whole = take_behavior_input(reader, expected_, input);
     const bool file = input.kind == Kind::file || input.kind == Kind::private_file;
+    const bool may =
+        file || input.kind == Kind::parameter || input.kind == Kind::time_over || input.kind == Kind::asked;
+    if (!whole || !may || (file && input.path.size() > path_bytes_max)) {
+      ++number_;
+      return false;
+    }
     if (file && is_known(input.path, input.text)) continue;
     event_.clear();
     event_.put(std::uint32_t{0});
@@ -217,6 +222,7 @@ void RecordedInputs::pass_on(std::span<const std::byte> told) {
     event_.put(bytes);
     push();
   }
+  return true;
 }
 
 void EventSorter::sort(std::span<const std::byte> events, ByteWriter* record, ByteWriter* flight) {

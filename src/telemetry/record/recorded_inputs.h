@@ -75,8 +75,8 @@ class RecordedInputs final : public BehaviorInputs, public HandedDownSink {
   explicit RecordedInputs(FlightAlone);
   static constexpr std::size_t flight_bytes = std::size_t{1} << 16U;
 
-  // Before the loop: a file whose text the record has already.
-  void knows(const std::string& path, std::string_view text) { hash_of_[path] = std::hash<std::string_view>()(text); }
+  // Before the loop: a file whose text the record has already; of a private one the hash of its content.
+  void knows(const std::string& path, std::string_view text) { (void)is_known(path, text); }
 
   void tick_begins(const Snapshot& snapshot, std::int64_t time_ns) override;
   void tick_ends() override;
@@ -88,10 +88,11 @@ class RecordedInputs final : public BehaviorInputs, public HandedDownSink {
   void asked(Asked kind, std::span<const std::byte> bytes) override;
   void handed_down(std::uint32_t storage, std::int64_t number, std::span<const std::byte> value) noexcept override;
 
-  // Record thread, or that of a process of its own: moves what waits to the end of `message`.
-  void take(ByteWriter& message) override;
-  // What take() gave in another process, which may be hostile. Where something is missing, it is missing here, too.
-  void pass_on(std::span<const std::byte> told) override;
+  // Record thread: moves what waits to the end of `message`.
+  void take(ByteWriter& message);
+  void tell_on(ByteWriter& told) override { take(told); }
+  // What tell_on() gave in another process, which may be hostile. Where something is missing, it is missing here, too.
+  [[nodiscard]] bool pass_on(std::span<const std::byte> told) override;
   std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
