@@ -5,15 +5,26 @@ local rolling = require "rolling"
 local game = {}
 
 local set, playing = 2, 3
+local low, empty = 0.15, 0.03  -- of a full battery
 
 -- "wait": it stands; "ready": it goes to its place for the kick-off; "play".
 function game.phase(s, m)
   local told = s.seen.game
   if not (told.confidence > 0) or told.penalty > 0.5 or told.stopped > 0.5 then return "wait" end
+  if game.charge(s) < empty then return "wait" end
   if told.state == 1 then return "ready" end
   if told.state == set then return m.vars.whistled and "play" or "wait" end
   return told.state == playing and "play" or "wait"
 end
+
+-- The share that is left in its battery; 1 where nothing tells of it. Who is empty stands, before its legs give way.
+function game.charge(s)
+  local battery = s.seen.battery
+  return battery and battery.confidence > 0 and battery.charge or 1
+end
+
+-- It goes to the ball only when no mate does, and nowhere else.
+function game.saves(s) return game.charge(s) < low end
 
 -- The whistle tells of playing 10 s before the game controller does; to be called in each tick.
 function game.listen(m, s)

@@ -36,6 +36,18 @@ describe("game", function()
     expect(game.phase(told(3, { confidence = 0 }), m)).to_equal "wait"
   end)
 
+  it("stands when its battery is empty, and saves it before", function()
+    local m, s = robot(), told(3)
+    expect(game.saves(s)).to_be_false()
+    for _, row in ipairs { { 0.5, "play", false }, { 0.1, "play", true }, { 0.02, "wait", true } } do
+      s.seen.battery = { confidence = 1, charge = row[1] }
+      expect(game.phase(s, m)).to_equal(row[2])
+      expect(game.saves(s)).to_equal(row[3])
+    end
+    s.seen.battery = { confidence = 0, charge = 0 / 0 }  -- nothing tells of it
+    expect(game.phase(s, m)).to_equal "play"
+  end)
+
   it("plays from the whistle on, which is no word of another half's", function()
     local m, s = robot(), told(2)
     s.seen.whistle = { confidence = 1, count = 1 }

@@ -8,13 +8,16 @@ local roles = {}
 
 local keeps_s = 1.5   -- who is the striker stays it, unless another one is faster by that
 local rises_s = 8
+local saves_s = 20    -- longer: a mate with more in its battery goes
 local unknown_s = 60  -- to a ball that it does not know, or must leave to others
 local walks_m_s, turns_rad_s = 0.3, 0.6
 
--- What it tells its mates about its way to the ball.
-function roles.told(m, pose, ball)
-  return m.vars.leaves_ball and unknown_s or roles.far(pose, ball, m.vars.lies)
+local function own_way(m, pose, ball)
+  return roles.far(pose, ball, m.vars.lies) + (m.vars.saves and saves_s or 0)
 end
+
+-- What it tells its mates about its way to the ball.
+function roles.told(m, pose, ball) return m.vars.leaves_ball and unknown_s or own_way(m, pose, ball) end
 
 -- Seconds to stand behind the ball, facing the others' goal; more for one that lies.
 function roles.far(pose, ball, lies)
@@ -55,7 +58,7 @@ function roles.pick(m, s, pose, ball)
   local me = s.seen.me
   if m.vars.leaves_ball then return me.number == me.keeper and "keeper" or "supporter" end
   if me.number == me.keeper then return keeper_goes(m, s, pose, ball) and "striker" or "keeper" end
-  local own_s = roles.far(pose, ball, m.vars.lies) - (m.vars.role == "striker" and keeps_s or 0)
+  local own_s = own_way(m, pose, ball) - (m.vars.role == "striker" and keeps_s or 0)
   for number, mate in pairs(m.vars.mates) do
     if (number ~= me.keeper or mate.role == "striker") and game.plays(s, mate) then
       local their_s = mate.far_s - (mate.role == "striker" and keeps_s or 0)

@@ -38,6 +38,17 @@ describe("roles", function()
     expect(roles.pick(m, s, near, ball)).to_equal "striker"
   end)
 
+  it("leaves the ball to a mate when its battery is low, but goes when it is alone", function()
+    local m, s = robot(2, 1)
+    m.vars.mates[3] = { heard_s = 9, plays = true, far_s = roles.far(far, ball), role = "none" }
+    expect(roles.pick(m, s, near, ball)).to_equal "striker"
+    m.vars.saves = true
+    expect(roles.pick(m, s, near, ball)).to_equal "supporter"
+    expect(roles.told(m, near, ball)).to_be_near(roles.far(near, ball) + 20, 1e-9)
+    m.vars.mates = {}
+    expect(roles.pick(m, s, near, ball)).to_equal "striker"
+  end)
+
   it("leaves a ball before the own goal to the keeper, but not to one that is off the field or lies", function()
     local m, s = robot(2, 1)
     local before_goal, here = { x_m = -3.5, y_m = 0 }, { x_m = -2, y_m = 0, heading_rad = 0 }

@@ -40,7 +40,10 @@ local function play(m, s)
   if not pose then return legs.stand(m, s) end
   local ball = game.ball(m, s, pose)
   note_kick_off(m, s, ball)
-  m.vars.can = { pass = P.passes > 0.5, dribble = P.dribbles > 0.5, support = P.supports > 0.5, dive = P.dives > 0.5 }
+  m.vars.saves = game.saves(s)
+  m.vars.can = {
+    pass = P.passes > 0.5, dribble = P.dribbles > 0.5, support = P.supports > 0.5 and not m.vars.saves, dive = P.dives > 0.5,
+  }
   m.vars.lies = legs.lies(m)
   kicks.look(m, s, pose)
   m.vars.leaves_ball = game.leaves_ball(m, s, pose, ball)
@@ -67,7 +70,7 @@ local function is_not(phase) return function(s, m) return game.phase(s, m) ~= ph
 return k.decisions "team" {
   vars = {
     mates = {}, others = {}, rolling = {}, can = {}, heard = false, lies = false, role = "none", kick = false,
-    takes = false, took_s = false, leaves_ball = false,
+    takes = false, took_s = false, leaves_ball = false, saves = false,
     told_s = -10, told_say = 0, told_role = "none", told_pass = false,
     whistled = false, whistles = 0, kick_off_ours = false, kick_off_theirs = false,
   },

@@ -1,4 +1,5 @@
 // Matches that robots play: what a file says, what is wrong in one, and short ones by their seed.
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -161,6 +162,34 @@ TEST_CASE("A robot's ball is what its pictures agree on: those that show it wher
   }
   CHECK(seen_m > 1);
   CHECK(filtered_m < 0.5);
+}
+
+TEST_CASE("Who is told that its battery is empty stands, and others play on") {
+  const MatchConfig match =
+      read_match(matches / "two_against_two.json", {"home.battery_s=12", "rules.hidden_playing_s=0", "start=field"});
+  auto world = std::make_unique<SimulatedMatch>(match, 2);
+  SimulatedMatch& stage = *world;
+  const auto charge = [&](std::size_t robot) {
+    return stage.simulation().signal(robot, *stage.catalog(robot).signals.find("seen.battery.charge"));
+  };
+  PlayedMatch played(match, 2, std::move(world), false);
+  double home_2_m = 0, away_2_m = 0;
+  Point home_2, away_2;
+  while (played.step() && stage.time_ns() < 40'000'000'000) {
+    (void)played.take_lines();
+    const Point home = ground_pose(stage.robot(1).truth().base).at(),
+                away = ground_pose(stage.robot(3).truth().base).at();
+    if (stage.time_ns() > 14'000'000'000) {
+      home_2_m += distance(home, home_2);
+      away_2_m += distance(away, away_2);
+    }
+    home_2 = home, away_2 = away;
+  }
+  CHECK(charge(0) == 0);
+  CHECK(charge(1) == 0);
+  CHECK(std::isnan(charge(2)));
+  CHECK(home_2_m < 0.2);
+  CHECK(away_2_m > 1);
 }
 
 // Nobody hears that play is on: all stand.

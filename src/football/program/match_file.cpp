@@ -152,6 +152,8 @@ void read_team(InputObject& f, TeamSetup& team) {
   f.path("robot", team.robot, "the configuration of its robots");
   f.whole("players", team.players, 1, team_players_max, "robots of the team", true);
   f.whole("keeper", team.keeper, 0, team_players_max, "number of the keeper, 0: none");
+  f.number("battery_s", team.battery_s, {0, 1e5, "s"},
+           "how long a full battery lasts, up to a fifth less from robot to robot; 0: nothing tells of it");
   const bool given = f.text("parameters", team.parameters, "parameters of its decisions: \"passes=0, dives=0\"");
   if (given) team.parameters_place = f.place("parameters");
   if (team.parameters.find_first_of("{}\"") != std::string::npos)
@@ -244,6 +246,8 @@ std::string world_model() {
           "length_m": { "unit": "m" , "what": "of the field" }, "width_m": { "unit": "m", "what": "of the field" },
           "goal_m": { "unit": "m", "what": "width of the goals" }, "circle_m": { "unit": "m", "what": "radius of the centre circle" },
           "mark_m": { "unit": "m", "what": "from a penalty mark to its goal line" } } },
+      "battery": { "what": "the robot's battery, where something tells of it", "fields": {
+          "charge": { "what": "share that is left", "min": 0, "max": 1 } } },
       "radio": { "what": "when to tell its mates something", "fields": {
           "say": { "what": "how often a message was worth its price so far" },
           "left": { "what": "messages that it may still send" } } })";

@@ -31,6 +31,7 @@ struct TeamSetup {
   std::string parameters;                                     // of its decisions: "passes=0, dives=0"
   InputProblem parameters_place;                              // where they stand
   std::uint64_t players = 1, keeper = 0;                      // keeper 0: there is none
+  double battery_s = 0;                                       // that a full battery lasts; 0: nothing tells of it
   std::array<std::optional<Pose2>, team_players_max> places;  // of a drill, in the team's frame
 };
 

@@ -10,6 +10,7 @@ constexpr double false_share = 0.05, landmark_missed = 0.4, line_missed = 0.3, l
 constexpr double placed_sd_m = 0.1, placed_sd_rad = 0.1, penalised_sd_m = 0.5, penalised_sd_rad = 0.25;
 constexpr double penalised_edge_m = 0.2;  // from the carpet's edge
 constexpr double near_m = 0.3;            // what lies nearer is below the camera
+constexpr double battery_least = 0.8;     // of what a battery lasts: the poorest one
 constexpr double ball_sd_m = 0.03;
 constexpr std::size_t ways_kept = 40;  // 0.8 s
 constexpr std::int64_t self_every_ns = 1'000'000'000;
@@ -41,6 +42,9 @@ RobotSenses::RobotSenses(const MatchConfig& match, MatchWorld& played_in, std::s
       whistle_entry_(entry_of(played_in.catalog(number), "whistle")),
       me_entry_(entry_of(played_in.catalog(number), "me")),
       radio_entry_(entry_of(played_in.catalog(number), "radio")),
+      battery_entry_(entry_of(played_in.catalog(number), "battery")),
+      battery_s_(match.team(id.side).battery_s *
+                 RandomStream(seed, "football.battery of " + robot_name(id)).uniform(battery_least, 1)),
       policy_({.game_messages = static_cast<double>(match.rules.messages)}) {
   for (std::size_t i = 1; i <= robots_told; ++i)
     robot_entries_.push_back(entry_of(played_in.catalog(number), "robot_" + std::to_string(i)));
@@ -161,6 +165,7 @@ void RobotSenses::tell_self() {
   tell(me_entry_,
        {static_cast<double>(id_.number), static_cast<double>(team.keeper), static_cast<double>(team.players),
         field_.length_m, field_.width_m, field_.goal.width_m, field_.circle_radius_m, field_.penalty_mark_m});
+  if (battery_s_ > 0) tell(battery_entry_, {std::max(0.0, 1 - 1e-9 * static_cast<double>(now_ns()) / battery_s_)});
 }
 
 void RobotSenses::hear(Bytes packet) {

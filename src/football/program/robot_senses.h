@@ -91,7 +91,9 @@ class RobotSenses {
   std::deque<Late> late_;
   std::deque<LateView> late_views_;
   std::int64_t picture_due_ns_ = 0, self_due_ns_ = 0;
-  std::uint32_t ball_entry_, ball_seen_entry_, field_entry_, game_entry_, whistle_entry_, me_entry_, radio_entry_;
+  std::uint32_t ball_entry_, ball_seen_entry_, field_entry_, game_entry_, whistle_entry_, me_entry_, radio_entry_,
+      battery_entry_;
+  double battery_s_;  // that its battery lasts; 0: it tells nothing
   std::vector<std::uint32_t> robot_entries_;
   std::uint32_t whistles_ = 0;
   Penalty penalty_ = Penalty::none;
