@@ -81,9 +81,6 @@ class NamedLog final : public BehaviorLog, private LineSink {
   BehaviorLog& log_;
 };
 
-// "left.joint.*.torque_scale" is for the further robot "left".
-bool is_of(const NumberEntry& entry, const ScenarioConfig& robot) { return entry.key.starts_with(robot.name + "."); }
-
 // Checks the behaviors' names in events; they are known only after loading.
 void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
   const std::vector<std::string> names = host.names();
@@ -160,11 +157,6 @@ void Assembly::begin_others() {
     robot.world.payload_links.clear();
     robot.world.carried.clear();
     robot.plugins = scenario_.plugins;
-    for (const NumberEntry& entry : scenario_.set_last) {
-      if (!is_of(entry, robot)) continue;
-      robot.set_last.push_back(entry);
-      robot.set_last.back().key.erase(0, robot.name.size() + 1);
-    }
     const std::uint64_t seed = RandomStream(seed_, "robot " + robot.name).next();
     others_.emplace_back(new Assembly(Begun{}, robot, seed, log_, nullptr, Outside(), others_.size() + 1));
     for (const QuantityValue& theirs : others_.back()->quantities_)
@@ -297,15 +289,11 @@ void Assembly::make_perception() {
 void Assembly::show_others() {
   for (const auto& other : others_) {
     const SignalTable& theirs = other->catalog().signals;
-    std::vector<SignalState> states = other->states_;
     for (SignalId id = 0; id < theirs.size(); ++id) {
       const bool upkeep = id - other->upkeep_first_ < other->upkeep_count_;
       if (upkeep && std::ranges::find(other->states_, id, &SignalState::signal) == other->states_.end()) continue;
-      const auto shown = static_cast<SignalId>(control_system_->catalog.signals.size());
-      for (std::size_t i = 0; i < states.size(); ++i) {
-        if (other->states_[i].signal == id) states[i].signal = shown;
-      }
-      if (upkeep || std::ranges::binary_search(other->unhashed_, id)) unhashed_.push_back(shown);
+      if (upkeep || std::ranges::binary_search(other->unhashed_, id))
+        unhashed_.push_back(static_cast<SignalId>(control_system_->catalog.signals.size()));
       Signal signal = theirs.info(id);
       signal.name.insert(0, other->scenario_.name + ".");
       if (control_system_->catalog.signals.find(signal.name))
@@ -313,8 +301,9 @@ void Assembly::show_others() {
                "name " + in_quotes(other->scenario_.name) + ": its signal would be the first robot's " + signal.name);
       control_system_->catalog.signals.add(std::move(signal), &other->control_->row()[id]);
     }
-    for (SignalState& state : states) {
+    for (SignalState state : other->states_) {
       state.robot = other->scenario_.name;
+      state.signal = control_system_->catalog.signals.find(state.robot + "." + theirs.info(state.signal).name).value();
       states_.push_back(std::move(state));
     }
   }
@@ -336,12 +325,7 @@ void Assembly::vary() {
   Quantities quantities(variant_, control_system_->catalog, number_ > 0);
   for (const NumberEntry& entry : scenario_.set) quantities.set(entry, quantities_, problems);
   for (const Variation& variation : scenario_.randomise) quantities.draw(variation, seed_, quantities_, problems);
-  const auto is_theirs = [this](const NumberEntry& entry) {
-    return std::ranges::any_of(scenario_.robots, [&](const ScenarioConfig& robot) { return is_of(entry, robot); });
-  };
-  for (const NumberEntry& entry : scenario_.set_last) {
-    if (!is_theirs(entry)) quantities.set(entry, quantities_, problems);
-  }
+  for (const NumberEntry& entry : scenario_.set_last) quantities.set(entry, quantities_, problems);
   problems.throw_if_any();
   for (const auto& object : control_system_->objects) object->parameters_changed();
 }

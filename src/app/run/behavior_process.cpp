@@ -7,6 +7,7 @@
 #include "app/terminal.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
+#include "kadans/signal/nearest_name.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/placement.h"
 #include "remote/instance/run_description.h"
@@ -72,12 +73,6 @@ ScenarioConfig live_scenario(const RunOptions& options) {
   return scenario;
 }
 
-std::vector<std::string> private_files(const RobotConfig& robot) {
-  std::vector<std::string> patterns;
-  for (const PlacedName& pattern : robot.record.private_files) patterns.push_back(pattern.name);
-  return patterns;
-}
-
 std::unique_ptr<ProcessHost> start_behavior_process(const RunOptions& options, BehaviorLog& log) {
   ProcessHost::Settings settings = process_settings(options, "behavior-process");
   if (!options.play.empty()) settings.arguments.insert(settings.arguments.end(), {"--play", options.play});
@@ -123,8 +118,8 @@ int run_behavior_process(const RunOptions& options) {
                                                     folders_of(scenario), scenario.seed, scenario.on_wall_clock);
     BehaviorInputs* inputs = nullptr;
     std::optional<RecordedInputs> taken;
-    if (link.setup.tells != 0)
-      inputs = &taken.emplace(project_root(scenario.file).string(), private_files(robot.config));
+    if (link.setup.tells != 0 && robot.config.record.inputs)
+      inputs = &taken.emplace(project_root(scenario.file).string(), names_of(robot.config.record.private_files));
     settings.limits.inputs = &inputs;
     Decisions decisions(settings, system->catalog, log);
     ServedDecisions served(decisions, log, bytes, inputs);

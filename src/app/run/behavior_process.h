@@ -5,8 +5,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "app/commands.h"
 #include "script/process/process_host.h"
@@ -15,9 +13,6 @@ namespace kadans {
 
 // The scenario that corresponds to a live run.
 ScenarioConfig live_scenario(const RunOptions& options);
-
-// Patterns of the files of which a record has the hash alone.
-std::vector<std::string> private_files(const RobotConfig& robot);
 
 // Starts the process. It writes mistakes that it finds to standard error. Throws std::system_error.
 std::unique_ptr<ProcessHost> start_behavior_process(const RunOptions& options, BehaviorLog& log);

@@ -68,7 +68,7 @@ ScenarioConfig read_scenario(const RunChoices& choices) {
   ScenarioConfig scenario = read_scenario_config(choices.scenario);
   scenario.plugins = choices.plugins;
   if (!choices.play.empty()) scenario.behaviors = read_play_items(choices.play, "--play", folders_of(scenario));
-  for (const std::string& setting : choices.set) scenario.set_last.push_back(parse_setting(setting));
+  for (const std::string& setting : choices.set) set_last(scenario, parse_setting(setting));
   return scenario;
 }
 

@@ -31,6 +31,7 @@
 #include "engine/behavior_log.h"
 #include "engine/tick/control_engine.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/nearest_name.h"
 #include "last_resort.h"
 #include "plant/joystick/joystick_device.h"
 #include "real_time_start.h"
@@ -345,9 +346,9 @@ class WallClockRun {
 
   void take_inputs(const RunInputs& inputs) {
     const std::string root = project_root(scenario_.file).string();
-    taken_.emplace(root, private_files(assembly_.robot()));
+    taken_.emplace(root, names_of(assembly_.robot().record.private_files));
     if (assembly_.supervisor() != nullptr && assembly_.supervisor()->decider() != nullptr)
-      taken_to_decide_.emplace(root, private_files(assembly_.robot()));
+      taken_to_decide_.emplace(root, names_of(assembly_.robot().record.private_files));
     for (const InputFile& file : inputs.files) {
       const std::string& known = file.text ? *file.text : file.hash;
       taken_->knows(file.path, known);

@@ -195,7 +195,7 @@ class Gathering {
   }
   void know_private(const RobotConfig& robot) {
     refuse_unknown_private(robot);
-    for (const PlacedName& pattern : robot.record.private_files) private_.push_back(pattern.name);
+    private_ = names_of(robot.record.private_files);
   }
 
   Folders folders_;

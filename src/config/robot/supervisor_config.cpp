@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kadans/signal/capacity.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {
@@ -76,10 +77,6 @@ void seen_entry(Fields& f, std::vector<SeenInfo>& all, Problems& problems) {
 
 constexpr std::size_t peers_max = 16;
 
-void take_names(std::vector<PlacedName>& placed, std::vector<std::string>& names) {
-  for (PlacedName& one : placed) names.push_back(std::move(one.name));
-}
-
 void messages_fields(Fields& f, MessagesConfig& messages, Problems& problems) {
   std::vector<PlacedName> peers, to;
   f.string("name", messages.name, "this robot's name among them", Need::required);
@@ -97,8 +94,8 @@ void messages_fields(Fields& f, MessagesConfig& messages, Problems& problems) {
     if (!is_name(peer.name)) problems.add(peer.place, f.path("peers") + ": a name must be " + name_rule);
     if (peer.name == messages.name) problems.add(peer.place, f.path("peers") + ": a robot does not hear itself");
   }
-  take_names(peers, messages.peers);
-  take_names(to, messages.to);
+  messages.peers = names_of(peers);
+  messages.to = names_of(to);
 }
 
 }  // namespace

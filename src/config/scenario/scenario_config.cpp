@@ -455,6 +455,14 @@ PlayFolders folders_of(const ScenarioConfig& scenario) {
   return {scenario.file, std::filesystem::path(scenario.robot).parent_path().filename().string()};
 }
 
+void set_last(ScenarioConfig& scenario, NumberEntry entry) {
+  const auto is_theirs = [&](const ScenarioConfig& robot) { return entry.key.starts_with(robot.name + "."); };
+  const auto robot = std::ranges::find_if(scenario.robots, is_theirs);
+  if (robot == scenario.robots.end()) return scenario.set_last.push_back(std::move(entry));
+  entry.key.erase(0, robot->name.size() + 1);
+  robot->set_last.push_back(std::move(entry));
+}
+
 ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file) {
   ScenarioConfig scenario;
   scenario.file = file;

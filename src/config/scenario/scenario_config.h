@@ -202,7 +202,7 @@ struct ScenarioConfig {
   } placed{};
   std::vector<NumberEntry> set;  // values of quantities, by patterns over their names
   std::vector<Variation> randomise;
-  std::vector<NumberEntry> set_last;  // not in the file: values that the command line sets, after all random draws
+  std::vector<NumberEntry> set_last;  // not in the file: see set_last()
   std::vector<PlayItem> behaviors;
   std::vector<ScenarioEvent> events;
   std::vector<ScenarioPush> pushes;
@@ -225,6 +225,10 @@ struct ScenarioConfig {
   std::string robot_name;  // of the first robot, for viewers; "": as its configuration has it
   PluginGate plugins;      // not in the file
 };
+
+// A value that the command line sets, after all random draws, in place of what the file says or draws: of the further
+// robot whose name it begins with ("left.joint.*.torque_scale"), else of the first one and the world.
+void set_last(ScenarioConfig& scenario, NumberEntry entry);
 
 // The folders in which the names of its behaviors are looked up.
 PlayFolders folders_of(const ScenarioConfig& scenario);

@@ -332,7 +332,8 @@ Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog
   for (const Chart::State& state : chart().states) {
     first_paths_.push_back(state.path);
     const bool shown = state.kind == Chart::Kind::region && BehaviorStatus::is_region_path(state.path);
-    if (shown && status_.region_paths.size() < BehaviorStatus::regions_max) status_.region_paths.push_back(state.path);
+    if (shown && status_->region_paths.size() < BehaviorStatus::regions_max)
+      status_->region_paths.push_back(state.path);
   }
   number_states();
   publish_status();
@@ -401,19 +402,19 @@ void Behavior::publish_status() noexcept {
   const auto store = [](std::atomic<std::uint32_t>& to, std::uint64_t value) {
     to.store(static_cast<std::uint32_t>(value), std::memory_order_relaxed);
   };
-  store(status_.instructions, parts.lua->core().budget.spent());
+  store(status_->instructions, parts.lua->core().budget.spent());
   const bool wall = parts.settings.limits.tick_wall_ns > 0;
   const std::int64_t began_ns = wall ? WallClock{}.now_ns() : 0;
   parts.lua->collect();
-  store(status_.gc_pause_ns, wall ? static_cast<std::uint64_t>(WallClock{}.now_ns() - began_ns) : 0);
-  store(status_.heap_bytes, parts.lua->used_bytes());
+  store(status_->gc_pause_ns, wall ? static_cast<std::uint64_t>(WallClock{}.now_ns() - began_ns) : 0);
+  store(status_->heap_bytes, parts.lua->used_bytes());
   // Decisions stay where they ended; a behavior that is over is in no state any more.
   const StateIndex ended = parts.chart.decides ? parts.runner->finished_by() : no_state;
-  store(status_.state, number_of(ended == no_state ? parts.runner->innermost() : ended));
+  store(status_->state, number_of(ended == no_state ? parts.runner->innermost() : ended));
   for (std::size_t i = 0; i < region_states_.size(); ++i) {
     const StateIndex region = region_states_[i];
     const bool active = region != no_state && parts.runner->active(region);
-    store(status_.regions[i], active ? number_of(parts.runner->innermost(region)) : 0);
+    store(status_->regions[i], active ? number_of(parts.runner->innermost(region)) : 0);
   }
 }
 
@@ -546,9 +547,9 @@ void Behavior::tell_active(std::int64_t time_ns) noexcept {
   parts_->log.active({time_ns, name(), told_paths_});
 }
 
-void Behavior::number_as(const Behavior& other) {
-  first_paths_ = other.first_paths_;
-  status_.region_paths = other.status_.region_paths;
+void Behavior::take_place_of(Behavior& other) {
+  first_paths_ = std::move(other.first_paths_);
+  status_ = std::move(other.status_);
   number_states();
   publish_status();
 }
@@ -563,7 +564,7 @@ void Behavior::number_states() {
     numbers_.push_back(first == first_paths_.end() ? around : static_cast<std::uint32_t>(first - first_paths_.begin()));
   }
   region_states_.clear();
-  for (const std::string& path : status_.region_paths) {
+  for (const std::string& path : status_->region_paths) {
     const auto is_it = [&](const Chart::State& s) { return s.kind == Chart::Kind::region && s.path == path; };
     const auto found = std::ranges::find_if(states, is_it);
     region_states_.push_back(found == states.end() ? no_state : static_cast<StateIndex>(found - states.begin()));

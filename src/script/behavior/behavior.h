@@ -119,9 +119,10 @@ class Behavior {
   std::uint64_t transactions_refused() const noexcept;
   std::uint64_t events_unhandled() const noexcept;
   std::size_t heap_bytes() const noexcept;
-  const BehaviorStatus& status() const noexcept { return status_; }
-  // Before its first tick: its status has the numbers of the other one's states, in whose place it is.
-  void number_as(const Behavior& other);
+  const BehaviorStatus& status() const noexcept { return *status_; }
+  // Before its first tick: its status is the other one's from now on, which is only destroyed after that. So signals
+  // that were declared go on, and states have the numbers that they had.
+  void take_place_of(Behavior& other);
   // The control sets of this behavior and of those that it calls, and the objects that they may move (all objects when
   // one of them has no set).
   SetMask control_sets() const noexcept;
@@ -150,10 +151,10 @@ class Behavior {
 
   std::unique_ptr<Parts> parts_;
   std::unique_ptr<Past> past_;
-  BehaviorStatus status_;
+  std::unique_ptr<BehaviorStatus> status_ = std::make_unique<BehaviorStatus>();
   std::vector<std::string> first_paths_;      // of the states of its first chart; status_ numbers them
   std::vector<std::uint32_t> numbers_;        // by state of another chart: the state of the first one; empty: the same
-  std::vector<StateIndex> region_states_;     // in the order of status_.region_paths
+  std::vector<StateIndex> region_states_;     // in the order of status_->region_paths
   std::vector<StateIndex> told_;              // active states as they were told last
   std::vector<std::string_view> told_paths_;  // of the innermost ones
 };

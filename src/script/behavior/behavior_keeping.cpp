@@ -614,7 +614,7 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
   }
   parts_ = std::move(fresh);
   number_states();
-  status_.reloads.fetch_add(1, std::memory_order_relaxed);
+  status_->reloads.fetch_add(1, std::memory_order_relaxed);
   parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(),
                       "reloaded " + parts_->lua->sources().front().chunk);
 }

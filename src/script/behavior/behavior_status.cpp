@@ -21,18 +21,6 @@ void BehaviorStatus::declare(SignalTable& signals, const std::string& name) cons
   signals.add({prefix + "reloads", "", "New versions taken since the start."}, &reloads);
 }
 
-void BehaviorStatus::copy_numbers(const BehaviorStatus& of) noexcept {
-  const auto copy = [](std::atomic<std::uint32_t>& to, const std::atomic<std::uint32_t>& from) {
-    to.store(from.load(std::memory_order_relaxed), std::memory_order_relaxed);
-  };
-  copy(heap_bytes, of.heap_bytes);
-  copy(instructions, of.instructions);
-  copy(gc_pause_ns, of.gc_pause_ns);
-  copy(state, of.state);
-  copy(reloads, of.reloads);
-  for (std::size_t i = 0; i < regions.size(); ++i) copy(regions[i], of.regions[i]);
-}
-
 bool BehaviorStatus::is_region_path(std::string_view path) noexcept {
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.';

@@ -28,8 +28,6 @@ struct BehaviorStatus {
   std::array<std::atomic<std::uint32_t>, regions_max> regions{};
   std::vector<std::string> region_paths{};  // set before declare()
 
-  void copy_numbers(const BehaviorStatus& of) noexcept;
-
   static bool is_region_path(std::string_view path) noexcept;  // small enough, and parts between single dots
 
   // Before the loop. Declares behavior.<name>.heap_bytes and so on, behavior.<name>.region.<path>. The name must not be

@@ -47,17 +47,15 @@ std::unique_ptr<Behavior> Decisions::load() const {
                         "\" { ... }"});
 }
 
-// Its signals go on with the numbers of the first one.
 void Decisions::load_anew() {
   std::unique_ptr<Behavior> loaded = load();
-  loaded->number_as(*behavior_);
+  loaded->take_place_of(*behavior_);
   behavior_ = std::move(loaded);
 }
 
 void Decisions::declare_signals(SignalTable& signals, std::vector<SignalState>& states) {
-  shown_.region_paths = behavior_->status().region_paths;
-  add_signal_states(behavior_->chart(), shown_.declare_numbered(signals, behavior_->name()), signals, states);
-  shown_.copy_numbers(behavior_->status());
+  add_signal_states(behavior_->chart(), behavior_->status().declare_numbered(signals, behavior_->name()), signals,
+                    states);
 }
 
 void Decisions::tell(const char* event, const std::string& why) noexcept {
@@ -89,7 +87,6 @@ bool Decisions::tick(const Snapshot& snapshot, const PlayReport& report) noexcep
   hear(report);
   behavior_->show_plays(&report);
   (void)behavior_->tick(snapshot, silence_);
-  shown_.copy_numbers(behavior_->status());
   if (behavior_->failed()) {
     log_.message(snapshot.time_ns, BehaviorLog::Severity::error, behavior_->name(), behavior_->error().text());
   } else {

@@ -62,7 +62,6 @@ class Decisions final : public Decider {
   CommandQueue nowhere_;  // decisions send no commands
   CommandSender silence_{nowhere_};
   std::unique_ptr<Behavior> behavior_;
-  BehaviorStatus shown_;                                       // of that one, which may be replaced by another
   std::uint32_t refused_ = 0, not_done_ = 0, taken_over_ = 0;  // as the report had them
   bool asked_ = false;                                         // something was played whose end was not told yet
 };

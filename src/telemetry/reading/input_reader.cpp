@@ -195,6 +195,7 @@ bool TakenTick::read(BehaviorInputReader& reader) {
       begun_ = true;
     }
     inputs_.push_back(std::move(input));
+    end_ = inputs_.size();
     if (inputs_.back().kind == BehaviorInput::Kind::tick_ends) return true;
   }
   return false;
@@ -212,7 +213,7 @@ void TakenTick::turn_to(std::size_t asked) noexcept {
 }
 
 double TakenTick::parameter(double newest) noexcept {
-  for (std::size_t i = moment_; i < std::min(end_, inputs_.size()); ++i) {
+  for (std::size_t i = moment_; i < end_; ++i) {
     if (inputs_[i].kind != BehaviorInput::Kind::parameter) continue;
     moment_ = i + 1;
     return inputs_[i].value;
@@ -221,8 +222,7 @@ double TakenTick::parameter(double newest) noexcept {
 }
 
 bool TakenTick::time_is_over(std::uint32_t look) noexcept {
-  for (std::size_t i = moment_; i < std::min(end_, inputs_.size()) && inputs_[i].kind != BehaviorInput::Kind::parameter;
-       ++i) {
+  for (std::size_t i = moment_; i < end_ && inputs_[i].kind != BehaviorInput::Kind::parameter; ++i) {
     if (inputs_[i].kind != BehaviorInput::Kind::time_over || inputs_[i].number != look) continue;
     moment_ = i + 1;
     return true;

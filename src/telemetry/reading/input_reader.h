@@ -140,8 +140,8 @@ class TakenTick {
   std::vector<BehaviorInput> inputs_;
   std::uint64_t snapshot_ = 0;
   bool begun_ = false;
-  std::size_t moment_ = 0;      // those before are used up
-  std::size_t end_ = SIZE_MAX;  // and those from here on are of something else
+  std::size_t moment_ = 0;  // those before are used up
+  std::size_t end_ = 0;     // and those from here on are of something else
 };
 
 }  // namespace kadans

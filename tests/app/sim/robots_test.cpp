@@ -59,12 +59,14 @@ TEST_CASE("The ground is the first robot's: a further one has no quantity of it"
 
 TEST_CASE("A value that is set last goes to the robot whose name it begins with") {
   ScenarioConfig scenario = with_left(20);
-  scenario.set_last = {{.key = "left.start.x_m", .value = 0.5}, {.key = "start.x_m", .value = 0.25}};
+  set_last(scenario, {.key = "left.start.x_m", .value = 0.5});
+  set_last(scenario, {.key = "start.x_m", .value = 0.25});
   const Played played(scenario);
   CHECK(played.robot.others().at(0)->quantities().back().name == "start.x_m");
   CHECK(played.robot.others().at(0)->quantities().back().value == 0.5);
   CHECK(std::ranges::count(played.robot.quantities(), 0.25, &QuantityValue::value) == 1);
-  scenario.set_last = {{.key = "left.start.z", .value = 0.5}};
+  scenario.robots[0].set_last.clear();
+  set_last(scenario, {.key = "left.start.z", .value = 0.5});
   CHECK_THROWS_WITH_AS(Played{scenario}, doctest::Contains("'start.z'"), InputError);
 }
 
