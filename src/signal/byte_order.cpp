@@ -25,7 +25,7 @@ std::span<const std::byte> ByteReader::take_bytes(std::uint64_t count) noexcept 
   return taken;
 }
 
-std::string ByteReader::take_string() {
+std::string_view ByteReader::take_text() noexcept {
   const auto bytes = take_bytes(take<std::uint32_t>());
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }

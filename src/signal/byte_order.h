@@ -75,7 +75,8 @@ class ByteReader {
     return value;
   }
   std::span<const std::byte> take_bytes(std::uint64_t count) noexcept;  // all of `count`, or none
-  std::string take_string();
+  std::string_view take_text() noexcept;                                // into the bytes that are read
+  std::string take_string() { return std::string(take_text()); }
   TextMap take_map();
 
   bool ok() const noexcept { return ok_; }

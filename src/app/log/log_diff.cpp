@@ -16,15 +16,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t shown = 12;
 
-struct Findings {
+struct DiffFindings {
   const RecordOutline &a, &b;
   RecordDiff diff;
   std::vector<std::string> facts;
 };
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-void print_json(const Findings& found) {
+void print_json(const DiffFindings& found) {
   const RecordDiff& diff = found.diff;
   Json signals = Json::array();
   for (const SignalParting& p : diff.partings) {
@@ -32,9 +32,13 @@ void print_json(const Findings& found) {
         {{"name", p.name},
          {"unit", p.unit},
          {"rows", p.rows},
-         {"first", {{"time_s", seconds(p.first_ns)}, {"a", number(p.first_a)}, {"b", number(p.first_b)}}},
+         {"first",
+          {{"time_s", seconds(p.first_ns)}, {"a", number_or_null(p.first_a)}, {"b", number_or_null(p.first_b)}}},
          {"most",
-          {{"time_s", seconds(p.most_ns)}, {"a", number(p.most_a)}, {"b", number(p.most_b)}, {"by", number(p.most)}}}});
+          {{"time_s", seconds(p.most_ns)},
+           {"a", number_or_null(p.most_a)},
+           {"b", number_or_null(p.most_b)},
+           {"by", number_or_null(p.most)}}}});
   }
   const Json json{{"a", found.a.file},
                   {"b", found.b.file},
@@ -95,7 +99,7 @@ void print_list(const char* what, const std::string& where, const std::vector<st
   if (list.size() > shown) std::printf("  ... and %zu more\n", list.size() - shown);
 }
 
-void print_diff(const Findings& found) {
+void print_diff(const DiffFindings& found) {
   const RecordDiff& diff = found.diff;
   std::printf("%s, %s: %s; %s, %s compared\n", found.a.file.c_str(), found.b.file.c_str(),
               diff.same() ? "the same" : "not the same", plural(diff.rows, "row").c_str(),
@@ -122,7 +126,7 @@ void print_diff(const Findings& found) {
 
 int log_diff(const LogOptions& options) {
   const RecordOutline a = outline_of(options.file), b = outline_of(options.other);
-  const Findings found{a, b, diff_records(a, b, options.tolerance), differing_facts(a, b)};
+  const DiffFindings found{a, b, diff_records(a, b, options.tolerance), differing_facts(a, b)};
   options.json ? print_json(found) : print_diff(found);
   tell_problem(a);
   tell_problem(b);

@@ -52,7 +52,7 @@ void refuse_long_lines(const CodeFile& file) {
   }
 }
 
-std::vector<CodeFile> files_of(const fs::path& folder) {
+std::vector<CodeFile> code_files(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) throw InputError({.file = folder.string(), .message = "is no folder"});
   std::vector<CodeFile> files;
@@ -358,7 +358,7 @@ GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& descr
 }  // namespace
 
 GeneratedCode read_generated_code(const fs::path& folder) {
-  const std::vector<CodeFile> files = files_of(folder);
+  const std::vector<CodeFile> files = code_files(folder);
   std::optional<GeneratedCode> code;
   for (const CodeFile& file : files) {
     if (file.path.filename() == "modelDescription.xml") code = read_fmu(files, file);

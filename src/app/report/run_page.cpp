@@ -56,7 +56,7 @@ void add_film(const RunPage& page, const ReportOptions& place, HtmlReport& repor
   }
 }
 
-constexpr std::size_t joints_shown = 4, lines_max = 12;
+constexpr std::size_t joints_shown = 4, curves_max = 12;
 
 struct Usual {
   const char* title;
@@ -81,7 +81,7 @@ std::vector<ChosenSignal> present(const std::vector<ChosenSignal>& all, const st
   for (const std::string& pattern : patterns) {
     for (const ChosenSignal& signal : all) {
       const auto same = [&](const ChosenSignal& one) { return one.info.name == signal.info.name; };
-      if (chosen.size() < lines_max && matches(pattern, signal.info.name) && std::ranges::none_of(chosen, same))
+      if (chosen.size() < curves_max && matches(pattern, signal.info.name) && std::ranges::none_of(chosen, same))
         chosen.push_back(signal);
     }
   }

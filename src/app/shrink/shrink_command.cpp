@@ -27,6 +27,7 @@ namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 constexpr double near_share = 0.01;          // how near impulses and times come to what passes
 constexpr std::int64_t whole_push = 10'000;  // the parts into which an impulse is cut
@@ -363,7 +364,6 @@ std::string Shrinking::report() const {
 }
 
 std::string Shrinking::report_json() const {
-  using Json = nlohmann::ordered_json;
   const auto left = [](const std::vector<bool>& parts) {
     return Json{{"before", parts.size()}, {"after", std::ranges::count(parts, true)}};
   };

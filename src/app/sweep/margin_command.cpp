@@ -158,11 +158,11 @@ class MarginRuns {
       Distribution always{.kind = Distribution::Kind::values, .of = {}, .values = {value}, .together = true};
       plan_.vary.push_back({.variation = {.pattern = {pattern, {}}, .distribution = std::move(always)}});
     }
-    const std::vector<SweepCase> cases = sweep_cases(plan_, subjects_, build_);
-    const SweepManifest manifest = manifest_of(plan_, cases, build_);
+    const std::vector<SweepCase> each = sweep_cases(plan_, subjects_, build_);
+    const SweepManifest manifest = manifest_of(plan_, each, build_);
     const SweepResults results(fs::path(options_.out.empty() ? "margins" : options_.out) / manifest.plan, manifest);
     if (auto known = failure_in(results)) return known;
-    std::vector<SweepCase> rest = cases;
+    std::vector<SweepCase> rest = each;
     std::erase_if(rest, [&](const SweepCase& one) { return results.has(one); });
     SweepRun run(plan_, subjects_, results, std::move(rest), false, JobProgress::Log::terminal_only);
     run.stop_at_failure();

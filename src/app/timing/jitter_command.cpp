@@ -56,7 +56,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::array quantiles{p50, p90, p99, p999, p9999, p99999};
 constexpr std::array compared{p50, p99, p999};
 constexpr std::array<std::int64_t, 10> band_ends_us{1, 2, 5, 10, 20, 50, 100, 200, 500, 1000};
-constexpr int bar_width = 40;
+constexpr int longest_bar = 40;
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -107,7 +107,7 @@ std::string histogram(const TickStatistics& jitter, std::int64_t period_ns) {
     const double share = static_cast<double>(until - before) / total;
     // Logarithmic, so that a thousandth is still visible: a full bar is all, and each factor of ten is a sixth of the
     // bar less.
-    const double length = share > 0 ? std::max(1.0, bar_width * (1 + std::log10(share) / 6)) : 0;
+    const double length = share > 0 ? std::max(1.0, longest_bar * (1 + std::log10(share) / 6)) : 0;
     text += printed("  %-22s %10llu %9.4f %%  ", name.c_str(), static_cast<unsigned long long>(until - before),
                     100 * share);
     text += std::string(static_cast<std::size_t>(length), '#') + "\n";

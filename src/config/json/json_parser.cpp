@@ -45,7 +45,7 @@ class TextCursor {
 namespace {
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
-bool is_word(char c) noexcept {
+bool in_word(char c) noexcept {
   return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '.';
 }
 
@@ -70,7 +70,7 @@ class JsonParser {
   std::string here() const {
     if (at_.at_end()) return "the end of the file";
     std::string word;
-    for (std::size_t i = 0; i < 20 && is_word(at_.peek(i)); ++i) word += at_.peek(i);
+    for (std::size_t i = 0; i < 20 && in_word(at_.peek(i)); ++i) word += at_.peek(i);
     if (!word.empty()) return in_quotes(word);
     const auto c = static_cast<unsigned char>(at_.peek());
     if (c == '"') return "a string";
@@ -276,7 +276,7 @@ class JsonParser {
       if (at_.peek() == '+' || at_.peek() == '-') at_.next();
       skip_digits(value.place);
     }
-    if (is_word(at_.peek())) fail("a number ends here, " + here() + " must not follow it");
+    if (in_word(at_.peek())) fail("a number ends here, " + here() + " must not follow it");
     value.kind = JsonValue::Kind::number;
     value.text = number_text();
     const char* const end = value.text.data() + value.text.size();
@@ -291,7 +291,7 @@ class JsonParser {
     if (at_.peek() == '+' || at_.peek() == '.') fail("a number begins with a digit or a minus sign");
     const std::string found = here();
     const std::size_t start = at_.position();
-    while (is_word(at_.peek())) at_.next();
+    while (in_word(at_.peek())) at_.next();
     const std::string_view word = at_.since(start);
     if (word == "true" || word == "false") {
       value.kind = JsonValue::Kind::boolean;

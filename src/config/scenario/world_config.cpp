@@ -11,7 +11,7 @@
 namespace kadans {
 namespace {
 
-enum class Kind : std::uint8_t { box, ramp, stairs, wall, ball, pendulum, ground, markings, payload };
+enum class ObjectKind : std::uint8_t { box, ramp, stairs, wall, ball, pendulum, ground, markings, payload };
 const std::array<std::string, 9> part_kinds{"box",      "ramp",   "stairs",   "wall",   "ball",
                                             "pendulum", "ground", "markings", "payload"};
 
@@ -21,7 +21,7 @@ constexpr NumberRange velocity_m_s{-100, 100, "m/s"}, slope_rad{-1.2, 1.2, "rad"
 
 // An entry's fields, of whatever kind. Most defaults are the pendulum's, which the RoboCup rules give.
 struct Entry {
-  Kind kind = Kind::box;
+  ObjectKind kind = ObjectKind::box;
   std::string name, link;
   Vec3 size_m{}, position_m{}, angles_rad{}, velocity_m_s{}, point_m{};
   double length_m = unset, width_m = unset, height_m = unset, thickness_m = 0.1, incline_rad = unset;
@@ -43,7 +43,7 @@ class EntryReader {
   bool read() {
     const bool known = f_.choice("kind", entry_.kind, part_kinds, "kind of object", Need::required);
     all_ = !known;
-    if (known && entry_.kind == Kind::pendulum) entry_.length_m = 1.5, entry_.radius_m = 0.1, entry_.mass_kg = 2;
+    if (known && entry_.kind == ObjectKind::pendulum) entry_.length_m = 1.5, entry_.radius_m = 0.1, entry_.mass_kg = 2;
     placing();
     sizes();
     moving();
@@ -52,15 +52,17 @@ class EntryReader {
   }
 
  private:
-  bool of(std::initializer_list<Kind> kinds) const {
+  bool of(std::initializer_list<ObjectKind> kinds) const {
     return all_ || std::find(kinds.begin(), kinds.end(), entry_.kind) != kinds.end();
   }
   // Required of these kinds, optional of the others that have it.
-  Need need(std::initializer_list<Kind> kinds) const { return !all_ && of(kinds) ? Need::required : Need::optional; }
+  Need need(std::initializer_list<ObjectKind> kinds) const {
+    return !all_ && of(kinds) ? Need::required : Need::optional;
+  }
   Need needed() const { return all_ ? Need::optional : Need::required; }
 
   void placing() {
-    using enum Kind;
+    using enum ObjectKind;
     if (of({box, ramp, stairs, wall, ball, pendulum, payload})) {
       f_.string("name", entry_.name, "name of the object in signals and messages", needed());
     }
@@ -77,7 +79,7 @@ class EntryReader {
   }
 
   void sizes() {
-    using enum Kind;
+    using enum ObjectKind;
     if (of({box})) f_.numbers("size_m", entry_.size_m, size_m, "full edge lengths", needed());
     if (of({ramp, pendulum}))
       f_.number("length_m", entry_.length_m, size_m, "length along the ramp, or from hinge to bob", need({ramp}));
@@ -96,7 +98,7 @@ class EntryReader {
   }
 
   void moving() {
-    using enum Kind;
+    using enum ObjectKind;
     if (of({ball})) {
       f_.number("rolling_friction_m", entry_.rolling_friction_m, {0, 1, "m"}, "lever arm of the rolling resistance");
       f_.number("restitution", entry_.restitution, {0, 1}, "share of the speed that remains after a bounce");
@@ -127,7 +129,7 @@ class EntryReader {
   }
 
   void painted() {
-    if (!of({Kind::markings})) return;
+    if (!of({ObjectKind::markings})) return;
     f_.number("line_m", entry_.markings.line_m, size_m, "width of the painted lines");
     f_.list("lines", {0, 1000}, "straight lines on the ground", [&](Fields& e) {
       GroundMarkings::Line line;
@@ -190,15 +192,15 @@ void verify(const Fields& f, const Entry& entry, Problems& problems) {
     problems.add(f.place("name"), f.path("name") + ": " + in_quotes(entry.name) +
                                       " must be a word of letters, digits and '_', it becomes part of signals' names");
   }
-  if (entry.kind == Kind::pendulum && !(entry.distance_m < entry.length_m) && f.has("distance_m")) {
+  if (entry.kind == ObjectKind::pendulum && !(entry.distance_m < entry.length_m) && f.has("distance_m")) {
     problems.add(f.place("distance_m"), f.path("distance_m") + " is " + number_text(entry.distance_m) +
                                             ", must be less than length_m, " + number_text(entry.length_m) + " m");
   }
-  if (entry.kind == Kind::payload && !(entry.until_s > entry.from_s)) {
+  if (entry.kind == ObjectKind::payload && !(entry.until_s > entry.from_s)) {
     problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(entry.until_s) +
                                          ", must be later than from_s, " + number_text(entry.from_s) + " s");
   }
-  if (entry.kind != Kind::box) return;
+  if (entry.kind != ObjectKind::box) return;
   if (f.has("mass_kg") && f.has("motion")) {
     problems.add(f.place("motion"), f.path("motion") + ": a box with a mass moves freely and cannot be driven");
   }
@@ -210,15 +212,15 @@ void verify(const Fields& f, const Entry& entry, Problems& problems) {
 
 WorldShape shape_of(const Entry& e) {
   switch (e.kind) {
-    case Kind::ramp:
+    case ObjectKind::ramp:
       return WorldRamp{e.length_m, e.width_m, e.incline_rad};
-    case Kind::stairs:
+    case ObjectKind::stairs:
       return WorldStairs{e.count, e.rise_m, e.run_m, e.width_m};
-    case Kind::wall:
+    case ObjectKind::wall:
       return WorldWall{e.width_m, e.height_m, e.thickness_m};
-    case Kind::ball:
+    case ObjectKind::ball:
       return WorldBall{e.radius_m, e.mass_kg, e.rolling_friction_m, e.restitution, e.velocity_m_s};
-    case Kind::pendulum:
+    case ObjectKind::pendulum:
       return WorldPendulum{e.length_m, e.radius_m, e.mass_kg, e.distance_m, e.release_s};
     default:
       return WorldBox{e.size_m, std::isnan(e.mass_kg) ? 0 : e.mass_kg, e.velocity_m_s};
@@ -227,13 +229,13 @@ WorldShape shape_of(const Entry& e) {
 
 void add(const Fields& f, const Entry& entry, WorldConfig& world) {
   WorldSettings& settings = world.settings;
-  if (entry.kind == Kind::ground) {
+  if (entry.kind == ObjectKind::ground) {
     settings.slope_rad = entry.slope_rad;
     settings.slope_heading_rad = entry.slope_heading_rad;
     settings.ground_motion = entry.motion;
-  } else if (entry.kind == Kind::markings) {
+  } else if (entry.kind == ObjectKind::markings) {
     settings.markings.push_back(entry.markings);
-  } else if (entry.kind == Kind::payload) {
+  } else if (entry.kind == ObjectKind::payload) {
     settings.payloads.push_back({entry.name, entry.link, entry.point_m, entry.mass_kg, entry.from_s, entry.until_s});
     world.payload_links.push_back(f.place("link"));
   } else {
@@ -257,7 +259,7 @@ void world_fields(Fields& f, WorldConfig& world, Problems& problems) {
     const bool known = EntryReader(e, entry, problems).read();
     if (!e.reading() || !known) return;
     verify(e, entry, problems);
-    const std::string name = entry.kind == Kind::ground ? "ground" : entry.name;  // "": markings have none
+    const std::string name = entry.kind == ObjectKind::ground ? "ground" : entry.name;  // "": markings have none
     if (!name.empty() && std::find(names.begin(), names.end(), name) != names.end()) {
       problems.add(e.place("name"), e.path() + ": another entry is named " + in_quotes(name));
     }

@@ -10,7 +10,7 @@
 namespace kadans {
 namespace {
 
-constexpr double most_effort = 0.9;  // of a joint's limit; the position loops add theirs
+constexpr double effort_share = 0.9;  // of a joint's limit; the position loops add theirs
 
 }  // namespace
 
@@ -94,7 +94,7 @@ void StanceLeg::step(const ControlInput& input, ActuationFrame& actuation) noexc
   const bool stands = measure(input);
   state_.share = stands ? std::min(1.0, state_.share + input.dt_s / std::max(config_.rise_s, input.dt_s)) : 0;
   if (stands) load(input.status.base);
-  for (BalanceJoint& part : parts_) part.give(state_.share, stands, most_effort, 0, input.dt_s, actuation);
+  for (BalanceJoint& part : parts_) part.give(state_.share, stands, effort_share, 0, input.dt_s, actuation);
 }
 
 std::unique_ptr<ControlObject> make_stance_leg(const ObjectSetup& setup) { return std::make_unique<StanceLeg>(setup); }

@@ -14,6 +14,7 @@
 #include "script/check/hint.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/sandbox.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -64,12 +65,6 @@ int give_declared(lua_State* state) {
   return 0;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 ScriptParameter* find_parameter(Behavior::Parts& parts, const std::string& name) {
   for (ScriptParameter& parameter : parts.lua->core().parameters) {
     if (parameter.name == name) return &parameter;
@@ -85,8 +80,8 @@ std::string set(ScriptParameter& parameter, double value, const std::string& beh
     parameter.value = value;
     return "";
   }
-  return "parameter '" + parameter.name + "' " + who(behavior) + " = " + number(value) + " is outside its range " +
-         number(parameter.min) + ".." + number(parameter.max) + (parameter.unit.empty() ? "" : " " + parameter.unit);
+  return outside_range("parameter '" + parameter.name + "' " + who(behavior), value, parameter.min, parameter.max,
+                       parameter.unit);
 }
 
 }  // namespace

@@ -250,11 +250,6 @@ void push_value(lua_State* state, ByteReader& bytes, const Catalog& catalog, int
   }
 }
 
-std::string_view text_of(ByteReader& bytes) noexcept {
-  const auto text = bytes.take_bytes(bytes.take<std::uint32_t>());
-  return {reinterpret_cast<const char*>(text.data()), text.size()};
-}
-
 // True when a machine can take over vars of this version of it.
 bool takes_vars(const Chart::Machine& machine, int version) noexcept {
   return machine.version == version || machine.migrate != Chart::no_function;
@@ -337,7 +332,7 @@ void put_results(Behavior::Parts& parts, ByteWriter& bytes) {
 void take_results(lua_State* state, const Behavior::Parts& parts, ByteReader& bytes) {
   luaL_checkstack(state, 8, "results");
   while (bytes.take<std::uint8_t>() != 0) {
-    const auto found = std::ranges::find(parts.chart.states, text_of(bytes), &Chart::State::path);
+    const auto found = std::ranges::find(parts.chart.states, bytes.take_text(), &Chart::State::path);
     lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
     push_value(state, bytes, parts.catalog);
     const auto index = static_cast<int>(found - parts.chart.states.begin());
@@ -382,10 +377,10 @@ std::size_t machine_at(const Chart& chart, std::string_view path) {
 
 // The machine's part of the bytes: nothing of it counts when the machine is gone or takes no vars of that version.
 void take_machine(lua_State* state, Behavior::Parts& parts, ByteReader& bytes) {
-  const std::size_t number = machine_at(parts.chart, text_of(bytes));
+  const std::size_t number = machine_at(parts.chart, bytes.take_text());
   const auto version = bytes.take<std::int32_t>();
   const auto size = bytes.take<std::uint32_t>();
-  const std::string_view why = size == unkept ? text_of(bytes) : "";
+  const std::string_view why = size == unkept ? bytes.take_text() : "";
   ByteReader vars(bytes.take_bytes(size == unkept ? 0 : size));
   if (!bytes.ok()) luaL_error(state, "what was kept ends too early");
   if (number == parts.chart.machines.size()) return;
@@ -415,8 +410,8 @@ bool takes_given(lua_State* state, const Chart::Machine& machine, const Chart::G
 void take_given(lua_State* state, Behavior::Parts& parts, ByteReader& bytes) {
   while (bytes.take<std::uint8_t>() != 0) {
     luaL_checkstack(state, 12, "what a call gives");
-    const std::size_t number = machine_at(parts.chart, text_of(bytes));
-    const std::string_view name = text_of(bytes);
+    const std::size_t number = machine_at(parts.chart, bytes.take_text());
+    const std::string_view name = bytes.take_text();
     push_value(state, bytes, parts.catalog);
     const int top = lua_gettop(state);
     if (number < parts.chart.machines.size() && parts.runner->active(parts.chart.machines[number].root)) {

@@ -41,7 +41,7 @@ bool is_name(const std::string& text) {
          std::ranges::all_of(text, [](unsigned char c) { return c == '_' || std::isalnum(c) != 0; });
 }
 
-struct Field {
+struct ResultField {
   bool named = false;
   double number = 0;
   std::string key, value;
@@ -49,21 +49,21 @@ struct Field {
 
 std::string table_literal(lua_State* state, int table, int depth) {
   if (depth > result_depth_max || lua_checkstack(state, 6) == 0) return "{}";
-  std::vector<Field> fields;
+  std::vector<ResultField> fields;
   for (lua_pushnil(state); lua_next(state, table) != 0; lua_pop(state, 1)) {
     const int key = lua_gettop(state) - 1;
-    Field& field = fields.emplace_back();
+    ResultField& field = fields.emplace_back();
     field.named = lua_type(state, key) == LUA_TSTRING;
     field.number = field.named ? 0 : lua_tonumber(state, key);
     if (field.named) field.key = lua_tostring(state, key);
     if (field.named && !is_name(field.key)) field.key = "[" + text_literal(state, key) + "]";
     field.value = literal(state, key + 1, depth + 1);
   }
-  const auto order = [](const Field& field) { return std::tie(field.named, field.number, field.key); };
+  const auto order = [](const ResultField& field) { return std::tie(field.named, field.number, field.key); };
   std::ranges::sort(fields, {}, order);
   std::string text;
   double next = 1;
-  for (const Field& field : fields) {
+  for (const ResultField& field : fields) {
     text += text.empty() ? " " : ", ";
     if (field.named) text += field.key + " = ";
     if (!field.named && field.number != next) text += "[" + number_literal(field.number) + "] = ";

@@ -38,20 +38,20 @@ struct ArgumentType {
   const char* name;
   const char* type;
 };
-constexpr ArgumentType types[] = {{"pose", "kadans.pose|table<string, number>"},
-                                  {"points", "kadans.Point[]"},
-                                  {"name", "string"},
-                                  {"setpoint", "string"},
-                                  {"preset", "string"},
-                                  {"set", "string"},
-                                  {"condition", "string|table"},
-                                  {"record", "fun(c: kadans.Machine)"},
-                                  {"event", "string"},
-                                  {"format", "string"},
-                                  {"value", "number"},
-                                  {"seconds", "number"},
-                                  {"table", "table<string, table>"},
-                                  {"...", "any"}};
+constexpr ArgumentType argument_types[] = {{"pose", "kadans.pose|table<string, number>"},
+                                           {"points", "kadans.Point[]"},
+                                           {"name", "string"},
+                                           {"setpoint", "string"},
+                                           {"preset", "string"},
+                                           {"set", "string"},
+                                           {"condition", "string|table"},
+                                           {"record", "fun(c: kadans.Machine)"},
+                                           {"event", "string"},
+                                           {"format", "string"},
+                                           {"value", "number"},
+                                           {"seconds", "number"},
+                                           {"table", "table<string, table>"},
+                                           {"...", "any"}};
 
 const char* type_name(const MotionOption& option) noexcept {
   switch (option.type) {
@@ -85,7 +85,7 @@ std::string argument_type(std::string_view function, std::string_view name) {
   if (name == "data") return "?: table";
   if (name == "receiver") return "?: { to: string }";
   if (function == "pose" && name == "name") return ": kadans.pose";
-  for (const ArgumentType& known : types) {
+  for (const ArgumentType& known : argument_types) {
     if (name == known.name) return std::string(": ") + known.type;
   }
   return "";

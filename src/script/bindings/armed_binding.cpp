@@ -291,7 +291,7 @@ ArmedHandle& check_handle(lua_State* state) {
 }
 
 // armed:cancel() -> true | nil, "queue_full".
-int cancel(lua_State* state) {
+int cancel_armed(lua_State* state) {
   const ArmedHandle& handle = check_handle(state);
   Bindings& bindings = bindings_of(state);
   if (bindings.recording) return luaL_error(state, "armed:cancel() does not work inside the function of m:on");
@@ -309,7 +309,7 @@ const char* outcome(const ArmedHandle& handle, const ArmedStatus* status, const 
 }
 
 // armed.outcome, .fired, .cancel; upvalue: the methods.
-int read_field(lua_State* state) {
+int read_armed_field(lua_State* state) {
   const ArmedHandle& handle = check_handle(state);
   const Snapshot& snapshot = *bindings_of(state).snapshot;
   const ArmedStatus* status = find_armed(snapshot, handle.sequence, handle.which);
@@ -394,8 +394,8 @@ void open_armed(lua_State* state, const Chart& chart) {
 }
 
 void open_armed_handles(lua_State* state) {
-  const luaL_Reg methods[] = {{"cancel", cancel}};
-  open_kind(state, armed_key, methods, read_field);
+  const luaL_Reg methods[] = {{"cancel", cancel_armed}};
+  open_kind(state, armed_key, methods, read_armed_field);
 }
 
 }  // namespace kadans

@@ -15,18 +15,18 @@
 namespace kadans {
 namespace {
 
-using Kind = PlayOrder::Kind;
+using OrderKind = PlayOrder::Kind;
 
 constexpr std::size_t orders_max = 8;                     // in a tick
 constexpr std::size_t list_max = 512, argument_max = 64;  // characters
 constexpr double order_instructions = 2000, played_argument_instructions = 100;
 
 // "" when it can be played. Nothing of Lua is called here.
-const std::string& take_order(Bindings& bindings, Kind kind) noexcept {
+const std::string& take_order(Bindings& bindings, OrderKind kind) noexcept {
   bindings.order_problem.clear();
   PlayOrder order{.kind = kind};
   try {
-    if (kind == Kind::play || kind == Kind::replace) {
+    if (kind == OrderKind::play || kind == OrderKind::replace) {
       if (bindings.folders == nullptr) return bindings.order_problem = "nothing here plays behaviors";
       order.list = read_play_items(bindings.order_text, "m:play", *bindings.folders);
     }
@@ -39,7 +39,7 @@ const std::string& take_order(Bindings& bindings, Kind kind) noexcept {
   return bindings.order_problem;
 }
 
-int ask(lua_State* state, Kind kind) {
+int ask(lua_State* state, OrderKind kind) {
   Bindings& bindings = bindings_of(state);
   core_of(state).budget.charge(state, order_instructions);
   if (bindings.decided.size() >= orders_max) return queue_full(state);
@@ -73,7 +73,7 @@ void add_argument(lua_State* state, int key) {
   text += pair;
 }
 
-int ask_for_list(lua_State* state, Kind kind, const char* word) {
+int ask_for_list(lua_State* state, OrderKind kind, const char* word) {
   lua_settop(state, 3);
   if (lua_type(state, 2) != LUA_TSTRING || lua_objlen(state, 2) > list_max)
     return luaL_error(state, "m:%s needs a list of behaviors: m:%s(\"walk_to{x_m=1}, kick\")", word, word);
@@ -93,13 +93,13 @@ int ask_for_list(lua_State* state, Kind kind, const char* word) {
 
 // m:play(list, arguments?) -> true | nil, "queue_full". Raises on a list that cannot be read, or a behavior that is
 // not there.
-int play(lua_State* state) { return ask_for_list(state, Kind::play, "play"); }
+int play(lua_State* state) { return ask_for_list(state, OrderKind::play, "play"); }
 // m:replace(list, arguments?): likewise.
-int replace(lua_State* state) { return ask_for_list(state, Kind::replace, "replace"); }
+int replace(lua_State* state) { return ask_for_list(state, OrderKind::replace, "replace"); }
 // m:stop(), m:pause(), m:resume() -> true | nil, "queue_full".
-int stop(lua_State* state) { return ask(state, Kind::stop); }
-int pause(lua_State* state) { return ask(state, Kind::pause); }
-int resume(lua_State* state) { return ask(state, Kind::resume); }
+int stop(lua_State* state) { return ask(state, OrderKind::stop); }
+int pause(lua_State* state) { return ask(state, OrderKind::pause); }
+int resume(lua_State* state) { return ask(state, OrderKind::resume); }
 
 // m:plays(name?) -> path of its innermost active state | nil.
 int plays(lua_State* state) {
@@ -124,13 +124,13 @@ int send(lua_State* state) {
   return send_to(state, find_event(core_of(state).events, name), name, 3, other_robots);
 }
 
-constexpr luaL_Reg words[] = {{"play", play},     {"replace", replace}, {"stop", stop}, {"pause", pause},
-                              {"resume", resume}, {"plays", plays},     {"send", send}};
+constexpr luaL_Reg decision_calls[] = {{"play", play},     {"replace", replace}, {"stop", stop}, {"pause", pause},
+                                       {"resume", resume}, {"plays", plays},     {"send", send}};
 
 }  // namespace
 
 void open_decisions(lua_State* state) {
-  for (const luaL_Reg& word : words) {
+  for (const luaL_Reg& word : decision_calls) {
     lua_pushcfunction(state, word.func);
     lua_setfield(state, -2, word.name);
   }
@@ -138,7 +138,7 @@ void open_decisions(lua_State* state) {
 
 std::vector<std::string> decider_words() {
   std::vector<std::string> all;
-  for (const luaL_Reg& word : words) all.push_back(std::string("decider.") + word.name);
+  for (const luaL_Reg& word : decision_calls) all.push_back(std::string("decider.") + word.name);
   return all;
 }
 

@@ -17,7 +17,8 @@ namespace {
 constexpr std::uint64_t evaluation_instructions = 100'000;
 constexpr std::uint64_t compilation_instructions = 10'000;
 constexpr std::array<std::string_view, 6> lua_words{"and", "or", "not", "true", "false", "nil"};
-constexpr std::array<std::string_view, 9> functions{"abs", "min", "max", "sqrt", "floor", "ceil", "sin", "cos", "deg"};
+constexpr std::array<std::string_view, 9> expression_functions{"abs",  "min", "max", "sqrt", "floor",
+                                                               "ceil", "sin", "cos", "deg"};
 constexpr std::string_view tick_before = "last.";
 
 bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
@@ -194,7 +195,7 @@ bool SignalExpressions::translate(std::string_view text, Condition& condition, s
       lua += word;
       continue;
     }
-    if (std::ranges::find(functions, word) != functions.end()) {
+    if (std::ranges::find(expression_functions, word) != expression_functions.end()) {
       lua += "math." + std::string(word);
       continue;
     }

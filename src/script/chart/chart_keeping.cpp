@@ -26,11 +26,6 @@ StateIndex find_state(const Chart& chart, const Chart::State& wanted) {
   return same ? static_cast<StateIndex>(found - chart.states.begin()) : no_state;
 }
 
-std::string_view text_of(ByteReader& bytes) noexcept {
-  const auto text = bytes.take_bytes(bytes.take<std::uint32_t>());
-  return {reinterpret_cast<const char*>(text.data()), text.size()};
-}
-
 void put_state(const Chart::State& state, ByteWriter& bytes) {
   bytes.put_string(state.path);
   bytes.put(static_cast<std::uint8_t>(state.kind));
@@ -179,7 +174,7 @@ bool ChartRunner::restore(ByteReader& bytes) {
   }
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) restore_history(bytes);
   for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
-    const EventId event = chart_.find_or_learn(text_of(bytes));
+    const EventId event = chart_.find_or_learn(bytes.take_text());
     const auto place = bytes.take<std::int8_t>();
     if (event == no_event || chart_.made_by_runner(event) || !queue_.send(event, place)) ++unhandled_;
   }
@@ -194,7 +189,7 @@ bool ChartRunner::restore_state(ByteReader& bytes, std::vector<bool>& listed) {
   const StateIndex index = take_state(chart_, bytes);
   const auto bits = bytes.take<std::uint8_t>();
   const auto entered_ns = bytes.take<std::int64_t>();
-  const EventId outcome = chart_.find_event(text_of(bytes));
+  const EventId outcome = chart_.find_event(bytes.take_text());
   if (index != no_state) {
     if (listed[index]) return false;
     listed[index] = true;

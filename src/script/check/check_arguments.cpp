@@ -13,14 +13,14 @@
 namespace kadans {
 namespace {
 
-using Kind = SourceToken::Kind;
+using TokenKind = SourceToken::Kind;
 using Mistakes = std::vector<ArgumentProblem>;
 
 // A number with nothing behind it that would change it: `1.5` or `-1.5` before a comma or a bracket.
 bool number_at(const std::vector<SourceToken>& tokens, std::size_t at, double& value) {
   const bool negative = tokens[at].is("-");
   if (negative) ++at;
-  if (tokens[at].kind != Kind::number) return false;
+  if (tokens[at].kind != TokenKind::number) return false;
   const SourceToken& after = tokens[at + 1];
   if (!after.is(",") && !after.is(")") && !after.is("}") && !after.is(";")) return false;
   value = std::strtod(tokens[at].text.c_str(), nullptr);
@@ -38,7 +38,7 @@ std::string outside(const std::string& name, double value, double min, double ma
 // A text that is the whole argument.
 bool whole_text(const std::vector<SourceToken>& tokens, std::size_t at) {
   const SourceToken& after = tokens[at + 1];
-  return tokens[at].kind == Kind::text && !after.is("..") && !after.is(":");
+  return tokens[at].kind == TokenKind::text && !after.is("..") && !after.is(":");
 }
 
 // Where the names stand in { name = value, ... } at `at`.
@@ -46,7 +46,7 @@ std::vector<std::size_t> keys_of_table(const std::vector<SourceToken>& tokens, s
   std::vector<std::size_t> keys;
   if (!tokens[at].is("{")) return keys;
   for (const std::size_t part : parts_of(tokens, at + 1)) {
-    if (tokens[part].kind == Kind::name && tokens[part + 1].is("=")) keys.push_back(part);
+    if (tokens[part].kind == TokenKind::name && tokens[part + 1].is("=")) keys.push_back(part);
   }
   return keys;
 }
@@ -59,7 +59,7 @@ bool has_key(const std::vector<SourceToken>& tokens, std::size_t at, std::string
 bool has_value(const std::vector<SourceToken>& tokens, std::size_t at, std::string_view name, std::string_view text) {
   const auto keys = keys_of_table(tokens, at);
   return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) {
-    return tokens[key].text == name && tokens[key + 2].kind == Kind::text && tokens[key + 2].text == text;
+    return tokens[key].text == name && tokens[key + 2].kind == TokenKind::text && tokens[key + 2].text == text;
   });
 }
 
@@ -73,7 +73,7 @@ void append(Mistakes& problems, const Mistakes& more) { problems.insert(problems
 
 // The type of a literal, as Lua names it.
 std::string literal_type(const std::vector<SourceToken>& tokens, std::size_t at) {
-  if (tokens[at].kind == Kind::text) return "string";
+  if (tokens[at].kind == TokenKind::text) return "string";
   return tokens[at].is_any({"true", "false"}) ? "boolean" : "number";
 }
 

@@ -58,12 +58,12 @@ class TestCalls {
  public:
   TestCalls(const LuaState::Source& source, const Behavior::Settings& settings, std::vector<InputProblem>& problems)
       : source_(source), settings_(settings), problems_(problems), tokens_(lex_source(source.text)) {
-    tokens_.resize(tokens_.size() + 4, SourceToken{Kind::end, "", tokens_.back().line});
+    tokens_.resize(tokens_.size() + 4, SourceToken{TokenKind::end, "", tokens_.back().line});
   }
 
   void run() {
-    for (std::size_t i = 0; tokens_[i].kind != Kind::end; ++i) {
-      if (tokens_[i].kind != Kind::name) continue;
+    for (std::size_t i = 0; tokens_[i].kind != TokenKind::end; ++i) {
+      if (tokens_[i].kind != TokenKind::name) continue;
       const bool of_module = i > 0 && tokens_[i - 1].is(".");
       if (tokens_[i].text == "expect" && tokens_[i + 1].is("(") && !of_module) matcher(end_of_call(tokens_, i + 2));
       if (tokens_[i].text == "play" && of_module) played(i + 1);
@@ -71,7 +71,7 @@ class TestCalls {
   }
 
  private:
-  using Kind = SourceToken::Kind;
+  using TokenKind = SourceToken::Kind;
 
   void problem(const SourceToken& at, const std::string& message) {
     problems_.push_back({source_.chunk, at.line, 0, message});
@@ -81,13 +81,14 @@ class TestCalls {
     const std::vector<std::string> known(std::begin(test_matchers), std::end(test_matchers));
     if (tokens_[at].is(".") && tokens_[at + 1].text == "never") at += 2;
     const SourceToken& name = tokens_[at + 1];
-    if (!tokens_[at].is(".") || name.kind != Kind::name || std::ranges::find(known, name.text) != known.end()) return;
+    if (!tokens_[at].is(".") || name.kind != TokenKind::name || std::ranges::find(known, name.text) != known.end())
+      return;
     problem(name, "expect(...) has no '" + name.text + "'" + hint_text(name.text, known));
   }
 
   void played(std::size_t at) {
     if (tokens_[at].is("(")) ++at;
-    if (tokens_[at].kind != Kind::text) return;
+    if (tokens_[at].kind != TokenKind::text) return;
     const std::string& file = tokens_[at].text;
     std::error_code ignored;
     if (!fs::exists(settings_.file.parent_path() / file, ignored) && !fs::exists(settings_.root / file, ignored))
@@ -95,7 +96,7 @@ class TestCalls {
     if (!tokens_[at + 1].is(",") || !tokens_[at + 2].is("{")) return;
     for (const std::size_t part : parts_of(tokens_, at + 3)) {
       const SourceToken& key = tokens_[part];
-      if (key.kind == Kind::name && tokens_[part + 1].is("=") && key.text != "robot" && key.text != "plant" &&
+      if (key.kind == TokenKind::name && tokens_[part + 1].is("=") && key.text != "robot" && key.text != "plant" &&
           key.text != "scenario")
         problem(key, "k.play has no option '" + key.text + "'; there are: robot, plant, scenario");
     }

@@ -153,7 +153,7 @@ class ChartCheck {
   std::vector<bool> reached_;
 };
 
-using Kind = SourceToken::Kind;
+using TokenKind = SourceToken::Kind;
 using Tokens = std::vector<SourceToken>;
 
 // What the functions emit, as far as their text tells.
@@ -181,7 +181,7 @@ void add_values(const Tokens& tokens, std::size_t at, std::size_t end, Emitted& 
   int depth = 0;
   std::size_t value = at;
   const auto take = [&](std::size_t from, std::size_t to) {
-    const bool text = from < to && tokens[from].kind == Kind::text;
+    const bool text = from < to && tokens[from].kind == TokenKind::text;
     if (text && to == from + 1) {
       emitted.events.insert(tokens[from].text);
     } else if (text && tokens[from + 1].is("..")) {
@@ -204,16 +204,16 @@ void add_values(const Tokens& tokens, std::size_t at, std::size_t end, Emitted& 
 
 void add_emitted(const Tokens& tokens, Emitted& emitted) {
   for (std::size_t i = 1; i + 2 < tokens.size(); ++i) {
-    const bool name = tokens[i].kind == Kind::name || tokens[i].kind == Kind::text;
+    const bool name = tokens[i].kind == TokenKind::name || tokens[i].kind == TokenKind::text;
     const bool field = name && (tokens[i - 1].is("{") || tokens[i - 1].is(",")) && tokens[i + 1].is("=");
     if (field && tokens[i].text == "event") {  // of m:on
-      const bool text = tokens[i + 2].kind == Kind::text;
+      const bool text = tokens[i + 2].kind == TokenKind::text;
       emitted.unknown = emitted.unknown || !text;
       if (text) emitted.events.insert(tokens[i + 2].text);
     }
     if (!name || tokens[i].text != "emit") continue;
-    const bool method = tokens[i].kind == Kind::name && tokens[i - 1].is(":");
-    if (method && tokens[i + 1].kind == Kind::text) {
+    const bool method = tokens[i].kind == TokenKind::name && tokens[i - 1].is(":");
+    if (method && tokens[i + 1].kind == TokenKind::text) {
       emitted.events.insert(tokens[i + 1].text);
     } else if (method && tokens[i + 1].is("(")) {
       add_values(tokens, i + 2, end_of_call(tokens, i + 2) - 1, emitted);
@@ -386,7 +386,7 @@ void check_event_fields(const std::vector<ScriptEvent>& declared, const ReadSour
   const Tokens& tokens = read.scopes.tokens();
   for (std::size_t i = 4; i < tokens.size(); ++i) {
     const bool path = tokens[i - 4].text == "event" && tokens[i - 3].is(".") && tokens[i - 2].text == "data" &&
-                      tokens[i - 1].is(".") && tokens[i].kind == Kind::name;
+                      tokens[i - 1].is(".") && tokens[i].kind == TokenKind::name;
     if (!path || std::ranges::find(known, tokens[i].text) != known.end()) continue;
     const std::string hint = hint_text(tokens[i].text, known);
     if (!hint.empty())

@@ -13,7 +13,7 @@ namespace {
 using Tokens = std::vector<SourceToken>;
 
 // A guard or an action, and all transitions that have it.
-struct Reader {
+struct EventReader {
   ChartFunction function;
   bool guard = false;
   std::vector<const Chart::Transition*> transitions;
@@ -33,7 +33,7 @@ class EventDataCheck {
     }
   }
 
-  void look(const Reader& reader) {
+  void look(const EventReader& reader) {
     const auto file = tokens_.find(reader.function.chunk);
     if (file == tokens_.end()) return;
     const Tokens& tokens = file->second;
@@ -82,7 +82,8 @@ class EventDataCheck {
   }
 
   // A field that stands in one place only, where it is calculated with or its order is asked for.
-  void optional(const Reader& reader, const Tokens& tokens, const std::vector<std::size_t>& reads, std::size_t at) {
+  void optional(const EventReader& reader, const Tokens& tokens, const std::vector<std::size_t>& reads,
+                std::size_t at) {
     const std::string& field = tokens[at + 6].text;
     const auto same = [&](std::size_t read) { return tokens[read + 6].text == field; };
     if (std::ranges::count_if(reads, same) != 1) return;
@@ -107,12 +108,12 @@ class EventDataCheck {
 
 void check_event_data(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
   const ChartFunctions functions = chart_functions(parts);
-  std::map<const void*, Reader> readers;
+  std::map<const void*, EventReader> readers;
   for (const Chart::Transition& one : parts.chart.transitions) {
     for (const bool guard : {true, false}) {
       const auto function = functions.by_reference.find(guard ? one.when : one.action);
       if (function == functions.by_reference.end()) continue;
-      Reader& reader = readers[function->second.identity];
+      EventReader& reader = readers[function->second.identity];
       reader.function = function->second;
       reader.guard = guard;
       reader.transitions.push_back(&one);

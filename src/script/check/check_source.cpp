@@ -16,20 +16,20 @@
 namespace kadans {
 namespace {
 
-using Kind = SourceToken::Kind;
+using TokenKind = SourceToken::Kind;
 using Tokens = std::vector<SourceToken>;
 
 // The local that a file ends with returning, or "".
 std::string returned_name(const Tokens& tokens) {
   std::size_t end = tokens.size();
-  while (end > 0 && (tokens[end - 1].kind == Kind::end || tokens[end - 1].is(";"))) --end;
-  const bool named = end >= 2 && tokens[end - 1].kind == Kind::name && tokens[end - 2].is("return");
+  while (end > 0 && (tokens[end - 1].kind == TokenKind::end || tokens[end - 1].is(";"))) --end;
+  const bool named = end >= 2 && tokens[end - 1].kind == TokenKind::name && tokens[end - 2].is("return");
   return named ? tokens[end - 1].text : "";
 }
 
 std::size_t end_of_bracket(const Tokens& tokens, std::size_t at) {
   int depth = 0;
-  for (; tokens[at].kind != Kind::end; ++at) {
+  for (; tokens[at].kind != TokenKind::end; ++at) {
     depth += tokens[at].is("[") ? 1 : tokens[at].is("]") ? -1 : 0;
     if (depth == 0) break;
   }
@@ -44,7 +44,7 @@ bool filled_while_it_runs(const Tokens& tokens, const std::string& name) {
     if (token.is("function") || token.is("if") || token.is("do") || token.is("repeat"))
       blocks.push_back(token.is("function"));
     if ((token.is("end") || token.is("until")) && !blocks.empty()) blocks.pop_back();
-    if (std::ranges::find(blocks, true) == blocks.end() || token.kind != Kind::name) continue;
+    if (std::ranges::find(blocks, true) == blocks.end() || token.kind != TokenKind::name) continue;
     if (token.text == "rawset" && tokens[i + 2].text == name) return true;
     if (token.text == name && tokens[i + 1].is("[") && tokens[end_of_bracket(tokens, i + 1) + 1].is("=")) return true;
   }
@@ -96,9 +96,9 @@ void check_module_values(const std::vector<ReadSource>& read, const LuaState& lu
   for (const ReadSource& one : read) {
     const Tokens& tokens = one.scopes.tokens();
     for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
-      if (tokens[i].kind != Kind::name || tokens[i].text != "require" || !uses_value(tokens, i)) continue;
+      if (tokens[i].kind != TokenKind::name || tokens[i].text != "require" || !uses_value(tokens, i)) continue;
       const SourceToken& name = tokens[i + 1].is("(") ? tokens[i + 2] : tokens[i + 1];
-      const ReadSource* const file = name.kind == Kind::text ? file_of(read, lua, name.text) : nullptr;
+      const ReadSource* const file = name.kind == TokenKind::text ? file_of(read, lua, name.text) : nullptr;
       if (file == nullptr || file->scopes.functions().front().returns_value) continue;
       problems.push_back({file->source->chunk, file->scopes.tokens().back().line, 0,
                           "returns nothing, and " + one.source->chunk + ":" + std::to_string(tokens[i].line) +

@@ -8,12 +8,13 @@ namespace {
 
 constexpr int steps_max = 16;  // more of them: tables that hold one another
 
-using Kind = SourceToken::Kind;
+using TokenKind = SourceToken::Kind;
 
 // Whether the expression before the token is over there.
 bool ends_value(const SourceToken& after) {
-  return after.kind == Kind::name || after.is(",") || after.is(")") || after.is("}") || after.is(";") ||
-         after.kind == Kind::end || (after.kind == Kind::keyword && after.text != "and" && after.text != "or");
+  return after.kind == TokenKind::name || after.is(",") || after.is(")") || after.is("}") || after.is(";") ||
+         after.kind == TokenKind::end ||
+         (after.kind == TokenKind::keyword && after.text != "and" && after.text != "or");
 }
 
 }  // namespace
@@ -127,14 +128,14 @@ std::vector<std::string> SourceFacts::fields_of(const std::string& module) const
 
 // `key = ` in the braces of a table.
 bool SourceScopes::is_key(std::size_t at) const {
-  if (!in_table() || tokens_[at].kind != Kind::name || !tokens_[at + 1].is("=")) return false;
+  if (!in_table() || tokens_[at].kind != TokenKind::name || !tokens_[at + 1].is("=")) return false;
   return tokens_[at - 1].is("{") || tokens_[at - 1].is(",") || tokens_[at - 1].is(";");
 }
 
 // Whether what ends before the token is assigned to: alone, or with more names behind commas.
 bool SourceScopes::is_assigned(std::size_t at) const {
   if (in_table()) return false;
-  while (tokens_[at].is(",") && tokens_[at + 1].kind == Kind::name) {
+  while (tokens_[at].is(",") && tokens_[at + 1].kind == TokenKind::name) {
     SourceUse another;
     at = fields_at(at + 2, another);
     if (another.arguments != 0) return false;
@@ -166,7 +167,7 @@ std::size_t SourceScopes::start_at(std::size_t at, SourceUse& use) const {
   }
   const std::size_t name = tokens_[at + 1].is("(") ? at + 2 : at + 1;
   const std::size_t after = name == at + 1 ? name + 1 : name + 2;
-  if (use.name != "require" || tokens_[name].kind != Kind::text || (name == at + 2 && !tokens_[name + 1].is(")")))
+  if (use.name != "require" || tokens_[name].kind != TokenKind::text || (name == at + 2 && !tokens_[name + 1].is(")")))
     return at + 1;
   use.known = true;
   const std::string& module = tokens_[name].text;
@@ -179,11 +180,11 @@ std::size_t SourceScopes::start_at(std::size_t at, SourceUse& use) const {
 // The fields after a name, then a method and the bracket of a call.
 std::size_t SourceScopes::fields_at(std::size_t at, SourceUse& use) const {
   for (;;) {
-    if (tokens_[at].is(".") && tokens_[at + 1].kind == Kind::name) {
+    if (tokens_[at].is(".") && tokens_[at + 1].kind == TokenKind::name) {
       use.meaning.path.push_back(tokens_[at + 1].text);
       use.lines.push_back(tokens_[at + 1].line);
       at += 2;
-    } else if (tokens_[at].is("[") && tokens_[at + 1].kind == Kind::text && tokens_[at + 2].is("]")) {
+    } else if (tokens_[at].is("[") && tokens_[at + 1].kind == TokenKind::text && tokens_[at + 2].is("]")) {
       use.meaning.path.push_back(tokens_[at + 1].text);
       use.lines.push_back(tokens_[at + 1].line);
       at += 3;
@@ -198,11 +199,11 @@ std::size_t SourceScopes::fields_at(std::size_t at, SourceUse& use) const {
     ++use.written;
     return at;
   }
-  if (tokens_[at].is(":") && tokens_[at + 1].kind == Kind::name) {
+  if (tokens_[at].is(":") && tokens_[at + 1].kind == TokenKind::name) {
     use.method = tokens_[at + 1].text;
     at += 2;
   }
-  if (tokens_[at].is("(") || tokens_[at].is("{") || tokens_[at].kind == Kind::text) {
+  if (tokens_[at].is("(") || tokens_[at].is("{") || tokens_[at].kind == TokenKind::text) {
     use.arguments = tokens_[at].is("(") ? at + 1 : at;
     return tokens_[at].is("(") ? at + 1 : at;
   }
@@ -246,13 +247,13 @@ std::optional<SourcePlace> SourceScopes::callee_of(const SourceUse& call) const 
 
 // The function whose value is all that the expression is: `return f(x)`.
 std::optional<SourcePlace> SourceScopes::tail_at(std::size_t at) const {
-  if (tokens_[at].kind != Kind::name) return std::nullopt;
+  if (tokens_[at].kind != TokenKind::name) return std::nullopt;
   SourceUse use;
   fields_at(start_at(at, use), use);
   look_through(use);
   if (use.arguments == 0) return std::nullopt;
   const SourceToken& after = tokens_[end_of_call(tokens_, use.arguments)];
-  const bool last = after.kind == Kind::end || after.is(";") || after.is("end") || after.is("else") ||
+  const bool last = after.kind == TokenKind::end || after.is(";") || after.is("end") || after.is("else") ||
                     after.is("elseif") || after.is("until");
   return last ? callee_of(use) : std::nullopt;
 }
@@ -271,7 +272,7 @@ bool SourceScopes::is_motion(SourceUse call) const {
 SourceMeaning SourceScopes::value_at(std::size_t at) const {
   if (tokens_[at].is("function")) return {SourceRole::function, {}, {file_, at}};
   if (tokens_[at].is("{")) return {SourceRole::table, {}, {file_, at}};
-  if (tokens_[at].kind != Kind::name) return {};
+  if (tokens_[at].kind != TokenKind::name) return {};
   if (tokens_[at].text == "setmetatable" && tokens_[at + 1].is("(")) return value_at(at + 2);
   SourceUse use;
   const std::size_t next = fields_at(start_at(at, use), use);
@@ -287,7 +288,7 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
 
 namespace {
 
-using Kind = SourceToken::Kind;
+using TokenKind = SourceToken::Kind;
 
 // Keys of functions that are over within their tick.
 bool is_at_once(const std::string& key) {
@@ -296,8 +297,8 @@ bool is_at_once(const std::string& key) {
 
 // Whether a value stands behind `return`.
 bool begins_value(const SourceToken& token) {
-  if (token.kind == Kind::end || token.is(";")) return false;
-  return token.kind != Kind::keyword || token.is("function") || token.is("nil") || token.is("not") ||
+  if (token.kind == TokenKind::end || token.is(";")) return false;
+  return token.kind != TokenKind::keyword || token.is("function") || token.is("nil") || token.is("not") ||
          token.is("true") || token.is("false");
 }
 
@@ -320,7 +321,7 @@ void learn_facts(const std::vector<SourceScopes*>& files, SourceFacts& facts) {
 
 SourceScopes::SourceScopes(std::vector<SourceToken> tokens, std::size_t file, SourceFacts& facts)
     : tokens_(std::move(tokens)), file_(file), facts_(&facts) {
-  tokens_.resize(tokens_.size() + 4, SourceToken{Kind::end, "", tokens_.empty() ? 1 : tokens_.back().line});
+  tokens_.resize(tokens_.size() + 4, SourceToken{TokenKind::end, "", tokens_.empty() ? 1 : tokens_.back().line});
   for (const SourceToken& token : tokens_) {
     if (token.is("function")) ++functions_by_line_[token.line];
   }
@@ -333,7 +334,7 @@ void SourceScopes::walk(SourceListener* listener) {
   next_locals_.clear();
   function(0).returns = 0;  // the file's own
   function(0).line = tokens_[0].line;
-  for (std::size_t at = 0; tokens_[at].kind != Kind::end;) at = step(at);
+  for (std::size_t at = 0; tokens_[at].kind != TokenKind::end;) at = step(at);
 }
 
 std::vector<SourceFunction> SourceScopes::functions() const {
@@ -357,8 +358,8 @@ void SourceScopes::close() {
 // Reads what begins at the token and returns the token after it.
 std::size_t SourceScopes::step(std::size_t at) {
   const SourceToken& token = tokens_[at];
-  if (token.kind == Kind::name) return name_at(at);
-  if (token.kind != Kind::keyword) {
+  if (token.kind == TokenKind::name) return name_at(at);
+  if (token.kind != TokenKind::keyword) {
     symbol_at(at);
     return token.is("::") ? at + 3 : at + 1;
   }
@@ -383,7 +384,7 @@ std::size_t SourceScopes::step(std::size_t at) {
 void SourceScopes::symbol_at(std::size_t at) {
   if (tokens_[at].is("{")) braces_.push_back({at, blocks_.size()});
   if (tokens_[at].is("}") && !braces_.empty()) braces_.pop_back();
-  if (!tokens_[at].is("[") || tokens_[at + 1].kind != Kind::text || !tokens_[at + 2].is("]")) return;
+  if (!tokens_[at].is("[") || tokens_[at + 1].kind != TokenKind::text || !tokens_[at + 2].is("]")) return;
   if (!tokens_[at + 3].is("=")) return;
   const std::string& key = tokens_[at + 1].text;
   if (in_table()) {
@@ -421,7 +422,7 @@ std::size_t SourceScopes::function_at(std::size_t start) {
   }
   const SourceMeaning holder = name_function(start);
   std::size_t at = start + 1;
-  while (!tokens_[at].is("(") && tokens_[at].kind != Kind::end) ++at;
+  while (!tokens_[at].is("(") && tokens_[at].kind != TokenKind::end) ++at;
   const auto declare = [&](std::size_t number, const std::string& name, std::size_t token,
                            const SourceMeaning& otherwise) {
     const auto given = function.given.find(number);
@@ -430,8 +431,8 @@ std::size_t SourceScopes::function_at(std::size_t start) {
   };
   std::size_t number = 0;
   if (at > start + 3 && tokens_[at - 2].is(":")) declare(number++, "self", start, holder);
-  for (++at; !tokens_[at].is(")") && tokens_[at].kind != Kind::end; ++at) {
-    if (tokens_[at].kind == Kind::name) declare(number++, tokens_[at].text, at, {});
+  for (++at; !tokens_[at].is(")") && tokens_[at].kind != TokenKind::end; ++at) {
+    if (tokens_[at].kind == TokenKind::name) declare(number++, tokens_[at].text, at, {});
   }
   open(start, true);
   return at + 1;
@@ -439,9 +440,9 @@ std::size_t SourceScopes::function_at(std::size_t start) {
 
 // Gives the function to its name: a local that was declared before, or a field. Returns what the field is of.
 SourceMeaning SourceScopes::name_function(std::size_t start) {
-  if (tokens_[start + 1].kind != Kind::name) return {};
+  if (tokens_[start + 1].kind != TokenKind::name) return {};
   std::vector<std::string> names;
-  for (std::size_t at = start + 1; tokens_[at].kind == Kind::name; at += 2) {
+  for (std::size_t at = start + 1; tokens_[at].kind == TokenKind::name; at += 2) {
     names.push_back(tokens_[at].text);
     if (!tokens_[at + 1].is(".") && !tokens_[at + 1].is(":")) break;
   }
@@ -482,7 +483,7 @@ std::size_t SourceScopes::local_at(std::size_t at) {
   }
   std::vector<std::size_t> names;
   ++at;
-  while (tokens_[at].kind == Kind::name) {
+  while (tokens_[at].kind == TokenKind::name) {
     names.push_back(at);
     const bool more = tokens_[at + 1].is(",");
     at += more ? 2 : 1;
@@ -503,10 +504,10 @@ std::size_t SourceScopes::local_at(std::size_t at) {
 
 std::size_t SourceScopes::for_at(std::size_t at) {
   std::map<std::string, std::size_t> names;
-  for (++at; tokens_[at].kind == Kind::name || tokens_[at].is(","); ++at) {
-    if (tokens_[at].kind == Kind::name) names[tokens_[at].text] = at;
+  for (++at; tokens_[at].kind == TokenKind::name || tokens_[at].is(","); ++at) {
+    if (tokens_[at].kind == TokenKind::name) names[tokens_[at].text] = at;
   }
-  while (!tokens_[at].is("do") && tokens_[at].kind != Kind::end) at = step(at);
+  while (!tokens_[at].is("do") && tokens_[at].kind != TokenKind::end) at = step(at);
   next_locals_ = std::move(names);
   return at;  // at `do`
 }
@@ -518,7 +519,7 @@ std::size_t SourceScopes::key_at(std::size_t at) {
   if (!holds_nothing(tokens_[at + 2]))
     facts_->give_field({SourceRole::table, {}, {file_, braces_.back().token}}, key, value);
   const SourceMeaning function = facts_->resolve(value);
-  if (function.role == SourceRole::function && tokens_[at + 2].kind == Kind::name) give_key(key, function.place);
+  if (function.role == SourceRole::function && tokens_[at + 2].kind == TokenKind::name) give_key(key, function.place);
   return at + 2;
 }
 

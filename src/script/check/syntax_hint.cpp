@@ -12,7 +12,7 @@
 namespace kadans {
 namespace {
 
-using Kind = SourceToken::Kind;
+using TokenKind = SourceToken::Kind;
 using Tokens = std::vector<SourceToken>;
 
 // Signs of other languages. Lua has none of these pairs, so a pair of them is never right.
@@ -74,11 +74,11 @@ bool opens_bracket(const SourceToken& token) { return token.is_any({"(", "{", "[
 bool closes_bracket(const SourceToken& token) { return token.is_any({")", "}", "]"}); }
 
 bool may_end_entry(const SourceToken& token) {
-  return token.kind == Kind::name || token.kind == Kind::number || token.kind == Kind::text || closes_bracket(token) ||
-         token.is_any({"end", "true", "false", "nil"});
+  return token.kind == TokenKind::name || token.kind == TokenKind::number || token.kind == TokenKind::text ||
+         closes_bracket(token) || token.is_any({"end", "true", "false", "nil"});
 }
 bool may_begin_entry(const SourceToken& token) {
-  return token.kind == Kind::name || token.kind == Kind::number || token.kind == Kind::text ||
+  return token.kind == TokenKind::name || token.kind == TokenKind::number || token.kind == TokenKind::text ||
          token.is_any({"{", "[", "function", "true", "false", "not"});
 }
 
@@ -95,8 +95,8 @@ class Explainer {
  public:
   Explainer(std::string_view text, int line, std::string_view message)
       : text_(text), line_(line), message_(message), near_(near_of(message)), tokens_(lex_source(text)) {
-    tokens_.insert(tokens_.begin(), 2, SourceToken{Kind::end, "", 1});  // so that there is always one before
-    tokens_.resize(tokens_.size() + 4, SourceToken{Kind::end, "", tokens_.back().line});
+    tokens_.insert(tokens_.begin(), 2, SourceToken{TokenKind::end, "", 1});  // so that there is always one before
+    tokens_.resize(tokens_.size() + 4, SourceToken{TokenKind::end, "", tokens_.back().line});
     at_ = place();
     for (std::size_t start = 0; start < text.size(); start = std::min(text.find('\n', start), text.size() - 1) + 1)
       indents_.push_back(text.substr(start, 256).find_first_not_of(" \t"));
@@ -126,11 +126,11 @@ class Explainer {
   bool tell(std::size_t at, std::string_view text) { return tell_line(tokens_[at].line, text); }
   bool says(std::string_view what) const { return message_.find(what) != std::string_view::npos; }
   bool name(std::size_t at, std::string_view word) const {
-    return tokens_[at].kind == Kind::name && tokens_[at].text == word;
+    return tokens_[at].kind == TokenKind::name && tokens_[at].text == word;
   }
   bool last_in_line(std::size_t at) const { return tokens_[at + 1].line > tokens_[at].line || at_end(at + 1); }
   bool first_in_line(std::size_t at) const { return tokens_[at - 1].line < tokens_[at].line || at_end(at - 1); }
-  bool at_end(std::size_t at) const { return tokens_[at].kind == Kind::end; }
+  bool at_end(std::size_t at) const { return tokens_[at].kind == TokenKind::end; }
   bool in_braces(std::size_t at) const {
     return tokens_[at - 1].is("{") || tokens_[at - 1].is(",") || tokens_[at - 1].is(";");
   }
@@ -143,8 +143,9 @@ class Explainer {
       last = i;
       if (tokens_[i].line < line_ || near_.empty()) continue;
       const std::string& token = tokens_[i].text;
-      if (near_ == token || (tokens_[i].kind == Kind::text && near_.find(token) != std::string_view::npos)) return i;
-      if (tokens_[i].kind == Kind::symbol && token.starts_with(near_)) return i;
+      if (near_ == token || (tokens_[i].kind == TokenKind::text && near_.find(token) != std::string_view::npos))
+        return i;
+      if (tokens_[i].kind == TokenKind::symbol && token.starts_with(near_)) return i;
     }
     return near_ == "<eof>" ? last + 1 : last;
   }
@@ -161,9 +162,10 @@ class Explainer {
   }
 
   std::string path_before(std::size_t at) const {
-    if (tokens_[at - 1].kind != Kind::name) return "n";
+    if (tokens_[at - 1].kind != TokenKind::name) return "n";
     std::string path = tokens_[at - 1].text;
-    for (std::size_t i = at - 2; path.size() < 64 && tokens_[i].is(".") && tokens_[i - 1].kind == Kind::name; i -= 2)
+    for (std::size_t i = at - 2; path.size() < 64 && tokens_[i].is(".") && tokens_[i - 1].kind == TokenKind::name;
+         i -= 2)
       path.insert(0, tokens_[i - 1].text + ".");
     return path;
   }
@@ -191,7 +193,7 @@ class Explainer {
 
   bool minus_minus() {
     const SourceToken& before = tokens_[at_ - 1];
-    if (before.kind != Kind::name ||
+    if (before.kind != TokenKind::name ||
         line_of_text(text_, before.line).find(before.text + "--") == std::string_view::npos)
       return false;
     const std::string path = path_before(at_);
@@ -200,11 +202,11 @@ class Explainer {
 
   bool start() {
     return each_in_line([&](std::size_t i) {
-      if (tokens_[i].kind != Kind::name || tokens_[i - 1].is(".") || tokens_[i - 1].is(":")) return false;
+      if (tokens_[i].kind != TokenKind::name || tokens_[i - 1].is(".") || tokens_[i - 1].is(":")) return false;
       if (tokens_[i].text == "continue" && (last_in_line(i) || tokens_[i + 1].is("end") || tokens_[i + 1].is(";")))
         return tell(i, "Lua has no continue: put the rest of the loop into an if");
-      const bool goes_on = tokens_[i + 1].kind == Kind::name || tokens_[i + 1].kind == Kind::text ||
-                           tokens_[i + 1].kind == Kind::number || tokens_[i + 1].is("{");
+      const bool goes_on = tokens_[i + 1].kind == TokenKind::name || tokens_[i + 1].kind == TokenKind::text ||
+                           tokens_[i + 1].kind == TokenKind::number || tokens_[i + 1].is("{");
       if (tokens_[i + 1].line != tokens_[i].line || !goes_on) return false;
       for (const ForeignStart& one : foreign_starts) {
         if (tokens_[i].text == one.word) return tell(i, one.hint);
@@ -219,10 +221,10 @@ class Explainer {
   bool key() {
     return each_in_line([&](std::size_t i) {
       const SourceToken& token = tokens_[i];
-      if ((token.kind != Kind::name && token.kind != Kind::text) || !in_braces(i)) return false;
-      const bool equals = token.kind == Kind::text && tokens_[i + 1].is("=");
-      const bool called = tokens_[i + 2].kind == Kind::name &&
-                          (tokens_[i + 3].is("(") || tokens_[i + 3].is("{") || tokens_[i + 3].kind == Kind::text);
+      if ((token.kind != TokenKind::name && token.kind != TokenKind::text) || !in_braces(i)) return false;
+      const bool equals = token.kind == TokenKind::text && tokens_[i + 1].is("=");
+      const bool called = tokens_[i + 2].kind == TokenKind::name &&
+                          (tokens_[i + 3].is("(") || tokens_[i + 3].is("{") || tokens_[i + 3].kind == TokenKind::text);
       const bool colon = tokens_[i + 1].is(":") && !called;
       return (equals || colon) && tell(i, "a table is written { " + token.text + " = value }");
     });
@@ -239,7 +241,7 @@ class Explainer {
   bool ends_parameters(std::size_t at) const {
     if (!tokens_[at].is(")")) return false;
     std::size_t before = open_of(at) - 1;
-    while (tokens_[before].kind == Kind::name || tokens_[before].is(".") || tokens_[before].is(":")) --before;
+    while (tokens_[before].kind == TokenKind::name || tokens_[before].is(".") || tokens_[before].is(":")) --before;
     return tokens_[before].is("function");
   }
   // The word of the line that wants `then` or `do` in it, or 0.
@@ -295,7 +297,7 @@ class Explainer {
   // { function enter(m) ... }
   bool named_in_table() {
     const std::size_t function = tokens_[at_].is("function") ? at_ : at_ - 1;
-    if (!tokens_[function].is("function") || tokens_[function + 1].kind != Kind::name || !in_braces(function))
+    if (!tokens_[function].is("function") || tokens_[function + 1].kind != TokenKind::name || !in_braces(function))
       return false;
     return tell(function, "in a table write " + tokens_[function + 1].text + " = function(m) ... end");
   }
@@ -308,7 +310,7 @@ class Explainer {
 
   // move "stand", { ... }
   bool two_without() {
-    if (!tokens_[at_].is(",") || tokens_[at_ - 1].kind != Kind::text || tokens_[at_ - 2].kind != Kind::name)
+    if (!tokens_[at_].is(",") || tokens_[at_ - 1].kind != TokenKind::text || tokens_[at_ - 2].kind != TokenKind::name)
       return false;
     if (!tokens_[at_ - 3].is(":") && !tokens_[at_ - 3].is(".")) return false;
     return tell(at_, "only one text or table goes without brackets: write " + tokens_[at_ - 2].text + "(..., ...)");
@@ -389,9 +391,9 @@ class Explainer {
   // Whether an entry may begin at the token while the one before it goes on: f "text", f { }, and so on.
   bool goes_on(std::size_t at) const {
     const SourceToken& before = tokens_[at - 1];
-    const bool argument = tokens_[at].is("{") || tokens_[at].kind == Kind::text;
-    const bool callable = before.kind == Kind::name || before.is(")") || before.is("]") ||
-                          (before.kind == Kind::text && tokens_[at - 2].kind == Kind::name);
+    const bool argument = tokens_[at].is("{") || tokens_[at].kind == TokenKind::text;
+    const bool callable = before.kind == TokenKind::name || before.is(")") || before.is("]") ||
+                          (before.kind == TokenKind::text && tokens_[at - 2].kind == TokenKind::name);
     return (argument && callable) || tokens_[at].is("[");
   }
 
@@ -401,9 +403,9 @@ class Explainer {
     if (says("')' expected") && first_in_line(at_)) return tell_line(tokens_[at_ - 1].line, "the '(' is not closed");
     for (std::size_t i = at_; !at_end(i) && tokens_[i].line == tokens_[at_].line; ++i) {
       const SourceToken& before = tokens_[i - 1];
-      if (!near_.ends_with(tokens_[i].text) && tokens_[i].kind != Kind::text) continue;
+      if (!near_.ends_with(tokens_[i].text) && tokens_[i].kind != TokenKind::text) continue;
       if (!may_end_entry(before) || !may_begin_entry(tokens_[i]) || goes_on(i)) continue;
-      const std::string before_it = before.kind == Kind::text ? "\"" + before.text + "\"" : before.text;
+      const std::string before_it = before.kind == TokenKind::text ? "\"" + before.text + "\"" : before.text;
       return tell_line(before.line, "a comma is missing behind " + before_it);
     }
     return false;

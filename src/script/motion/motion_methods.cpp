@@ -86,9 +86,9 @@ int send_motion(lua_State* state, std::uint32_t object, const MotionOptions& opt
 
 // What it takes to read a pose, to check it and to send it: each joint looks for its set-point.
 void charge_pose(lua_State* state, const ObjectInfo& object) {
-  constexpr double pose_instructions = 400, joint_instructions = 4;
+  constexpr double pose_instructions = 400, look_instructions = 4;
   const auto looks = static_cast<double>(object.joints.size() * object.setpoints.size());
-  core_of(state).budget.charge(state, pose_instructions + joint_instructions * looks);
+  core_of(state).budget.charge(state, pose_instructions + look_instructions * looks);
 }
 
 // [-0 +4] nil, a word, a number, and more words.

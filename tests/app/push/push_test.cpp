@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string program = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
+const std::string binary = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
 const char* const squat = "behaviors/tulip/squat.lua";
 const char* const there = "there/tulip/robot";
 const char* const push =
@@ -36,7 +36,7 @@ fs::path project_with_ssh(const std::string& name) {
         "shift 2\n"
         "exec sh -c \"$*\"\n");
   fs::permissions(project / "bin/ssh", fs::perms::owner_all);
-  fs::create_symlink(program, project / "bin/kadans");
+  fs::create_symlink(binary, project / "bin/kadans");
   return project;
 }
 

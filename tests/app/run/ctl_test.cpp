@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string program = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
+const std::string kadans_program = (fs::path(KADANS_BINARY_DIR) / "kadans").string();
 const char* const kp = "posture.l_knee.kp_Nm_per_rad";
 
 // Runs `commands` while `started` goes on in the background, found in the folder c; `ctl` stands for the program's.
@@ -21,11 +21,11 @@ int beside(const fs::path& project, const std::string& started, const std::strin
   write(project / "beside.sh",
         "export XDG_STATE_HOME=\"$PWD/state\" XDG_RUNTIME_DIR=\"$PWD/none\"\n"
         "kadans() { '" +
-            program +
+            kadans_program +
             "' \"$@\"; }\n"
             "ctl() { kadans ctl --socket c \"$@\"; }\n"
             "'" +
-            program + "' " + started +
+            kadans_program + "' " + started +
             " --ctl c >out 2>err &\n"
             "run=$!\n"
             "until ctl status >/dev/null 2>&1; do kill -0 $run || exit 9; done\n" +
@@ -349,7 +349,7 @@ TEST_CASE("bash completes verbs, options, and names from the run") {
   const auto project = project_copy("ctl_bash");
   write(
       project / "complete.bash",
-      "kadans() { '" + program +
+      "kadans() { '" + kadans_program +
           "' \"$@\"; }\neval \"$(kadans completion bash)\"\n"
           "try() { COMP_WORDS=(kadans \"$@\"); COMP_CWORD=$#; COMPREPLY=(); _kadans; echo \"$*: ${COMPREPLY[*]}\"; }\n"
           "try ctl st; try ct; try ctl fault ''; try ctl list s; try ctl play --re\n"
@@ -376,7 +376,7 @@ TEST_CASE("zsh completes verbs, and names from the run" *
           doctest::skip(std::system("command -v zsh >/dev/null") != 0)) {
   const auto project = project_copy("ctl_zsh");
   write(project / "complete.zsh",
-        "kadans() { '" + program +
+        "kadans() { '" + kadans_program +
             "' \"$@\" }\neval \"$(kadans completion zsh)\"\n"
             "compadd() { shift; echo \"${(@)argv[(R)${words[CURRENT]}*]}\" }\n"
             "_files() { echo files }\n"

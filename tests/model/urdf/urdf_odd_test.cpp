@@ -12,7 +12,8 @@ using namespace kadans;
 
 namespace {
 
-const std::string robot = R"(<robot name="duo">)", end = "</robot>", elbow = R"(<joint name="elbow" type="revolute">)";
+const std::string opening = R"(<robot name="duo">)", end = "</robot>",
+                  elbow = R"(<joint name="elbow" type="revolute">)";
 const std::string limit = R"(<limit lower="0" upper="2" effort="5" velocity="3"/>)";
 
 // A link that is fixed to the base.
@@ -43,7 +44,7 @@ std::string transmission(const std::string& type, const std::string& joint, cons
 
 TEST_CASE("What is not URDF is told once, and the robot is read without it") {
   const std::vector<BrokenUrdf> table{
-      {"xacro's name space", robot, R"(<robot name="duo" xmlns:xacro="http://www.ros.org/wiki/xacro">)",
+      {"xacro's name space", opening, R"(<robot name="duo" xmlns:xacro="http://www.ros.org/wiki/xacro">)",
        "warning: duo.urdf:1:19: attribute 'xmlns:xacro' of <robot> is not known to URDF, and not used"},
       {"gazebo", end, R"(<gazebo reference="base"/></robot>)",
        "warning: duo.urdf:27:1: <gazebo> in <robot> is not known to URDF, and not used"},
@@ -76,9 +77,9 @@ warning: duo.urdf:25:73: attribute 'K' of <dynamics> is not known to URDF, and n
       {"a floating joint below a bare root", end,
        R"(<link name="world"/><joint name="free" type="floating"><parent link="world"/><child link="base"/></joint></robot>)",
        "warning: duo.urdf:27:21: joint 'free' is floating, as every robot is here: it and link 'world' are left out"},
-      {"no name of a robot", robot, "<robot>",
+      {"no name of a robot", opening, "<robot>",
        "warning: duo.urdf:1:1: this <robot> has no name that can be used, and gets its file's"},
-      {"another version", robot, R"(<robot name="duo" version="1.1">)",
+      {"another version", opening, R"(<robot name="duo" version="1.1">)",
        "warning: duo.urdf:1:28: URDF version '1.1' is read as '1.0'"},
   };
   for (const BrokenUrdf& broken : table) check_told(broken);

@@ -11,14 +11,14 @@
 namespace kadans {
 namespace {
 
-std::string with(const std::string& values, const std::string& length) {
+std::string with_values(const std::string& values, const std::string& length) {
   return "<robot name=\"a\" xmlns:xacro=\"http://ros.org/wiki/xacro\">\n" + values +
          "\n<!-- <xacro:include filename=\"none\"/> -->\n<link name=\"base\"><visual><geometry><sphere radius=\"" +
          length + "\"/></geometry></visual></link></robot>";
 }
 
 std::string radius(const std::string& values, const std::string& length) {
-  const auto found = with_xacro_values(with(values, length), "a.urdf");
+  const auto found = with_xacro_values(with_values(values, length), "a.urdf");
   if (!found) return "nothing";
   const std::size_t at = found->text.find("radius=\"") + 8;
   return found->text.substr(at, found->text.find('"', at) - at);
@@ -55,7 +55,7 @@ TEST_CASE("What is more than names of values is left to the program xacro") {
 }
 
 TEST_CASE("The text with its values is a URDF with each element in its line, and one message says what was taken") {
-  const std::string text = with("<xacro:arg name=\"r\" default=\"0.5\"/>\n<xacro:arg name=\"no\"/>", "$(arg r)");
+  const std::string text = with_values("<xacro:arg name=\"r\" default=\"0.5\"/>\n<xacro:arg name=\"no\"/>", "$(arg r)");
   const auto found = with_xacro_values(text, "a.urdf");
   REQUIRE(found);
   CHECK(found->told.text() == "a.urdf:5:53: values are put in for names of xacro: 'r' is '0.5' (its default)");

@@ -5,6 +5,8 @@
 
 #include "script/cast.h"
 
+namespace recovery_test {
+
 using namespace kadans;
 using namespace kadans::script_test;
 
@@ -338,3 +340,5 @@ TEST_CASE("nobody changes the result of a behavior that has ended by what its ev
   cast.tick(2);
   CHECK(cast.log.joined() == "1\n");
 }
+
+}  // namespace recovery_test
