@@ -68,6 +68,9 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
     const std::uint32_t period_ticks = health_.joints[i].period_ticks;
     const bool due = period_ticks == 1 || !started_ || tick % period_ticks == 0;
     update_joint(i, sensors.joints[i], due && i < sensors.joint_count, dt_s);
+  }
+  for (const ElasticPair& pair : pairs_) update_pair(pair, sensors);
+  for (std::size_t i = 0; i < joints.count; ++i) {
     const JointState& state = joints_[i].state;
     joints.joints[i] = {state.position_rad, state.velocity_rad_s, state.effort_Nm};
   }
@@ -100,9 +103,30 @@ inline void Estimator::update_joint(std::size_t joint, const JointSample& sample
   if (track.spring_Nm_per_rad > 0) {
     const double deflection_rad = sample.motor_position_rad - sample.position_rad;
     if (std::isfinite(deflection_rad)) track.state.effort_Nm = track.spring_Nm_per_rad * deflection_rad;
-  } else if (effort_ok) {
+  } else if (effort_ok && !track.paired) {
     track.state.effort_Nm = sample.motor_effort_Nm;
   }
+}
+
+// Each drive's torque, by its spring where it has one, as torques of the joints.
+void Estimator::update_pair(const ElasticPair& pair, const SensorFrame& sensors) noexcept {
+  const Transmission& coupling = pair.transmission;
+  Transmission::Pair bent_rad, effort_Nm;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::size_t joint = coupling.joints()[i];
+    if (joint >= sensors.joint_count) return;
+    const JointSample& sample = sensors.joints[joint];
+    bent_rad[i] = sample.motor_position_rad - sample.position_rad;
+    effort_Nm[i] = sample.motor_effort_Nm;
+  }
+  bent_rad = coupling.drive_velocity_rad_s(bent_rad);  // by the same matrix as velocities
+  effort_Nm = coupling.drive_effort_Nm(effort_Nm);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (pair.spring_Nm_per_rad[i] > 0) effort_Nm[i] = pair.spring_Nm_per_rad[i] * bent_rad[i];
+  }
+  effort_Nm = coupling.joint_effort_Nm(effort_Nm);
+  if (!std::isfinite(effort_Nm[0] + effort_Nm[1])) return;
+  for (std::size_t i = 0; i < 2; ++i) joints_[coupling.joints()[i]].state.effort_Nm = effort_Nm[i];
 }
 
 Axes Estimator::update_base(const ImuSample& sample, std::int64_t now_ns, double dt_s, BaseStatus& base) noexcept {
@@ -235,12 +259,25 @@ void Estimator::add_joints(const RobotModel& model, const EstimateSettings& sett
     const VelocityFilter::Config velocity{.cutoff_Hz = settings.cutoff_Hz(i), .dt_s = divisor * dt_s};
     joints_.push_back({.velocity = make<VelocityFilter>(velocity, owner + ": velocity"),
                        .spring_Nm_per_rad = spring_Nm_per_rad,
+                       .paired = false,
                        .last_sequence = 0,
                        .elapsed_s = 0,
                        .state = {}});
     health_.joints[i].period_ticks = divisor;
   }
   health_.joint_count = static_cast<std::uint32_t>(model.joints.size());
+  for (const Transmission& transmission : model.transmissions) {
+    if (!transmission.coupled()) continue;
+    const std::vector<std::size_t>& pair = transmission.joints();
+    const Transmission::Pair spring{of_joint(settings.spring_Nm_per_rad, pair[0], 0.0),
+                                    of_joint(settings.spring_Nm_per_rad, pair[1], 0.0)};
+    if (spring[0] == 0 && spring[1] == 0) continue;
+    pairs_.push_back({transmission, spring});
+    for (const std::size_t joint : pair) {
+      joints_[joint].spring_Nm_per_rad = 0;
+      joints_[joint].paired = true;
+    }
+  }
 }
 
 void Estimator::add_feet(const RobotModel& model, const EstimateSettings& settings) {

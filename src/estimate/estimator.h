@@ -68,6 +68,7 @@ class Estimator {
   struct JointTrack {
     VelocityFilter velocity;
     double spring_Nm_per_rad = 0;
+    bool paired = false;            // an ElasticPair has its torque
     std::int64_t last_time_ns = 0;  // of the last reading, where the bus tells it
     std::uint32_t last_sequence = 0;
     double elapsed_s = 0;  // since the last position that was used
@@ -81,10 +82,17 @@ class Estimator {
     std::array<double, sensors_per_foot> force_N{};  // the last finite ones
   };
 
+  // Two joints that two drives move through a coupling, one of them or both by a spring.
+  struct ElasticPair {
+    Transmission transmission;
+    Transmission::Pair spring_Nm_per_rad;  // of the drives
+  };
+
   void add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s);
   void add_feet(const RobotModel& model, const EstimateSettings& settings);
   [[gnu::always_inline]] void update_joint(std::size_t joint, const JointSample& sample, bool look,
                                            double dt_s) noexcept;
+  void update_pair(const ElasticPair& pair, const SensorFrame& sensors) noexcept;
   Axes update_base(const ImuSample& sample, std::int64_t now_ns, double dt_s, BaseStatus& base) noexcept;
   void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
   void update_channels(const SensorFrame& sensors, RobotStatus& status) noexcept;
@@ -93,6 +101,7 @@ class Estimator {
   EstimateSettings settings_;
   OrientationFilter orientation_;
   std::vector<JointTrack> joints_;
+  std::vector<ElasticPair> pairs_;
   std::vector<FootTrack> feet_;
   std::array<std::uint32_t, max_channels> last_channel_sequences_{};
   std::array<double, max_channels> channels_{};  // the last finite readings

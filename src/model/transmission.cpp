@@ -88,29 +88,26 @@ void Transmission::to_drives(ActuationFrame& frame) const noexcept {
   }
 }
 
-template <typename Position, typename Effort>
-void Transmission::map(SensorFrame& frame, Position position, Effort effort) const noexcept {
-  JointSample &first = frame.joints[joints_[0]], &second = frame.joints[joints_[coupled() ? 1 : 0]];
-  const Pair position_rad = position(Pair{first.motor_position_rad, second.motor_position_rad});
-  const Pair effort_Nm = effort(Pair{first.motor_effort_Nm, second.motor_effort_Nm});
-  if (coupled()) {
-    second.motor_position_rad = position_rad[1];
-    second.motor_effort_Nm = effort_Nm[1];
-  }
-  first.motor_position_rad = position_rad[0];
-  first.motor_effort_Nm = effort_Nm[0];
+template <typename Map>
+void Transmission::map(SensorFrame& frame, double JointSample::*value, Map&& mapped) const noexcept {
+  double &first = frame.joints[joints_[0]].*value, &second = frame.joints[joints_[coupled() ? 1 : 0]].*value;
+  const Pair values = mapped(Pair{first, second});
+  second = values[1];  // of a simple one overwritten
+  first = values[0];
 }
 
-void Transmission::to_joints(SensorFrame& frame) const noexcept {
-  map(
-      frame, [&](const Pair& drives) { return joint_position_rad(drives); },
-      [&](const Pair& drives) { return joint_effort_Nm(drives); });
+void Transmission::to_joints(SensorFrame& frame, Side side) const noexcept {
+  const auto position = [&](const Pair& drives) { return joint_position_rad(drives); };
+  if (side == Side::both) map(frame, &JointSample::position_rad, position);
+  map(frame, &JointSample::motor_position_rad, position);
+  map(frame, &JointSample::motor_effort_Nm, [&](const Pair& drives) { return joint_effort_Nm(drives); });
 }
 
-void Transmission::to_drives(SensorFrame& frame) const noexcept {
-  map(
-      frame, [&](const Pair& joints) { return drive_position_rad(joints); },
-      [&](const Pair& joints) { return drive_effort_Nm(joints); });
+void Transmission::to_drives(SensorFrame& frame, Side side) const noexcept {
+  const auto position = [&](const Pair& joints) { return drive_position_rad(joints); };
+  if (side == Side::both) map(frame, &JointSample::position_rad, position);
+  map(frame, &JointSample::motor_position_rad, position);
+  map(frame, &JointSample::motor_effort_Nm, [&](const Pair& joints) { return drive_effort_Nm(joints); });
 }
 
 std::vector<std::string> drive_names(std::vector<std::string> joints, std::span<const Transmission> transmissions) {
@@ -125,9 +122,7 @@ void drives_to_joints(std::span<const Transmission> transmissions, SensorFrame& 
   for (const Transmission& transmission : transmissions) {
     const std::vector<std::size_t>& joints = transmission.joints();
     JointSample &first = sensors.joints[joints[0]], &second = sensors.joints[joints[transmission.coupled() ? 1 : 0]];
-    transmission.to_joints(sensors);
-    first.position_rad = first.motor_position_rad;
-    second.position_rad = second.motor_position_rad;
+    transmission.to_joints(sensors, Transmission::Side::both);
     first.time_ns = second.time_ns = std::min(first.time_ns, second.time_ns);
     first.sequence = second.sequence = std::min(first.sequence, second.sequence);
   }

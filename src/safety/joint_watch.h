@@ -68,10 +68,20 @@ class JointWatch {
     double written_Nm;  // in the last tick
     bool follows;       // in the last tick the joint did what was asked, within limits
     double dt_s;
+    double partner_Nm = 0;  // of the motors, at the joint that it is coupled with
+  };
+  // How far a torque bends the springs between a joint and its drives, as seen from the joint.
+  struct Compliance {
+    double own_rad_per_Nm = 0, partner_rad_per_Nm = 0;  // of a torque of its own, and of the joint coupled with it
   };
 
   JointWatch() = default;
   JointWatch(const SafetySettings& settings, const JointLimits& limits) noexcept;
+  // Of a coupled joint: replaces the spring of its own.
+  void set_compliance(const Compliance& compliance) noexcept {
+    spring_Nm_per_rad_ = 0;
+    coupled_ = compliance;
+  }
 
   [[gnu::always_inline]] FaultMask look(const Input& input) noexcept;
   // Value and limit of a fault that look() has just found.
@@ -96,17 +106,21 @@ class JointWatch {
   }
   // The joint's position by its motor: the motor's position less the spring's deflection by its torque, smoothed.
   double by_motor_rad(const Input& input) noexcept {
-    if (spring_Nm_per_rad_ == 0) return input.sample.motor_position_rad;
-    const double deflection_rad = input.sample.motor_effort_Nm / spring_Nm_per_rad_;
+    if (!elastic()) return input.sample.motor_position_rad;
+    const double deflection_rad = spring_Nm_per_rad_ > 0 ? input.sample.motor_effort_Nm / spring_Nm_per_rad_
+                                                         : coupled_.own_rad_per_Nm * input.sample.motor_effort_Nm +
+                                                               coupled_.partner_rad_per_Nm * input.partner_Nm;
     mean_rad_ += input.dt_s / (input.dt_s + swing_s) * (input.sample.motor_position_rad - deflection_rad - mean_rad_);
     return mean_rad_;
   }
+  bool elastic() const noexcept { return spring_Nm_per_rad_ > 0 || coupled_.own_rad_per_Nm > 0; }
   FaultMask derate() noexcept;
 
   double lowest_rad_ = 0, highest_rad_ = 0;  // limits with their margins
   double fastest_rad_s_ = 0;
   double jump_rad_ = 0, jump_rad_s_ = 0;
   double stuck_motion_rad_ = 0, stuck_effort_Nm_ = 0, spring_Nm_per_rad_ = 0;
+  Compliance coupled_;
   double warm_C_ = 0, hot_C_ = 0, continuous_share_ = 1;
   double lower_rad_ = 0, upper_rad_ = 0;
   std::uint32_t stuck_ticks_ = 0, silent_ticks_max_ = 0;
@@ -174,7 +188,7 @@ inline bool JointWatch::stuck(const Input& in) noexcept {
   asked_high_ = std::max(asked_high_, asked);
   if (++same_ < stuck_ticks_ || passive_) return false;
   if (motor_high_rad_ - motor_low_rad_ > stuck_motion_rad_) return true;
-  if (spring_Nm_per_rad_ > 0) return false;  // the motor's encoder has told all
+  if (elastic()) return false;  // the motor's encoder has told all
   const double asked_max = has_position(in.asked.mode) ? stuck_motion_rad_ : stuck_effort_Nm_;
   return asked_high_ - asked_low_ > asked_max;
 }

@@ -370,6 +370,7 @@ Safety::Safety(const SafetySettings& settings, const RobotModel& model)
     joints_[first].partner = second;
     joints_[second].partner = first;
     couplings_.emplace_back(settings_, transmission);
+    set_compliance(transmission);
   }
   feet_.fill(FootWatch(settings_));
   require(settings_.channels.size() <= max_channels, "at most " + std::to_string(max_channels) + " sensors");
@@ -377,6 +378,22 @@ Safety::Safety(const SafetySettings& settings, const RobotModel& model)
     channels_[i] = ChannelWatch(settings_, settings_.channels[i]);
   for (std::size_t code = 0; code < fault_codes; ++code) {
     if (settings_.reactions[code].escalate) escalating_ |= bit(static_cast<FaultCode>(code));
+  }
+}
+
+// Springs of coupled drives, as the joints feel them: C^-1 K^-1 C^-T.
+void Safety::set_compliance(const Transmission& transmission) {
+  const std::vector<std::size_t>& pair = transmission.joints();
+  for (std::size_t j = 0; j < 2; ++j) {
+    JointWatch::Compliance compliance;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double spring = settings_.joints[pair[i]].spring_Nm_per_rad;
+      if (spring == 0) continue;
+      const double share = transmission.joint_per_drive(j, i) / spring;
+      compliance.own_rad_per_Nm += share * transmission.joint_per_drive(j, i);
+      compliance.partner_rad_per_Nm += share * transmission.joint_per_drive(1 - j, i);
+    }
+    joints_[pair[j]].watch.set_compliance(compliance);
   }
 }
 

@@ -126,6 +126,7 @@ class Safety {
     std::uint32_t level_number = 0;
   };
 
+  void set_compliance(const Transmission& transmission);
   // What the joint's watches look at.
   JointWatch::Input of_joint(const SafetyInput& in, const ActuationFrame& actuation, std::size_t joint,
                              double dt_s) const noexcept {
@@ -135,7 +136,8 @@ class Safety {
             .asked = actuation.joints[joint],
             .written_Nm = joints_[joint].last_Nm,
             .follows = !joints_[joint].gave_way,
-            .dt_s = dt_s};
+            .dt_s = dt_s,
+            .partner_Nm = in.sensors.joints[joints_[joint].partner].motor_effort_Nm};
   }
   DriveWatch::Input of_drive(const SafetyInput& in, std::size_t joint, double dt_s) const noexcept {
     return {in.sensors.joints[joint], joints_[joint].driven, in.sensors.time_ns, dt_s};

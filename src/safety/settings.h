@@ -18,7 +18,7 @@ struct JointLimits {
   double power_max_W = 0;               // |torque * velocity|; 0: effort_max times velocity_max
   double continuous_Nm = 0;             // torque that heats the winding just to thermal.hot_C; 0: 0.6 of effort_max
   double thermal_time_constant_s = 60;  // of the winding
-  double spring_Nm_per_rad = 0;         // between motor and joint, each with an encoder; 0: rigid
+  double spring_Nm_per_rad = 0;         // between motor and joint, or behind the coupled drive in its place; 0: rigid
   double drive_effort_max_Nm = 0, drive_velocity_max_rad_s = 0;  // of the drive in its place, if coupled; 0: none
 };
 

@@ -128,8 +128,11 @@ TEST_CASE("Coupled drives have names for their settings, and by default give bot
     return refusal_of(replaced(text, "\"*_ankle_roll\": {", (std::string(drive) + ", \"*_ankle_roll\": {").c_str()));
   };
   CHECK(refused("\"l_hip_roll\": { \"torque_max_Nm\": 5 }").find("unknown joint 'l_hip_roll'") != std::string::npos);
-  CHECK(refused("\"fore\": { \"spring_Nm_per_rad\": 100 }")
-            .find("drive 'fore' is part of a coupling, which has no springs") != std::string::npos);
+  const RobotConfig elastic =
+      read(replaced(text, "\"*_ankle_roll\": {", "\"aft\": { \"spring_Nm_per_rad\": 80 }, \"*_ankle_roll\": {"));
+  CHECK(elastic.estimate.spring_Nm_per_rad[roll] == 80);
+  CHECK(elastic.estimate.spring_Nm_per_rad[yaw] == 0);
+  CHECK(elastic.safety.joints[roll].spring_Nm_per_rad == 80);
 }
 
 TEST_CASE("Limits may be narrowed for the safety layer, joint by joint") {

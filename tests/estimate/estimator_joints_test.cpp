@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -36,6 +37,35 @@ TEST_CASE("Effort is the spring's torque where there is a spring, else the motor
   robot.advance();
   CHECK(robot.joints.joints[sprung].effort_Nm == doctest::Approx(200 * 0.05));
   CHECK(robot.joints.joints[stiff].effort_Nm == 7);
+}
+
+TEST_CASE("Efforts of coupled joints are those of the springs of their drives, and of the motor that has none") {
+  RobotModel model = kadans::test::tulip();
+  const std::size_t tilt = joint_of("l_ankle_pitch"), roll = joint_of("l_ankle_roll");
+  model.transmissions.emplace_back(
+      Transmission::Settings{.kind = Transmission::Kind::differential, .joints = {tilt, roll}});
+  EstimateSettings settings = tulip_settings();
+  settings.spring_Nm_per_rad.assign(14, 0);
+  settings.spring_Nm_per_rad[tilt] = 200;
+  settings.spring_Nm_per_rad[roll] = 80;
+  const auto efforts = [&] {
+    Estimator estimator(model, settings, 0.001);
+    SensorFrame sensors;
+    sensors.joint_count = 14;
+    sensors.joints[tilt] = {.position_rad = 0.3, .motor_position_rad = 0.35, .motor_effort_Nm = 7, .sequence = 1};
+    sensors.joints[roll] = {.position_rad = 0.1, .motor_position_rad = 0.12, .motor_effort_Nm = 3, .sequence = 1};
+    JointStates joints;
+    RobotStatus status;
+    estimator.update(sensors, 0.001, 0, joints, status);
+    return std::array{joints.joints[tilt].effort_Nm, joints.joints[roll].effort_Nm};
+  };
+  const double left_Nm = 200 * (0.05 + 0.02), right_Nm = 80 * (0.05 - 0.02);
+  CHECK(efforts()[0] == doctest::Approx(left_Nm + right_Nm));
+  CHECK(efforts()[1] == doctest::Approx(left_Nm - right_Nm));
+  settings.spring_Nm_per_rad[roll] = 0;
+  const double motor_Nm = 0.5 * (7 - 3);  // of the right drive
+  CHECK(efforts()[0] == doctest::Approx(left_Nm + motor_Nm));
+  CHECK(efforts()[1] == doctest::Approx(left_Nm - motor_Nm));
 }
 
 TEST_CASE("A slower joint is looked at in every n-th tick only, and its velocity is right all the same") {

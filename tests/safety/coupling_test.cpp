@@ -163,4 +163,26 @@ TEST_CASE(
   CHECK(bench.written.joints[0].mode == ActuationMode::effort);
 }
 
+TEST_CASE("Coupled joints that are pressed against something bend their drives' springs, and are not stuck for it") {
+  SafetySettings springs = neck_settings();
+  springs.sensors.stuck_ticks = settings().sensors.stuck_ticks;
+  springs.joints[0].spring_Nm_per_rad = 200;  // left
+  springs.joints[1].spring_Nm_per_rad = 50;
+  Bench bench = neck(springs);
+  bench.knee_noise = false;
+  const auto pull = [&](double tilt_Nm, double pan_Nm, double moved_rad) {
+    ask(bench, tilt_Nm, pan_Nm);
+    const double left_rad = 0.5 * (tilt_Nm + pan_Nm) / 200, right_rad = 0.5 * (tilt_Nm - pan_Nm) / 50;
+    bench.sensors.joints[0].motor_effort_Nm = tilt_Nm;
+    bench.sensors.joints[1].motor_effort_Nm = pan_Nm;
+    bench.sensors.joints[0].motor_position_rad = 0.5 * (left_rad + right_rad) + moved_rad;
+    bench.sensors.joints[1].motor_position_rad = 0.5 * (left_rad - right_rad);
+    bench.check();
+  };
+  for (int i = 0; i < 1000; ++i) pull(0.014 * i, -0.014 * i, 0);  // the right spring by 0.28 rad
+  CHECK(bench.codes().empty());
+  for (int i = 0; i < 1000 && bench.codes().empty(); ++i) pull(14, -14, 0.002 * i);
+  CHECK(bench.codes() == "sensor_stuck");
+}
+
 }  // namespace coupling_test

@@ -35,6 +35,8 @@ struct DriveLaw {
   // Of a series elastic drive, for actuator-level objects (control_sets.h).
   double spring_Nm_per_rad = 0;  // 0: none
   double rotor_inertia_kg_m2 = 0;
+  // Of the drive of a coupling in this joint's place, seen from its own side; elsewhere as above.
+  double own_rotor_inertia_kg_m2 = 0, own_effort_max_Nm = 0;
 };
 
 struct SwitchSettings {

@@ -61,15 +61,16 @@ class Transmission {
   // its own position, so in impedance mode it gets its diagonal entry of C^-T K C^-1. That is exact for a differential
   // between joints of the same stiffness; joints of different stiffness get the mean of both.
   void to_drives(ActuationFrame& frame) const noexcept;
-  // Position and effort of the motors' side of the samples: what the drives measure as what it is at their joints, and
-  // the other way round.
-  void to_joints(SensorFrame& frame) const noexcept;
-  void to_drives(SensorFrame& frame) const noexcept;
+  // The samples' motor position and effort: what the drives measure as what it is at their joints. With `both` sides
+  // the position behind the springs, too, for plants whose encoders all sit at the drives; and the other way round.
+  enum class Side : bool { motor, both };
+  void to_joints(SensorFrame& frame, Side side = Side::motor) const noexcept;
+  void to_drives(SensorFrame& frame, Side side = Side::both) const noexcept;
 
  private:
   using Matrix = std::array<Pair, 2>;
-  template <typename Position, typename Effort>
-  void map(SensorFrame& frame, Position position, Effort effort) const noexcept;
+  template <typename Map>
+  void map(SensorFrame& frame, double JointSample::*value, Map&& mapped) const noexcept;
   static Pair times(const Matrix& m, const Pair& x) noexcept {
     return {m[0][0] * x[0] + m[0][1] * x[1], m[1][0] * x[0] + m[1][1] * x[1]};
   }

@@ -14,8 +14,8 @@
 namespace kadans {
 
 // A motor with its gear, seen from the joint; one that couples two joints (model/transmission.h) is seen from its own
-// side of the coupling, and has no springs. With a spring it is a series elastic actuator: the rotor is a state of
-// its own and only the spring's torque reaches the joint. Without one the rotor's inertia moves with the joint.
+// side of the coupling, its springs too. With a spring it is a series elastic actuator: the rotor is a state of its own
+// and only the spring's torque reaches the joint. Without one the rotor's inertia moves with the joint.
 struct DriveSettings {
   double torque_max_Nm = 0;        // 0: passive, no motor
   double velocity_max_rad_s = 0;   // no-load speed: available torque falls linearly ...

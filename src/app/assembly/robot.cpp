@@ -118,7 +118,9 @@ std::vector<DriveLaw> drive_laws(const RobotConfig& config) {
                     .velocity_delay_s = VelocityFilter::delay_s(
                         {.cutoff_Hz = estimate.cutoff_Hz(i), .dt_s = divisor * config.engine.control_period_s}),
                     .spring_Nm_per_rad = drive.spring_Nm_per_rad,
-                    .rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2});
+                    .rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2,
+                    .own_rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2,
+                    .own_effort_max_Nm = drive.torque_max_Nm});
   }
   for (const Transmission& transmission : config.model.transmissions) {
     if (transmission.coupled()) add_both_drives(transmission, config.plant.drives, laws);

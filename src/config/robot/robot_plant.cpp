@@ -167,20 +167,6 @@ void RobotReader::leave_to_joints(const Transmission& transmission) {
   }
 }
 
-void RobotReader::check_coupled_drives(const Fields& f) {
-  for (const Transmission& transmission : config_.model.transmissions) {
-    for (const std::size_t i : transmission.joints()) {
-      const DriveSettings& drive = config_.plant.drives[i];
-      if (!transmission.coupled() || (drive.spring_Nm_per_rad == 0 && drive.parallel_spring_Nm_per_rad == 0 &&
-                                      drive.parallel_damping_Nms_per_rad == 0))
-        continue;
-      problems_.add(f.place("drives"), f.path("drives") + ": drive '" + drive_names_[i] +
-                                           "' is part of a coupling, which has no springs: spring_Nm_per_rad, "
-                                           "parallel_spring_Nm_per_rad and parallel_damping_Nms_per_rad must be 0");
-    }
-  }
-}
-
 void RobotReader::drive(Fields& entry) {
   const std::vector<std::size_t> meant =
       have_model_ ? chosen(entry.key(), entry.key_place(), "joint", drive_names_) : std::vector<std::size_t>();
@@ -362,7 +348,6 @@ void RobotReader::plant(Fields& f) {
     });
   }
   if (object_types_.empty() && !config_.plugins.empty()) f.leave_others();  // a plug-in's type would ask for them
-  check_coupled_drives(f);
   for (std::size_t i = 0; i < plant.drives.size(); ++i) {
     config_.estimate.spring_Nm_per_rad[i] = config_.safety.joints[i].spring_Nm_per_rad =
         plant.drives[i].spring_Nm_per_rad;

@@ -28,7 +28,6 @@ class RobotReader {
   void drive(Fields& entry);
   void default_drives(const Transmission& transmission);
   void leave_to_joints(const Transmission& transmission);
-  void check_coupled_drives(const Fields& f);
   void surface(Fields& entry);
   void collision(Fields& entry);
   void imu(Fields& f);

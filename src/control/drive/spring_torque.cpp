@@ -13,16 +13,51 @@ constexpr double turn = 2 * std::numbers::pi;
 }  // namespace
 
 SpringTorque::SpringTorque(const ObjectSetup& setup) {
-  for (JointAxis& axis : joint_axes(setup)) {
-    const std::size_t joint = axis.joint;
-    if (joint >= setup.drives.size() || !(setup.drives[joint].spring_Nm_per_rad > 0)) {
-      throw std::invalid_argument("joint " + axis.name + " has no spring between motor and joint");
+  const auto coupling_of = [&](std::size_t joint) {
+    return std::ranges::find_if(setup.model.transmissions, [&](const Transmission& transmission) {
+      return transmission.coupled() && std::ranges::find(transmission.joints(), joint) != transmission.joints().end();
+    });
+  };
+  const auto none = setup.model.transmissions.end();
+  for (const JointAxis& axis : joint_axes(setup)) {
+    if (coupling_of(axis.joint) != none) continue;
+    const DriveLaw drive = axis.joint < setup.drives.size() ? setup.drives[axis.joint] : DriveLaw{};
+    add(axis, {.spring_Nm_per_rad = drive.spring_Nm_per_rad,
+               .rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2,
+               .effort_max_Nm = axis.effort_max_Nm});
+  }
+  single_ = parts_.size();
+  for (const std::size_t joint : setup.joints) {
+    const auto coupling = coupling_of(joint);
+    if (coupling != none && coupling->joints()[0] == joint) add_pair(setup, *coupling);
+    if (coupling == none) continue;
+    for (const std::size_t other : coupling->joints()) {
+      if (std::ranges::find(setup.joints, other) != setup.joints.end()) continue;
+      throw std::invalid_argument("joint " + setup.model.joints[joint].name + " is coupled with " +
+                                  setup.model.joints[other].name + ": their drives' springs need both");
     }
-    Part& part = parts_.emplace_back();
-    part.loop.config() = {.spring_Nm_per_rad = setup.drives[joint].spring_Nm_per_rad,
-                          .rotor_inertia_kg_m2 = setup.drives[joint].rotor_inertia_kg_m2,
-                          .effort_max_Nm = axis.effort_max_Nm};
-    part.axis = std::move(axis);
+  }
+}
+
+void SpringTorque::add(JointAxis axis, const SpringTorqueLoop::Config& config) {
+  if (!(config.spring_Nm_per_rad > 0)) {
+    throw std::invalid_argument("joint " + axis.name + " has no spring between motor and joint");
+  }
+  Part& part = parts_.emplace_back();
+  part.axis = std::move(axis);
+  part.loop.config() = config;
+}
+
+void SpringTorque::add_pair(const ObjectSetup& setup, const Transmission& transmission) {
+  const std::vector<std::size_t>& joints = transmission.joints();
+  pairs_.push_back({transmission, {parts_.size(), parts_.size() + 1}});
+  for (std::size_t i = 0; i < 2; ++i) {
+    const DriveLaw drive = joints[i] < setup.drives.size() ? setup.drives[joints[i]] : DriveLaw{};
+    const std::string& joint = setup.model.joints[joints[i]].name;
+    add({.joint = joints[i], .name = transmission.drives().empty() ? joint : transmission.drives()[i]},
+        {.spring_Nm_per_rad = drive.spring_Nm_per_rad,
+         .rotor_inertia_kg_m2 = drive.own_rotor_inertia_kg_m2,
+         .effort_max_Nm = drive.own_effort_max_Nm});
   }
 }
 
@@ -62,7 +97,7 @@ void SpringTorque::start(const ControlInput&) noexcept {
 }
 
 void SpringTorque::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
-  for (Part& part : parts_) {
+  for (Part& part : std::span(parts_).first(single_)) {
     JointActuation& asked = actuation.joints[part.axis.joint];
     if (asked.mode != ActuationMode::effort) {
       part.loop.restart();
@@ -71,10 +106,33 @@ void SpringTorque::step(const ControlInput& input, ActuationFrame& actuation) no
     const double motor_Nm = part.loop.step(asked.effort_Nm, input.joints.joints[part.axis.joint], input.dt_s);
     asked.effort_Nm += part.share * (motor_Nm - asked.effort_Nm);
   }
+  for (const Pair& pair : pairs_) step_pair(input, pair, std::span(parts_).subspan(pair.parts[0], 2), actuation);
+}
+
+void SpringTorque::step_pair(const ControlInput& input, const Pair& pair, std::span<Part> parts,
+                             ActuationFrame& actuation) noexcept {
+  const Transmission& coupling = pair.transmission;
+  const std::size_t first = coupling.joints()[0], second = coupling.joints()[1];
+  JointActuation &one = actuation.joints[first], &other = actuation.joints[second];
+  if (one.mode != ActuationMode::effort || other.mode != ActuationMode::effort) {
+    for (Part& part : parts) part.loop.restart();
+    return;
+  }
+  const JointState &a = input.joints.joints[first], &b = input.joints.joints[second];
+  const Transmission::Pair velocity_rad_s = coupling.drive_velocity_rad_s({a.velocity_rad_s, b.velocity_rad_s});
+  const Transmission::Pair spring_Nm = coupling.drive_effort_Nm({a.effort_Nm, b.effort_Nm});
+  Transmission::Pair effort_Nm = coupling.drive_effort_Nm({one.effort_Nm, other.effort_Nm});
+  for (std::size_t i = 0; i < 2; ++i) {
+    const JointState drive{.velocity_rad_s = velocity_rad_s[i], .effort_Nm = spring_Nm[i]};
+    effort_Nm[i] += parts[i].share * (parts[i].loop.step(effort_Nm[i], drive, input.dt_s) - effort_Nm[i]);
+  }
+  effort_Nm = coupling.joint_effort_Nm(effort_Nm);
+  one.effort_Nm = effort_Nm[0];
+  other.effort_Nm = effort_Nm[1];
 }
 
 void SpringTorque::rehearse(const ControlInput& input) const noexcept {
-  for (const Part& part : parts_) {
+  for (const Part& part : std::span(parts_).first(single_)) {
     SpringTorqueLoop loop = part.loop;
     const std::size_t joint = part.axis.joint;
     (void)loop.step(input.last.joints[joint].effort_Nm, input.joints.joints[joint], input.dt_s);

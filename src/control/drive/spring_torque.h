@@ -6,7 +6,8 @@
 // measured. So the outer loops that compute torques stay as they are, and the inner loop's delay is that of the plant
 // alone. A joint that is not in effort mode is left to its drive.
 //
-// Joints      with a spring in their drives.
+// Joints      with a spring in their drives. Of coupled joints both: then the loops run in the drives' coordinates, on
+//             what the coupling makes of the joints' torques, and their parts carry the drives' names.
 // Parameters  <joint>. spring_Nm_per_rad, rotor_inertia_kg_m2 (the loop's model; the drive's own values unless given),
 //             bandwidth_Hz, damping_ratio, rate_cutoff_Hz, observer_Hz, and share: 0 gives the motor the wanted torque,
 //             1 closes the loop.
@@ -15,12 +16,15 @@
 // Not finite  the motor gets the wanted joint torque.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "kadans/control/control_object.h"
 #include "kadans/control/joint_axis.h"
 #include "kadans/estimate/velocity_filter.h"
+#include "kadans/model/transmission.h"
 #include "kadans/signal/frames.h"
 
 namespace kadans {
@@ -90,7 +94,7 @@ class SpringTorqueLoop {
 
 class SpringTorque final : public ControlObject {
  public:
-  // Throws std::invalid_argument for a passive joint or one without a spring.
+  // Throws std::invalid_argument for a passive joint, one without a spring, and one of two coupled joints.
   explicit SpringTorque(const ObjectSetup& setup);
 
   void declare(Declaration& declaration) override;
@@ -109,9 +113,19 @@ class SpringTorque final : public ControlObject {
     SpringTorqueLoop loop{};
     double share = 1;
   };
+  struct Pair {
+    Transmission transmission;
+    std::array<std::size_t, 2> parts;  // of its drives
+  };
+  void add(JointAxis axis, const SpringTorqueLoop::Config& config);
+  void add_pair(const ObjectSetup& setup, const Transmission& transmission);
   void declare(Declaration& declaration, Part& part);
+  static void step_pair(const ControlInput& input, const Pair& pair, std::span<Part> parts,
+                        ActuationFrame& actuation) noexcept;
 
-  std::vector<Part> parts_;
+  std::vector<Part> parts_;  // joint by joint, then drive by drive of each pair
+  std::size_t single_ = 0;   // parts that are of a joint alone
+  std::vector<Pair> pairs_;
 };
 
 std::unique_ptr<ControlObject> make_spring_torque(const ObjectSetup& setup);

@@ -47,9 +47,6 @@ void check_drive(const std::string& joint, const DriveSettings& drive) {
 void check_coupling(const std::vector<DriveSettings>& drives, const Transmission& transmission) {
   for (const std::size_t i : transmission.joints()) {
     if (i >= drives.size()) refuse("transmission of joint number", static_cast<double>(i), "one of the robot's");
-    const DriveSettings& d = drives[i];
-    const double springs = d.spring_Nm_per_rad + d.parallel_spring_Nm_per_rad + d.parallel_damping_Nms_per_rad;
-    if (transmission.coupled() && springs > 0) refuse("springs and dampers of a coupled drive", springs, "0");
   }
 }
 

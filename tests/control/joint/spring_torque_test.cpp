@@ -253,4 +253,45 @@ TEST_CASE("SpringTorque refuses joints without a spring, leaves other modes alon
   CHECK(asked.joints[0].effort_Nm == doctest::Approx(10 + gain * (10 - 4)));
 }
 
+TEST_CASE("Of coupled joints SpringTorque controls the springs of the drives, in the drives' coordinates") {
+  RobotModel model;
+  model.links.resize(3);
+  model.joints.resize(2);
+  for (Joint& joint : model.joints) joint = {.name = "", .effort_max_Nm = 20, .velocity_max_rad_s = 8};
+  model.joints[0].name = "tilt";
+  model.joints[1].name = "pan";
+  model.transmissions.emplace_back(
+      Transmission::Settings{.kind = Transmission::Kind::differential, .joints = {0, 1}, .drives = {"left", "right"}});
+  const DriveLaw left{.spring_Nm_per_rad = spring, .own_rotor_inertia_kg_m2 = rotor, .own_effort_max_Nm = 30};
+  const DriveLaw right{.spring_Nm_per_rad = spring / 2, .own_rotor_inertia_kg_m2 = rotor, .own_effort_max_Nm = 30};
+  CHECK_THROWS_WITH(SpringTorque(ObjectSetup{model, {0}, {}, {left, right}}),
+                    "joint tilt is coupled with pan: their drives' springs need both");
+
+  SpringTorque object(ObjectSetup{model, {0, 1}, {}, {left, right}});
+  ParameterTable parameters;
+  SetpointTable setpoints;
+  SignalTable signals;
+  Declaration declaration("springs", 0, parameters, setpoints, signals);
+  object.declare(declaration);
+  CHECK(parameters.find("springs.right.bandwidth_Hz").has_value());
+  JointStates joints;
+  joints.joints[0].effort_Nm = 4;  // left 3, right 1 Nm
+  joints.joints[1].effort_Nm = 2;
+  const RobotStatus status;
+  ActuationFrame last, asked;
+  asked.joints[0] = {.effort_Nm = 10, .mode = ActuationMode::effort};  // left 6, right 4 Nm
+  asked.joints[1] = {.effort_Nm = 2, .mode = ActuationMode::effort};
+  const ControlInput input{joints, status, last, 0, dt_s};
+  object.step(input, asked);
+  const double square = turn * 22 * turn * 22;
+  const double left_Nm = 6 + (square * rotor / spring - 1) * (6 - 3);
+  const double right_Nm = 4 + (square * rotor / (spring / 2) - 1) * (4 - 1);
+  CHECK(asked.joints[0].effort_Nm == doctest::Approx(left_Nm + right_Nm));
+  CHECK(asked.joints[1].effort_Nm == doctest::Approx(left_Nm - right_Nm));
+  asked.joints[0].effort_Nm = 10;
+  asked.joints[1] = {};  // off: the pair is left to its drives
+  object.step(input, asked);
+  CHECK(asked.joints[0].effort_Nm == 10);
+}
+
 }  // namespace spring_torque_test

@@ -151,10 +151,67 @@ TEST_CASE("A coupling keeps its energy: what the drives put in is what moves") {
   CHECK(energy_J == doctest::Approx(work_J).epsilon(0.02));
 }
 
-TEST_CASE("A coupling of joints that do not carry each other is refused, and springs of coupled drives are") {
-  Robot springs = driven_neck({.torque_max_Nm = 5, .rotor_inertia_kg_m2 = 0.01, .spring_Nm_per_rad = 100});
-  CHECK_THROWS_WITH(BulletWorld(springs.model, springs.settings, 1),
-                    "springs and dampers of a coupled drive = 100 must be 0");
+TEST_CASE("Behind springs each coupled drive bends its own, and both joints feel the sum") {
+  Robot robot = driven_neck({.torque_max_Nm = 5,
+                             .rotor_inertia_kg_m2 = 0.01,
+                             .viscous_Nms_per_rad = 0.3,
+                             .spring_Nm_per_rad = 100,
+                             .spring_damping_Nms_per_rad = 0.3});
+  robot.drive(1).spring_Nm_per_rad = 20;
+  for (Joint& joint : robot.model.joints) {
+    joint.type = JointType::revolute;
+    joint.lower_rad = -0.1;
+    joint.upper_rad = 0.1;
+  }
+  BulletWorld plant(robot.model, robot.settings, 1);
+  plant.write(both(torque(0.4), torque(0.1)));  // left 0.25, right 0.15 Nm
+  run(plant, 4000);                             // both joints at their stops
+  SensorFrame sensors;
+  plant.read(sensors);
+  const auto bent_rad = [&](std::size_t i) {
+    return sensors.joints[i].motor_position_rad - sensors.joints[i].position_rad;
+  };
+  CHECK(plant.truth().position_rad[0] == doctest::Approx(0.1).epsilon(0.02));
+  CHECK(plant.truth().position_rad[1] == doctest::Approx(0.1).epsilon(0.02));
+  CHECK(bent_rad(0) + bent_rad(1) == doctest::Approx(0.25 / 100).epsilon(1e-3));
+  CHECK(bent_rad(0) - bent_rad(1) == doctest::Approx(0.15 / 20).epsilon(1e-3));
+  CHECK(plant.truth().drive_torque_Nm[0] == doctest::Approx(0.4).epsilon(1e-3));
+  CHECK(plant.truth().drive_torque_Nm[1] == doctest::Approx(0.1).epsilon(1e-3));
+}
+
+TEST_CASE("A coupling behind springs keeps its energy: in the joints, the rotors and the springs") {
+  Robot robot = driven_neck({.torque_max_Nm = 5, .rotor_inertia_kg_m2 = 0.02, .spring_Nm_per_rad = 60});
+  robot.drive(1).spring_Nm_per_rad = 30;
+  BulletWorld plant(robot.model, robot.settings, 1);
+  plant.write(both(torque(0.3), torque(-0.2)));  // left 0.05, right 0.25 Nm
+  const auto rotor_rad = [](const SensorFrame& frame, double sign) {
+    return frame.joints[0].motor_position_rad + sign * frame.joints[1].motor_position_rad;
+  };
+  SensorFrame before, now;
+  plant.read(now);
+  double most_bent_rad = 0, off_J = 0, work_J = 0;
+  for (int i = 0; i < 250; ++i) {
+    before = now;
+    plant.step(ms);
+    plant.read(now);
+    const double tilt_rad = now.joints[0].position_rad, pan_rad = now.joints[1].position_rad;
+    const double left_rad = rotor_rad(now, 1) - (tilt_rad + pan_rad),
+                 right_rad = rotor_rad(now, -1) - (tilt_rad - pan_rad);
+    const double left_rad_s = (rotor_rad(now, 1) - rotor_rad(before, 1)) / 1e-3;
+    const double right_rad_s = (rotor_rad(now, -1) - rotor_rad(before, -1)) / 1e-3;
+    const auto& v = plant.truth().velocity_rad_s;
+    const double energy_J = 0.5 * (tilt_kg_m2 * v[0] * v[0] + pan_kg_m2 * v[1] * v[1] +
+                                   0.02 * (left_rad_s * left_rad_s + right_rad_s * right_rad_s) +
+                                   60 * left_rad * left_rad + 30 * right_rad * right_rad);
+    work_J = 0.05 * rotor_rad(now, 1) + 0.25 * rotor_rad(now, -1);
+    off_J = std::max(off_J, std::abs(energy_J - work_J));
+    most_bent_rad = std::max(most_bent_rad, std::abs(right_rad));
+  }
+  CHECK(most_bent_rad > 5e-3);
+  CHECK(off_J < 0.02 * work_J);
+}
+
+TEST_CASE("A coupling of joints that do not carry each other is refused") {
   Robot fork = driven_neck({.torque_max_Nm = 5});
   fork.model.joints[1].parent = 0;
   CHECK_THROWS_WITH(BulletWorld(fork.model, fork.settings, 1),
