@@ -4,6 +4,10 @@ set(KADANS_STANDARD_HEADERS <algorithm> <array> <charconv> <cmath> <cstdint> <cs
     <limits> <map> <memory> <optional> <set> <span> <sstream> <stdexcept> <string> <string_view> <system_error> <unordered_map>
     <utility> <variant> <vector>)
 
+# How many files are compiled at once in a unity build where speed does not matter: half of the time is that of headers and
+# of templates that each unit makes again. In a unit so large the compiler inlines less, so fast code keeps the presets' 16.
+set(KADANS_LARGE_BATCH 64)
+
 # kadans_layer(NAME [SMALL] [SOURCES file...] [LINKS target...] [PRIVATE_LINKS target...] [PRECOMPILE header...])
 # A static library kadans_NAME, known as kadans::NAME; "/" in a name becomes "_" (plant/bullet -> kadans_plant_bullet).
 # SOURCES are, unless given, all files of its folder and of those below that have no CMakeLists.txt, but no main.cpp and
@@ -34,6 +38,7 @@ function(kadans_layer name)
                                   PRIVATE ${arg_PRIVATE_LINKS} $<BUILD_INTERFACE:kadans_warnings>)
   if(arg_SMALL)
     target_compile_options(${target} PRIVATE ${KADANS_SMALL})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE ${KADANS_LARGE_BATCH})
     set(precompiled kadans_precompiled_small)
   else()
     set(precompiled kadans_precompiled)
@@ -60,6 +65,7 @@ function(kadans_test name)
   target_compile_definitions(${target} PRIVATE KADANS_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                                KADANS_BINARY_DIR="${PROJECT_BINARY_DIR}")
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests"
+                                             UNITY_BUILD_BATCH_SIZE ${KADANS_LARGE_BATCH}
                                              POSITION_INDEPENDENT_CODE OFF)  # as kadans_test_main, for its precompiled header
   include(doctest)
   doctest_discover_tests(${target} TEST_PREFIX "${name}: ")

@@ -29,7 +29,7 @@ struct EstimateSettings {
   std::vector<SensorChannel> channels;
   std::vector<double> spring_Nm_per_rad;  // one per joint, of coupled joints the drives in their order; 0: no spring,
                                           // the motor's effort is the joint's torque
-  std::uint32_t imu_divisor = 1;              // the IMU has a new reading in at least every n-th tick
+  std::uint32_t imu_divisor = 1;          // the IMU has a new reading in at least every n-th tick
   std::vector<std::uint32_t> sample_divisor;  // one per joint: sampled every n-th tick; empty: all every tick
 
   double cutoff_Hz(std::size_t joint) const noexcept {

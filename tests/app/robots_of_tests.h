@@ -43,6 +43,24 @@ inline std::string quadruped() {
   return text + "</robot>\n";
 }
 
+// Two wheels and a caster, and on top a mast that pans. The right wheel's axis points the other way.
+inline std::string cart() {
+  std::string text = "<robot name=\"cart\">\n" + link("base", 4, "<box size=\"0.4 0.3 0.06\"/>", 0) +
+                     link("ball", 0.1, "<sphere radius=\"0.03\"/>", 0) +
+                     link("mast", 0.5, "<box size=\"0.04 0.04 0.3\"/>", 0.15) +
+                     "<joint name=\"caster\" type=\"fixed\"><parent link=\"base\"/><child link=\"ball\"/>"
+                     "<origin xyz=\"-0.15 0 -0.05\"/></joint>\n" +
+                     joint("pan", "base", "mast", "0.05 0 0.03", "0 0 1", "lower=\"-2\" upper=\"2\"");
+  for (const auto& [side, y, axis] : {std::tuple{"left", "0.18", "0 0 1"}, {"right", "-0.18", "0 0 -1"}}) {
+    const std::string name = side;
+    text += link(name + "-wheel", 0.3, "<cylinder radius=\"0.08\" length=\"0.03\"/>", 0) + "<joint name=\"" + name +
+            "-axle\" type=\"continuous\"><parent link=\"base\"/><child link=\"" + name +
+            "-wheel\"/><origin xyz=\"0.1 " + y + " 0\" rpy=\"-1.5707963 0 0\"/><axis xyz=\"" + axis +
+            "\"/><limit effort=\"2\" velocity=\"12\"/></joint>\n";
+  }
+  return text + "</robot>\n";
+}
+
 // Two legs of six joints with flat feet, and a heavy trunk.
 inline std::string biped() {
   std::string text = "<robot name=\"biped\">\n" + link("pelvis", 12, "<box size=\"0.2 0.3 0.4\"/>", 0.2);

@@ -321,12 +321,13 @@ void Assembly::vary() {
     variant_.plant.position_rad = scenario_.placed.position_rad;
     variant_.plant.base.orientation = scenario_.placed.orientation;
   }
-  Problems problems(scenario_.file);
+  Problems problems(scenario_.file), of_option("--set");
   Quantities quantities(variant_, control_system_->catalog, number_ > 0);
   for (const NumberEntry& entry : scenario_.set) quantities.set(entry, quantities_, problems);
   for (const Variation& variation : scenario_.randomise) quantities.draw(variation, seed_, quantities_, problems);
-  for (const NumberEntry& entry : scenario_.set_last) quantities.set(entry, quantities_, problems);
+  for (const NumberEntry& entry : scenario_.set_last) quantities.set(entry, quantities_, of_option);
   problems.throw_if_any();
+  of_option.throw_if_any();
   for (const auto& object : control_system_->objects) object->parameters_changed();
 }
 

@@ -165,18 +165,22 @@ class StanceSearch {
 
   StandingPose run() {
     StandingPose stance;
-    find_legs();
+    find_wheels(stance);
+    if (stance.wheels.empty()) find_legs();
     if (legs_.size() < 2) {
+      const auto is_wheel = [&](std::size_t joint) {
+        return std::ranges::find(stance.wheels, joint, &StandingWheel::joint) != stance.wheels.end();
+      };
       stance.stand = stance.low = position_;
       for (std::size_t i = 0; i < position_.size(); ++i) {
-        if (model_.joints[i].passive()) continue;
+        if (model_.joints[i].passive() || is_wheel(i)) continue;
         const double way = std::min(0.3, 0.8 * model_.joints[i].velocity_max_rad_s * sway_s / peak_speed);
         const double aside = within(i, position_[i] + way, 0.1);
         stance.low[i] = aside > position_[i] + way / 3 ? aside : within(i, position_[i] - way, 0.1);
       }
       relieve(stance.stand);
       relieve(stance.low);
-      lift(stance);
+      if (stance.held) lift(stance);
       return stance;
     }
     relieve(position_);
@@ -208,24 +212,81 @@ class StanceSearch {
   }
 
  private:
-  // Of all soles together on the ground, across the direction in which they are narrowest.
-  double width_m(const std::vector<StandingFoot>& feet) const {
+  // How far what lies between points reaches in each direction on the ground: calls use(low, high, of `middle`).
+  template <typename Use>
+  static void across(const std::vector<Vector3d>& points, const Vector3d& middle, Use&& use) {
     constexpr int directions = 90;
-    double narrowest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < directions; ++i) {
       const double angle = i * std::numbers::pi / directions;
-      const Vector3d across(std::cos(angle), std::sin(angle), 0);
+      const Vector3d way(std::cos(angle), std::sin(angle), 0);
       double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (const StandingFoot& foot : feet) {
-        for (const Vec3& corner : foot.corners_m) {
-          const double at = across.dot(body_.point(foot.link, corner));
-          low = std::min(low, at);
-          high = std::max(high, at);
-        }
+      for (const Vector3d& point : points) {
+        low = std::min(low, way.dot(point));
+        high = std::max(high, way.dot(point));
       }
-      narrowest = std::min(narrowest, high - low);
+      use(low, high, way.dot(middle));
     }
+  }
+  // Of all soles together on the ground, across the direction in which they are narrowest.
+  double width_m(const std::vector<StandingFoot>& feet) const {
+    std::vector<Vector3d> corners;
+    for (const StandingFoot& foot : feet) {
+      for (const Vec3& corner : foot.corners_m) corners.push_back(body_.point(foot.link, corner));
+    }
+    double narrowest = std::numeric_limits<double>::infinity();
+    across(corners, {}, [&](double low, double high, double) { narrowest = std::min(narrowest, high - low); });
     return narrowest;
+  }
+
+  // What turns without end about an axis that lies, and hangs from the base, on a joint that steers it perhaps.
+  bool may_be_wheel(std::size_t joint) const {
+    if (model_.joints[joint].type != JointType::continuous || std::abs(body_.axis(joint).z()) > 0.3) return false;
+    for (std::size_t link = model_.joints[joint].parent; link > 0; link = model_.joints[link - 1].parent) {
+      if (std::abs(body_.axis(link - 1).z()) < 0.9) return false;
+    }
+    return true;
+  }
+  // Wheels, none when they and what else is as low do not carry the centre of mass.
+  void find_wheels(StandingPose& stance) {
+    body_.place(position_);
+    if (is_fixed()) return;
+    const auto [low, high] = extent();
+    const double near_m = std::max(0.005, 0.05 * (high - low));
+    std::vector<Vector3d> carrying;
+    for (std::size_t i = 0; i < model_.links.size(); ++i) {
+      if (body_.tips_of(i).empty() || body_.lowest(i) > low + near_m) continue;
+      if (i > 0 && may_be_wheel(i - 1)) {
+        carrying.push_back(body_.place_of(i - 1));
+        if (!model_.joints[i - 1].passive()) stance.wheels.push_back({i - 1, body_.axis(i - 1).y() < 0 ? -1.0 : 1.0});
+        continue;
+      }
+      for (const Vec3& tip : body_.tips_of(i)) {
+        if (body_.point(i, tip).z() < low + near_m) carrying.push_back(body_.point(i, tip));
+      }
+    }
+    bool carried = true;
+    across(carrying, body_.com(), [&](double from, double to, double com) {
+      carried = carried && com - from > least_reach_m && to - com > least_reach_m;
+    });
+    if (!carried) stance.wheels.clear();
+    if (stance.wheels.empty()) return;
+    stance.held = false;
+    stance.height_m = -low;
+  }
+  // The heights between which all its shapes lie.
+  std::pair<double, double> extent() const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t i = 0; i < model_.links.size(); ++i) {
+      for (const Vec3& tip : body_.tips_of(i)) {
+        low = std::min(low, body_.point(i, tip).z());
+        high = std::max(high, body_.point(i, tip).z());
+      }
+    }
+    return {low, high};
+  }
+  bool is_fixed() const {
+    const auto& merged = model_.links[0].merged;
+    return model_.links[0].name == "world" || std::ranges::find(merged, "world") != merged.end();
   }
 
   // Joints that bear more than their motors can give, but those of legs, move until there is some to spare: what stands
@@ -306,17 +367,9 @@ class StanceSearch {
     body_.place(position_);
     std::vector<bool> ends(model_.links.size(), true);
     for (const Joint& joint : model_.joints) ends[joint.parent] = false;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t i = 0; i < model_.links.size(); ++i) {
-      for (const Vec3& tip : body_.tips_of(i)) {
-        const double z = body_.point(i, tip).z();
-        low = std::min(low, z);
-        high = std::max(high, z);
-      }
-    }
+    const auto [low, high] = extent();
     const double share = 0.1 * (high - low);
-    const auto& merged = model_.links[0].merged;
-    if (model_.links[0].name == "world" || std::ranges::find(merged, "world") != merged.end()) return;
+    if (is_fixed()) return;
     if (!body_.tips_of(0).empty() && body_.lowest(0) < low + share) return;
     for (std::size_t i = 1; i < model_.links.size(); ++i) {
       if (!ends[i] || body_.tips_of(i).empty() || body_.lowest(i) > low + share) continue;
@@ -416,6 +469,7 @@ class StanceSearch {
   static constexpr std::size_t level_joints = 5;
   static constexpr double sway_s = 2, peak_speed = 1.875;  // of the written behavior: in units of its mean speed
   static constexpr double narrowest_m = 0.06;
+  static constexpr double least_reach_m = 0.003;  // of what a base on wheels stands on, beyond its centre of mass
 
   const RobotModel& model_;
   Body body_;

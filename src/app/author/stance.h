@@ -24,14 +24,20 @@ struct StandingFoot {
   double toe_m = 0, heel_m = 0, below_m = 0;
 };
 
+struct StandingWheel {
+  std::size_t joint = 0;
+  double forward = 1;  // the sign of its velocity that rolls the robot along x
+};
+
 struct StandingPose {
-  std::vector<StandingFoot> feet;  // what carries it
-  double width_m = 0;              // of all soles together, where they are narrowest
-  bool held = true;                // bolted to the world: without feet, or on less than 6 cm, which takes steps
-  std::vector<double> stand;       // positions of the joints, rad (m of a slider)
-  std::vector<double> low;         // lower, or for a robot that is bolted down a little aside
-  double height_m = 0;             // of the base's frame over the ground, in `stand`; clear of it when held
-  double com_m = 0;                // of the centre of mass over the feet's frames, in `stand`
+  std::vector<StandingFoot> feet;     // what carries it
+  std::vector<StandingWheel> wheels;  // or these, with casters where it has some
+  double width_m = 0;                 // of all soles together, where they are narrowest
+  bool held = true;                   // bolted to the world: without feet, or on less than 6 cm, which takes steps
+  std::vector<double> stand;          // positions of the joints, rad (m of a slider)
+  std::vector<double> low;            // lower, or for a robot that is bolted down a little aside
+  double height_m = 0;                // of the base's frame over the ground, in `stand`; clear of it when held
+  double com_m = 0;                   // of the centre of mass over the feet's frames, in `stand`
 
   // What it stands on; nothing when it is held.
   std::span<const StandingFoot> stands_on() const noexcept {
@@ -41,7 +47,8 @@ struct StandingPose {
 
 // A robot with at least two links at its ends that are the lowest of all, and a base that is well above them, stands on
 // these: its feet under their legs, level where the legs have the joints for it, and its centre of mass over their
-// middle (damped least squares, Buss 2004). Any other is bolted down, and stands as near to zero as its limits allow.
+// middle (damped least squares, Buss 2004). A base on wheels stands as it is, when they and what else is as low carry
+// its centre of mass. Any other is bolted down, and stands as near to zero as its limits allow.
 StandingPose find_stance(const RobotModel& model);
 
 struct JointHold {

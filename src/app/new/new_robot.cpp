@@ -25,6 +25,7 @@
 #include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -67,12 +68,58 @@ return k.behavior "sway" {
 }
 )";
 
-constexpr std::string_view sway_test_template = R"(-- kadans behavior test behaviors/@name@/sway_test.lua
+constexpr std::string_view roll_template =
+    R"(-- Rolls forward and back, a few times. Change it and run it again.
 local k = require "kadans"
 
-describe("sway", function()
+local P = k.params {
+  rate_rad_s = { @rate@, min = -@most@, max = @most@, unit = "rad/s", doc = "how fast the wheels turn" },
+  roll_s     = { 2.0, min = 0.1, max = 60, unit = "s", doc = "time to roll one way" },
+  ramp_s     = { 0.5, min = 0.05, max = 10, unit = "s", doc = "time to change the velocity" },
+  repeats    = { 1, min = 1, max = 100, doc = "how often" },
+}
+
+-- The wheels, and which way each turns to roll forward.
+local wheels = { @wheels@ }
+
+local function roll(m, rate_rad_s, time_s)
+  for _, wheel in ipairs(wheels) do
+    m.wheels:set(wheel.name .. ".velocity_rad_s", wheel.forward * rate_rad_s, { time_s = P.ramp_s })
+  end
+  m:wait(time_s)
+end
+
+return k.behavior "roll" {
+  controls = "hold",
+  vars     = { done = 0 },
+  initial  = "roll",
+  always   = {
+    { when = function(s) return s.safety.level ~= "normal" and s.safety.level ~= "limited" end, to = "failed", why = "safety" },
+  },
+
+  k.state "roll" {
+    run = function(m)
+      while m.vars.done < P.repeats do
+        roll(m, P.rate_rad_s, P.roll_s)
+        roll(m, 0, 2 * P.ramp_s)
+        roll(m, -P.rate_rad_s, P.roll_s)
+        roll(m, 0, 2 * P.ramp_s)
+        m.vars.done = m.vars.done + 1
+      end
+    end,
+    { on = "run.done", to = "done" },
+  },
+  k.final "done"   { outcome = "done" },
+  k.final "failed" { outcome = "failed" },
+}
+)";
+
+constexpr std::string_view test_template = R"(-- kadans behavior test behaviors/@name@/@behavior@_test.lua
+local k = require "kadans"
+
+describe("@behavior@", function()
   it("goes there and back as often as it is told", function()
-    local run = k.play("sway.lua", { plant = "bullet" })
+    local run = k.play("@behavior@.lua", { plant = "bullet" })
     run:set_parameter("repeats", 1)
     expect(run:finish(30)).to_equal "done"
   end)
@@ -99,6 +146,10 @@ std::string name_from(const std::string& text) {
   }
   while (!name.empty() && name.back() == '_') name.pop_back();
   return name;
+}
+
+void fill_in(std::string& text, std::string_view blank, const std::string& filling) {
+  for (std::size_t at; (at = text.find(blank)) != std::string::npos;) text.replace(at, blank.size(), filling);
 }
 
 // The URDF's text with its meshes in a folder beside it; `copies` gets the name there of each mesh's file.
@@ -275,6 +326,34 @@ bool balances(const StandingPose& stance, std::size_t joint) {
          });
 }
 
+bool is_wheel(const StandingPose& stance, std::size_t joint) {
+  return std::ranges::find(stance.wheels, joint, &StandingWheel::joint) != stance.wheels.end();
+}
+
+// Of the loop in a wheel's drive: a tenth of its top speed off asks for its whole torque.
+double wheel_gain(const Joint& joint) {
+  constexpr double most_Nms_per_rad = 1e4, share = 0.1;
+  return std::min(most_Nms_per_rad, joint.effort_max_Nm / (share * std::max(joint.velocity_max_rad_s, 0.1)));
+}
+
+// The behavior that rolls a robot on wheels.
+std::string roll_text(const RobotModel& model, const StandingPose& stance) {
+  double most_rad_s = 100;
+  std::string wheels;
+  for (const StandingWheel& wheel : stance.wheels) {
+    const Joint& joint = model.joints[wheel.joint];
+    most_rad_s = std::min(most_rad_s, 0.8 * joint.velocity_max_rad_s);
+    const std::string name = Json(joint.name).dump();
+    wheels +=
+        (wheels.empty() ? "" : ", ") + ("{ name = " + name + ", forward = ") + (wheel.forward < 0 ? "-1 }" : "1 }");
+  }
+  std::string text(roll_template);
+  fill_in(text, "@rate@", number_text(figures(std::min(4.0, 0.5 * most_rad_s))));
+  fill_in(text, "@most@", number_text(figures(most_rad_s)));
+  fill_in(text, "@wheels@", wheels);
+  return text;
+}
+
 Json robot_json(const RobotDescription& robot, const std::string& name, const StandingPose& stance,
                 const std::vector<JointHold>& holds) {
   const RobotModel& model = robot.model;
@@ -282,32 +361,44 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
   Json drives = {{"doc",
                   "E: estimates, to be replaced by what the maker says. A rotor that the motor's whole torque brings "
                   "to 2500 rad/s2, unless the URDF has it."}};
-  Json parameters = Json::object(), motors = Json::array();
+  Json parameters = Json::object(), motors = Json::array(), wheels = Json::array();
   const std::vector<std::string> drive_names = model.drive_names();
   for (std::size_t i = 0; i < holds.size(); ++i) {
     const std::string& joint = model.joints[i].name;
     if (!(holds[i].stiffness_Nm_per_rad > 0)) continue;
+    Json& drive = drives[drive_names[i]] = {{"rotor_inertia_kg_m2", figures(holds[i].rotor_inertia_kg_m2)}};
+    if (is_wheel(stance, i)) {
+      wheels.push_back(joint);
+      drive["velocity_gain_Nms_per_rad"] = figures(wheel_gain(model.joints[i]));
+      continue;
+    }
     motors.push_back(joint);
-    drives[drive_names[i]] = {{"rotor_inertia_kg_m2", figures(holds[i].rotor_inertia_kg_m2)}};
+    if (drive_names[i] == joint) {  // of the drive's own modes; a coupled drive is seen from its own side
+      drive["position_gain_Nm_per_rad"] = figures(holds[i].stiffness_Nm_per_rad);
+      drive["velocity_gain_Nms_per_rad"] = figures(holds[i].damping_Nms_per_rad);
+    }
     parameters[joint + ".kp_Nm_per_rad"] = figures(holds[i].stiffness_Nm_per_rad);
     parameters[joint + ".kd_Nms_per_rad"] = figures(holds[i].damping_Nms_per_rad);
     // What a weak ankle can give is the balance's, which takes up to nine tenths; both together stay within its limit.
     if (holds[i].weak && balances(stance, i))
       parameters[joint + ".effort_max_Nm"] = figures(0.1 * model.joints[i].effort_max_Nm);
   }
-  Json objects = Json::array();
-  objects.push_back({{"name", "posture"},
-                     {"doc",
-                      "Each joint is stiffer than gravity pulls it away (three times where it can be), at most half of "
-                      "what two ticks of delay allow, and damped at most half of that."},
-                     {"type", "joint_pid"},
-                     {"joints", motors},
-                     {"parameters", parameters}});
-  Json hold = {{"doc", "Holds its joints."}, {"objects", {"posture"}}};
-  const auto sum_up = [&](const Json& object, const char* doc) {
-    objects.push_back(object);
-    hold["doc"] = doc;
+  Json objects = Json::array(), hold = {{"doc", "Holds its joints."}, {"objects", Json::array()}};
+  const auto put = [&](Json object) {
     hold["objects"].push_back(object["name"]);
+    objects.push_back(std::move(object));
+  };
+  if (!motors.empty())
+    put({{"name", "posture"},
+         {"doc",
+          "Each joint is stiffer than gravity pulls it away (three times where it can be), at most half of "
+          "what two ticks of delay allow, and damped at most half of that."},
+         {"type", "joint_pid"},
+         {"joints", motors},
+         {"parameters", parameters}});
+  const auto sum_up = [&](const Json& object, const char* doc) {
+    put(object);
+    hold["doc"] = doc;
     hold["sum"].push_back(object["name"]);
   };
   if (const Json hanging = hanging_joints(model, stance, motors); !hanging.empty())
@@ -320,6 +411,10 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
     sum_up(balance_json(model, stance), "Holds its joints, and keeps its centre of mass over its soles.");
   else if (stance.stands_on().size() > 2 && stance.feet.size() <= max_feet)
     sum_up(support_json(model, stance), "Holds its joints; its feet share the weight and what rights the trunk.");
+  if (!wheels.empty()) {
+    put({{"name", "wheels"}, {"type", "joint_velocity"}, {"joints", wheels}});
+    hold["doc"] = "Holds its joints, and turns its wheels as fast as it is told.";
+  }
   Json plant = {{"drives", drives}, {"fixed_base", bolted}, {"self_collision", true}};
   Json safety = Json::object();
   if (bolted) {
@@ -369,7 +464,12 @@ Json scenario_json(const std::string& name, const StandingPose& stance) {
 
 void tell(const RobotModel& model, const StandingPose& stance, const std::vector<JointHold>& holds) {
   std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
-  if (stance.feet.empty()) {
+  if (!stance.wheels.empty()) {
+    std::string wheels;
+    for (const StandingWheel& wheel : stance.wheels)
+      wheels += (wheels.empty() ? "" : ", ") + model.links[wheel.joint + 1].name;
+    std::fprintf(stderr, "It rolls on %s, its base %.3g m high.\n", wheels.c_str(), stance.height_m);
+  } else if (stance.feet.empty()) {
     std::fprintf(stderr, "No two links at its ends are the lowest of all: it is bolted down (plant.fixed_base).\n");
   } else if (stance.held) {
     std::fprintf(stderr,
@@ -442,13 +542,19 @@ int run_new_robot(const NewRobotOptions& options) {
   if (!srdf.empty()) robot["plant"]["srdf"] = "models/" + name + "/" + name + ".srdf";
   std::map<std::string, std::string> meshes;
   const std::string own = with_own_meshes(description.urdf, options.urdf, packages, meshes);
-  std::string test(sway_test_template);
-  test.replace(test.find("@name@"), 6, name);
   std::vector<NewFile> files{{models / (name + ".urdf"), own},
                              {config / "robot.json", json_text(robot, 2) + "\n"},
-                             {scenario, json_text(scenario_json(name, stance), 2) + "\n"},
-                             {behaviors / "sway.lua", std::string(sway_template)},
-                             {behaviors / "sway_test.lua", test}};
+                             {scenario, json_text(scenario_json(name, stance), 2) + "\n"}};
+  const auto add_behavior = [&](const std::string& behavior, std::string text) {
+    std::string test(test_template);
+    fill_in(test, "@name@", name);
+    fill_in(test, "@behavior@", behavior);
+    files.push_back({behaviors / (behavior + ".lua"), std::move(text)});
+    files.push_back({behaviors / (behavior + "_test.lua"), std::move(test)});
+  };
+  const bool rolls = !stance.wheels.empty();
+  if (rolls) add_behavior("roll", roll_text(model, stance));
+  if (robot["control"]["objects"].front()["name"] == "posture") add_behavior("sway", std::string(sway_template));
   if (!srdf.empty()) files.push_back({models / (name + ".srdf"), srdf});
   write_new_files({models, config, behaviors, scenario}, files);
   for (const auto& [from, to] : meshes) {
@@ -462,7 +568,8 @@ int run_new_robot(const NewRobotOptions& options) {
   tell(model, stance, holds);
   const std::string shown = shell_word(fs::relative(scenario, project).string());
   const std::string at = project == "." ? "" : "cd " + shell_word(project.string()) + " && ";
-  std::fprintf(stderr, "Run it:  %skadans sim %s    with the behavior: --play sway\n", at.c_str(), shown.c_str());
+  std::fprintf(stderr, "Run it:  %skadans sim %s    with the behavior: --play %s\n", at.c_str(), shown.c_str(),
+               rolls ? "roll" : "sway");
   if (options.no_run) return exit_passed;
   return run_and_draw(scenario, models / (name + ".png"));
 }

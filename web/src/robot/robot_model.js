@@ -18,6 +18,21 @@ function masses_of(robot) {
   return masses;
 }
 
+// A link without a picture of its own is drawn as what it touches with. Models in the making have no more, often.
+function with_shapes(urdf) {
+  const xml = new DOMParser().parseFromString(urdf, 'text/xml');
+  for (const link of xml.querySelectorAll('robot > link')) {
+    const of_kind = (kind) => [...link.children].filter((child) => child.nodeName === kind);
+    if (of_kind('visual').length > 0) continue;
+    for (const collision of of_kind('collision')) {
+      const visual = xml.createElement('visual');
+      for (const part of [...collision.children]) visual.append(part.cloneNode(true));
+      link.append(visual);
+    }
+  }
+  return xml;
+}
+
 const meshes_at = './asset/'; // by the names that the URDF has for them, with package:// or without
 
 // In place of a mesh that is not there, or of a kind that nothing here reads. Whatever that mesh's scale is.
@@ -44,7 +59,7 @@ export class RobotModel {
       };
       meshes.push(new Promise(come));
     };
-    this.robot = loader.parse(urdf);
+    this.robot = loader.parse(with_shapes(urdf));
     this.root = new Group();
     this.root.add(this.robot);
     this.joints = Object.values(this.robot.joints).filter((joint) => joint.jointType !== 'fixed');
