@@ -159,6 +159,35 @@ async function check_live(page, file) {
   await sim.stop();
 }
 
+// A robot whose links have shapes to touch with, and one of them a picture of its own.
+const shapes = `<robot name="shapes">
+  <link name="base"><inertial><mass value="2"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial>
+    <collision><origin xyz="0 0 0.1"/><geometry><box size="0.3 0.2 0.1"/></geometry></collision></link>
+  <link name="arm"><inertial><mass value="0.2"/><inertia ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.001"/></inertial>
+    <visual><geometry><sphere radius="0.05"/></geometry></visual>
+    <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <joint name="elbow" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0 0.3"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="5" velocity="5"/></joint>
+</robot>`;
+
+async function check_shapes(page) {
+  writeFileSync(`${folder}/shapes.urdf`, shapes);
+  const made = start(['new', 'robot', `${folder}/shapes.urdf`, '--no-run', '--in', folder], /behaviors/);
+  await made.begun;
+  await until('the robot is written', () => made.child.exitCode !== null);
+  const view = start(['view', await record_of(`${folder}/config/scenarios/shapes_hold.json`, 'shapes', 0.1)], /(http:\S+)/);
+  await page.goto((await view.begun)[1]);
+  await loaded(page);
+  const drawn = (link) => page.evaluate((name) => {
+    const kinds = [];
+    found((o) => o.isURDFLink && o.urdfName === name).children.forEach((part) => part.isURDFVisual && part.traverse((o) => o.isMesh && kinds.push(o.geometry.type)));
+    return kinds.join();
+  }, link);
+  check((await drawn('base')) === 'BoxGeometry', 'a link without a picture is drawn as what it touches with');
+  check((await drawn('arm')) === 'SphereGeometry', 'a link with a picture is drawn as that alone');
+  await view.stop();
+}
+
 run(async () => {
   const file = `${folder}/things.json`;
   writeFileSync(file, JSON.stringify(things));
@@ -175,5 +204,6 @@ run(async () => {
   await check_walk(page, 'walk_over_tiles', 5, [4.5]);
   await check_things(page, await record_of(file, 'things', 4));
   await check_live(page, file);
+  await check_shapes(page);
   check(problems.length === 0, `the page has no error ${problems.join('\n')}`);
 });
