@@ -64,12 +64,17 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
                        RobotStatus& status) noexcept {
   if (!(dt_s > 0 && std::isfinite(dt_s))) dt_s = dt_s_;
   joints.count = health_.joint_count;
+  std::uint64_t fresh = 0;  // joints with a new reading, one bit each
   for (std::size_t i = 0; i < joints.count; ++i) {
     const std::uint32_t period_ticks = health_.joints[i].period_ticks;
     const bool due = period_ticks == 1 || !started_ || tick % period_ticks == 0;
+    const std::uint32_t seen = joints_[i].last_sequence;
     update_joint(i, sensors.joints[i], due && i < sensors.joint_count, dt_s);
+    if (joints_[i].last_sequence != seen) fresh |= std::uint64_t{1} << i;
   }
-  for (const ElasticPair& pair : pairs_) update_pair(pair, sensors);
+  for (const ElasticPair& pair : pairs_) {
+    if ((fresh & pair.joints) != 0) update_pair(pair, sensors);
+  }
   for (std::size_t i = 0; i < joints.count; ++i) {
     const JointState& state = joints_[i].state;
     joints.joints[i] = {state.position_rad, state.velocity_rad_s, state.effort_Nm};
@@ -272,7 +277,7 @@ void Estimator::add_joints(const RobotModel& model, const EstimateSettings& sett
     const Transmission::Pair spring{of_joint(settings.spring_Nm_per_rad, pair[0], 0.0),
                                     of_joint(settings.spring_Nm_per_rad, pair[1], 0.0)};
     if (spring[0] == 0 && spring[1] == 0) continue;
-    pairs_.push_back({transmission, spring});
+    pairs_.push_back({transmission, spring, std::uint64_t{1} << pair[0] | std::uint64_t{1} << pair[1]});
     for (const std::size_t joint : pair) {
       joints_[joint].spring_Nm_per_rad = 0;
       joints_[joint].paired = true;

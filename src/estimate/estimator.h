@@ -1,7 +1,8 @@
 // Second step of the tick: from what the sensors say to what the robot does.
 //
 // Each joint's position is the encoder's. Its velocity is the filtered difference quotient (velocity_filter.h). Its
-// effort is the spring's deflection times its stiffness, or the motor's own effort where there is no spring. The base's
+// effort is the spring's deflection times its stiffness, or the motor's own effort where there is no spring; of coupled
+// joints what their drives' springs and motors give together. The base's
 // orientation comes from the IMU (orientation_filter.h). Contact and centre of pressure come from the soles
 // (contact_detector.h). The legs that bear give the base's height over the lowest sole, the centre of pressure of the
 // whole robot, and the way of the base over the ground (odometry.h).
@@ -86,6 +87,7 @@ class Estimator {
   struct ElasticPair {
     Transmission transmission;
     Transmission::Pair spring_Nm_per_rad;  // of the drives
+    std::uint64_t joints;                  // one bit each
   };
 
   void add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s);

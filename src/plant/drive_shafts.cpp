@@ -21,7 +21,7 @@ std::size_t DriveShafts::place(const std::string& drive) const noexcept {
 
 void DriveShafts::look(WorldRobot& robot) {
   robot.read(sensors_);
-  for (const Transmission& transmission : transmissions_) transmission.to_drives(sensors_);
+  for (const Transmission& transmission : transmissions_) transmission.to_drives(sensors_, Transmission::Side::both);
   const double dt_s = seconds_between(last_ns_, sensors_.time_ns);
   for (std::size_t i = 0; i < names_.size(); ++i) {
     velocity_rad_s_[i] = dt_s > 0 ? (position_rad(i) - last_rad_[i]) / dt_s : 0;

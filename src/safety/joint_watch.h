@@ -107,9 +107,10 @@ class JointWatch {
   // The joint's position by its motor: the motor's position less the spring's deflection by its torque, smoothed.
   double by_motor_rad(const Input& input) noexcept {
     if (!elastic()) return input.sample.motor_position_rad;
+    const double partner_Nm = std::isfinite(input.partner_Nm) ? input.partner_Nm : 0;  // its own watch tells of it
     const double deflection_rad = spring_Nm_per_rad_ > 0 ? input.sample.motor_effort_Nm / spring_Nm_per_rad_
                                                          : coupled_.own_rad_per_Nm * input.sample.motor_effort_Nm +
-                                                               coupled_.partner_rad_per_Nm * input.partner_Nm;
+                                                               coupled_.partner_rad_per_Nm * partner_Nm;
     mean_rad_ += input.dt_s / (input.dt_s + swing_s) * (input.sample.motor_position_rad - deflection_rad - mean_rad_);
     return mean_rad_;
   }

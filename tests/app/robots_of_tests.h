@@ -44,8 +44,8 @@ inline std::string quadruped() {
 }
 
 // Two wheels and a caster, and on top a mast that pans. The right wheel's axis points the other way.
-inline std::string cart() {
-  std::string text = "<robot name=\"cart\">\n" + link("base", 4, "<box size=\"0.4 0.3 0.06\"/>", 0) +
+inline std::string cart(const std::string& robot = "cart", const std::string& speed = "12") {
+  std::string text = "<robot name=\"" + robot + "\">\n" + link("base", 4, "<box size=\"0.4 0.3 0.06\"/>", 0) +
                      link("ball", 0.1, "<sphere radius=\"0.03\"/>", 0) +
                      link("mast", 0.5, "<box size=\"0.04 0.04 0.3\"/>", 0.15) +
                      "<joint name=\"caster\" type=\"fixed\"><parent link=\"base\"/><child link=\"ball\"/>"
@@ -56,7 +56,7 @@ inline std::string cart() {
     text += link(name + "-wheel", 0.3, "<cylinder radius=\"0.08\" length=\"0.03\"/>", 0) + "<joint name=\"" + name +
             "-axle\" type=\"continuous\"><parent link=\"base\"/><child link=\"" + name +
             "-wheel\"/><origin xyz=\"0.1 " + y + " 0\" rpy=\"-1.5707963 0 0\"/><axis xyz=\"" + axis +
-            "\"/><limit effort=\"2\" velocity=\"12\"/></joint>\n";
+            "\"/><limit effort=\"2\" velocity=\"" + speed + "\"/></joint>\n";
   }
   return text + "</robot>\n";
 }

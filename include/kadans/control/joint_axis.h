@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,9 @@ class AxisTables {
 
   void tunable(const char* name, const char* unit, double min, double max, double initial, double* value,
                const char* doc);
+  // `safe`: Setpoint::safe.
   void setpoint(const char* name, const char* unit, double min, double max, const char* doc, std::uint32_t which,
-                bool own_motion = false);
+                bool own_motion = false, double safe = std::numeric_limits<double>::quiet_NaN());
   template <typename T>
   void signal(const char* name, const char* unit, const char* doc, const T* source) {
     declaration_.signal({axis_.name + "." + name, unit, doc}, source);

@@ -33,7 +33,7 @@ struct DriveLaw {
   double velocity_gain_Nms_per_rad = 0;  // of its position and velocity modes
   double velocity_delay_s = 0;           // of the joint's measured velocity, behind the true one
   // Of a series elastic drive, for actuator-level objects (control_sets.h).
-  double spring_Nm_per_rad = 0;  // 0: none
+  double spring_Nm_per_rad = 0;  // 0: none; of a coupled drive from its own side
   double rotor_inertia_kg_m2 = 0;
   // Of the drive of a coupling in this joint's place, seen from its own side; elsewhere as above.
   double own_rotor_inertia_kg_m2 = 0, own_effort_max_Nm = 0;

@@ -64,8 +64,8 @@ class Transmission {
   // The samples' motor position and effort: what the drives measure as what it is at their joints. With `both` sides
   // the position behind the springs, too, for plants whose encoders all sit at the drives; and the other way round.
   enum class Side : bool { motor, both };
-  void to_joints(SensorFrame& frame, Side side = Side::motor) const noexcept;
-  void to_drives(SensorFrame& frame, Side side = Side::both) const noexcept;
+  void to_joints(SensorFrame& frame, Side side) const noexcept;
+  void to_drives(SensorFrame& frame, Side side) const noexcept;
 
  private:
   using Matrix = std::array<Pair, 2>;
@@ -87,8 +87,9 @@ class Transmission {
 // The drives' names, each in its joint's place: the joint's own, where no transmission names another.
 std::vector<std::string> drive_names(std::vector<std::string> joints, std::span<const Transmission> transmissions);
 
-// For plants that read drives: the samples of the drives in their joints' places become those of the joints. A coupled
-// joint's reading is new when both of its drives were read, and as old as the older of both.
+// For plants that read drives: the samples of the drives in their joints' places become those of the joints, on both
+// sides of the springs: where an encoder sits at the motor alone, position_rad is the motor's too. A coupled joint's
+// reading is new when both of its drives were read, and as old as the older of both.
 void drives_to_joints(std::span<const Transmission> transmissions, SensorFrame& sensors) noexcept;
 
 }  // namespace kadans

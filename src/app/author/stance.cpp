@@ -241,6 +241,10 @@ class StanceSearch {
   // What turns without end about an axis that lies, and hangs from the base, on a joint that steers it perhaps.
   bool may_be_wheel(std::size_t joint) const {
     if (model_.joints[joint].type != JointType::continuous || std::abs(body_.axis(joint).z()) > 0.3) return false;
+    for (const Transmission& transmission : model_.transmissions) {
+      if (transmission.coupled() && std::ranges::find(transmission.joints(), joint) != transmission.joints().end())
+        return false;  // it runs in one mode with what it is coupled to
+    }
     for (std::size_t link = model_.joints[joint].parent; link > 0; link = model_.joints[link - 1].parent) {
       if (std::abs(body_.axis(link - 1).z()) < 0.9) return false;
     }
@@ -251,13 +255,13 @@ class StanceSearch {
     body_.place(position_);
     if (is_fixed()) return;
     const auto [low, high] = extent();
-    const double near_m = std::max(0.005, 0.05 * (high - low));
+    const double near_m = std::clamp(0.05 * (high - low), 0.005, 0.01);
     std::vector<Vector3d> carrying;
     for (std::size_t i = 0; i < model_.links.size(); ++i) {
       if (body_.tips_of(i).empty() || body_.lowest(i) > low + near_m) continue;
       if (i > 0 && may_be_wheel(i - 1)) {
-        carrying.push_back(body_.place_of(i - 1));
-        if (!model_.joints[i - 1].passive()) stance.wheels.push_back({i - 1, body_.axis(i - 1).y() < 0 ? -1.0 : 1.0});
+        carrying.push_back(body_.resting(i, Quat{1, 0, 0, 0}).center());
+        if (!model_.joints[i - 1].passive()) stance.wheels.push_back({.joint = i - 1});
         continue;
       }
       for (const Vec3& tip : body_.tips_of(i)) {
@@ -272,6 +276,14 @@ class StanceSearch {
     if (stance.wheels.empty()) return;
     stance.held = false;
     stance.height_m = -low;
+    // Those whose axes lie across x roll along it; of a robot that has none, those like its first one.
+    const auto rolls_along_x = [&](const StandingWheel& wheel) { return std::abs(body_.axis(wheel.joint).y()) > 0.5; };
+    const bool along_x = std::ranges::any_of(stance.wheels, rolls_along_x);
+    const Vector3d axis = along_x ? Vector3d::UnitY() : body_.axis(stance.wheels.front().joint);
+    for (StandingWheel& wheel : stance.wheels) {
+      const double alike = axis.dot(body_.axis(wheel.joint));
+      wheel.forward = std::abs(alike) > 0.5 ? std::copysign(1.0, alike) : 0;
+    }
   }
   // The heights between which all its shapes lie.
   std::pair<double, double> extent() const {

@@ -26,7 +26,7 @@ struct StandingFoot {
 
 struct StandingWheel {
   std::size_t joint = 0;
-  double forward = 1;  // the sign of its velocity that rolls the robot along x
+  double forward = 1;  // the sign of its velocity that rolls the robot along x, or one way; 0: it stands across
 };
 
 struct StandingPose {

@@ -79,7 +79,7 @@ local P = k.params {
   repeats    = { 1, min = 1, max = 100, doc = "how often" },
 }
 
--- The wheels, and which way each turns to roll forward.
+-- The wheels, and which way each turns to roll along x; 0: across.
 local wheels = { @wheels@ }
 
 local function roll(m, rate_rad_s, time_s)
@@ -107,6 +107,7 @@ return k.behavior "roll" {
         m.vars.done = m.vars.done + 1
       end
     end,
+    exit = function(m) m.wheels:hold() end,
     { on = "run.done", to = "done" },
   },
   k.final "done"   { outcome = "done" },
@@ -149,7 +150,8 @@ std::string name_from(const std::string& text) {
 }
 
 void fill_in(std::string& text, std::string_view blank, const std::string& filling) {
-  for (std::size_t at; (at = text.find(blank)) != std::string::npos;) text.replace(at, blank.size(), filling);
+  for (std::size_t at = 0; (at = text.find(blank, at)) != std::string::npos; at += filling.size())
+    text.replace(at, blank.size(), filling);
 }
 
 // The URDF's text with its meshes in a folder beside it; `copies` gets the name there of each mesh's file.
@@ -330,10 +332,17 @@ bool is_wheel(const StandingPose& stance, std::size_t joint) {
   return std::ranges::find(stance.wheels, joint, &StandingWheel::joint) != stance.wheels.end();
 }
 
-// Of the loop in a wheel's drive: a tenth of its top speed off asks for its whole torque.
+// Of the loop in a wheel's drive: a tenth of its top speed off asks for its whole torque. Many files give no top speed.
 double wheel_gain(const Joint& joint) {
-  constexpr double most_Nms_per_rad = 1e4, share = 0.1;
-  return std::min(most_Nms_per_rad, joint.effort_max_Nm / (share * std::max(joint.velocity_max_rad_s, 0.1)));
+  constexpr double most_Nms_per_rad = 1e4, share = 0.1, usual_rad_s = 20;
+  return std::min(most_Nms_per_rad,
+                  joint.effort_max_Nm / (share * std::clamp(joint.velocity_max_rad_s, 0.1, usual_rad_s)));
+}
+
+bool is_coupled(const RobotModel& model, std::size_t joint) {
+  return std::ranges::any_of(model.transmissions, [joint](const Transmission& transmission) {
+    return transmission.coupled() && std::ranges::find(transmission.joints(), joint) != transmission.joints().end();
+  });
 }
 
 // The behavior that rolls a robot on wheels.
@@ -344,8 +353,7 @@ std::string roll_text(const RobotModel& model, const StandingPose& stance) {
     const Joint& joint = model.joints[wheel.joint];
     most_rad_s = std::min(most_rad_s, 0.8 * joint.velocity_max_rad_s);
     const std::string name = Json(joint.name).dump();
-    wheels +=
-        (wheels.empty() ? "" : ", ") + ("{ name = " + name + ", forward = ") + (wheel.forward < 0 ? "-1 }" : "1 }");
+    wheels += (wheels.empty() ? "" : ", ") + ("{ name = " + name + ", forward = ") + number_text(wheel.forward) + " }";
   }
   std::string text(roll_template);
   fill_in(text, "@rate@", number_text(figures(std::min(4.0, 0.5 * most_rad_s))));
@@ -373,7 +381,7 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
       continue;
     }
     motors.push_back(joint);
-    if (drive_names[i] == joint) {  // of the drive's own modes; a coupled drive is seen from its own side
+    if (!is_coupled(model, i)) {  // of the drive's own modes; a coupled drive is seen from its own side
       drive["position_gain_Nm_per_rad"] = figures(holds[i].stiffness_Nm_per_rad);
       drive["velocity_gain_Nms_per_rad"] = figures(holds[i].damping_Nms_per_rad);
     }

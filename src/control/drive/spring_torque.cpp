@@ -62,15 +62,16 @@ void SpringTorque::add_pair(const ObjectSetup& setup, const Transmission& transm
 }
 
 void SpringTorque::declare(Declaration& declaration) {
-  for (Part& part : parts_) declare(declaration, part);
+  // A coupled drive is seen from its own side: before a gear of 1:100 all is 10,000 times less.
+  for (std::size_t i = 0; i < parts_.size(); ++i) declare(declaration, parts_[i], i < single_ ? 1 : 1e-5);
 }
 
-void SpringTorque::declare(Declaration& declaration, Part& part) {
+void SpringTorque::declare(Declaration& declaration, Part& part, double least) {
   AxisTables tables(declaration, part.axis, 0);
   SpringTorqueLoop::Config& c = part.loop.config();
-  tables.tunable("spring_Nm_per_rad", "Nm/rad", 1, 1e5, c.spring_Nm_per_rad, &c.spring_Nm_per_rad,
+  tables.tunable("spring_Nm_per_rad", "Nm/rad", least, 1e5, c.spring_Nm_per_rad, &c.spring_Nm_per_rad,
                  "Stiffness of the spring, as the loop believes it.");
-  tables.tunable("rotor_inertia_kg_m2", "kg m2", 1e-5, 1, c.rotor_inertia_kg_m2, &c.rotor_inertia_kg_m2,
+  tables.tunable("rotor_inertia_kg_m2", "kg m2", 1e-5 * least, 1, c.rotor_inertia_kg_m2, &c.rotor_inertia_kg_m2,
                  "Inertia of the rotor, reflected to the joint, as the loop believes it.");
   tables.tunable("bandwidth_Hz", "Hz", 1, 200, c.bandwidth_Hz, &c.bandwidth_Hz,
                  "Of the torque; not below what the rotor does by itself.");

@@ -119,7 +119,7 @@ class SpringTorque final : public ControlObject {
   };
   void add(JointAxis axis, const SpringTorqueLoop::Config& config);
   void add_pair(const ObjectSetup& setup, const Transmission& transmission);
-  void declare(Declaration& declaration, Part& part);
+  void declare(Declaration& declaration, Part& part, double least);
   static void step_pair(const ControlInput& input, const Pair& pair, std::span<Part> parts,
                         ActuationFrame& actuation) noexcept;
 

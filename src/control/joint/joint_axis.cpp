@@ -33,7 +33,7 @@ void AxisTables::tunable(const char* name, const char* unit, double min, double 
 }
 
 void AxisTables::setpoint(const char* name, const char* unit, double min, double max, const char* doc,
-                          std::uint32_t which, bool own_motion) {
+                          std::uint32_t which, bool own_motion, double safe) {
   declaration_.setpoint({.name = axis_.name + "." + name,
                          .unit = unit,
                          .min = min,
@@ -41,7 +41,8 @@ void AxisTables::setpoint(const char* name, const char* unit, double min, double
                          .doc = doc,
                          .channel = first_channel_ + which,
                          .joint = static_cast<std::uint32_t>(axis_.joint),
-                         .own_motion = own_motion});
+                         .own_motion = own_motion,
+                         .safe = safe});
 }
 
 void AxisTables::position_setpoint(std::uint32_t which, bool own_motion) {

@@ -47,7 +47,7 @@ void VelocityReference::declare(AxisTables& tables) {
   const double fastest = axis_.velocity_max_rad_s;
   tables.tunable("acceleration_max_rad_s2", "rad/s2", 0.01, 10000, 20, &acceleration_max_rad_s2_,
                  "Bound of the velocity's change.");
-  tables.setpoint("velocity_rad_s", "rad/s", -fastest, fastest, "How fast the joint shall move.", 0);
+  tables.setpoint("velocity_rad_s", "rad/s", -fastest, fastest, "How fast the joint shall move.", 0, false, 0);
   tables.signal("setpoint_rad_s", "rad/s", "Velocity asked for.", &motion_.setpoint_rad_s);
   tables.signal("reference_velocity_rad_s", "rad/s", "Velocity on the way there.", &motion_.velocity_rad_s);
   tables.signal("limited", "", "Whether a limit is in the way.", &motion_.limited);

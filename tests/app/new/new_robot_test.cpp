@@ -58,27 +58,39 @@ TEST_CASE("new robot writes robots that stand or are held, and play their behavi
 
 TEST_CASE("new robot lets a base on wheels roll, both ways, and what stands on it play") {
   const auto folder = fresh_folder("new_robot_cart");
-  write(folder / "from.urdf", cart());
-  const Outcome made = run("new robot from.urdf --no-run", folder);
-  CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
-  CHECK(has(made.err, "It rolls on left-wheel, right-wheel, its base 0.08 m high."));
-  const auto comes_to = [&](const std::string& play, const std::string& least_m, const std::string& most_m) {
-    write(folder / "config/scenarios/way.json",
-          R"({"name": "way", "robot": "config/cart/robot.json", "duration_s": 2.3, "checks": [
-               {"name": "along", "kind": "at_end", "signal": "plant.base.x_m", "min": )" +
-              least_m + ", \"max\": " + most_m + R"(},
+  const auto make = [&](const std::string& urdf) {
+    write(folder / "from.urdf", urdf);
+    const Outcome made = run("new robot from.urdf --no-run", folder);
+    CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
+    CHECK(has(made.err, "It rolls on left-wheel, right-wheel, its base 0.08 m high."));
+  };
+  const auto passes = [&](const std::string& robot, const std::string& play, const std::string& more) {
+    write(folder / "config/scenarios/way.json", R"({"name": "way", "robot": "config/)" + robot +
+                                                    R"(/robot.json", "duration_s": 2.3, "checks": [
                {"name": "straight", "kind": "always", "signal": "plant.base.y_m", "min": -0.02, "max": 0.02},
-               {"name": "upright", "kind": "always", "signal": "plant.base.tilt_rad", "max": 0.1},
-               {"name": "no faults", "kind": "always", "signal": "safety.faults", "max": 0}]})");
+               {"name": "upright", "kind": "always", "signal": "plant.base.tilt_rad", "max": 0.1},)" +
+                                                    more + "}");
     const Outcome rolls = run("sim config/scenarios/way.json --no-record" + play, folder);
     CAPTURE(play);
     CHECK_MESSAGE(rolls.exit_code == 0, (rolls.out + rolls.err));
   };
-  comes_to("", "-0.01", "0.01");
-  comes_to(" --play roll", "0.4", "0.65");  // 0.32 m/s for two seconds, the ramp of half a second among them
-  comes_to(" --play 'roll{rate_rad_s=-4}'", "-0.65", "-0.4");
-  comes_to(" --play sway", "-0.02", "0.02");
+  const auto comes_to = [](const std::string& least_m, const std::string& most_m) {
+    return R"({"name": "along", "kind": "at_end", "signal": "plant.base.x_m", "min": )" + least_m +
+           ", \"max\": " + most_m +
+           R"(}, {"name": "no faults", "kind": "always", "signal": "safety.faults", "max": 0}])";
+  };
+  make(cart());
+  passes("cart", "", comes_to("-0.01", "0.01"));
+  passes("cart", " --play roll", comes_to("0.4", "0.65"));  // 0.32 m/s for two seconds, a ramp of half a second in it
+  passes("cart", " --play 'roll{rate_rad_s=-4}'", comes_to("-0.65", "-0.4"));
+  passes("cart", " --play sway", comes_to("-0.02", "0.02"));
   CHECK(run("behavior test behaviors/cart", folder).exit_code == 0);
+  // A fault lets the behavior leave: the wheels come to rest.
+  passes("cart", " --play roll",
+         R"({"name": "rests", "kind": "at_end", "that": "abs(joint.left-axle.velocity_rad_s) < 0.05"}],
+          "faults": [{"kind": "sensor_silent", "of": "imu", "from_s": 1, "until_s": 1.4}])");
+  make(cart("free", "1e9"));  // no speed is given
+  passes("free", " --play roll", comes_to("0.4", "0.65"));
   CHECK(run("check config behaviors", folder).exit_code == 0);
 }
 

@@ -78,7 +78,7 @@ void Drives::map(ActuationFrame& frame) const noexcept {
 }
 
 void Drives::map(SensorFrame& frame) const noexcept {
-  for (const Coupling& coupling : couplings_) coupling.transmission.to_joints(frame);
+  for (const Coupling& coupling : couplings_) coupling.transmission.to_joints(frame, Transmission::Side::motor);
 }
 
 void Drives::read_motion() {
