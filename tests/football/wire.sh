@@ -73,8 +73,10 @@ for robot in result["robots"]:
     log = (work / (robot["name"] + ".txt")).read_text()
     if robot["errors"] or "team: wait -> ready" not in log:
         wrong.append(f"{robot['name']} did not hear of ready: " + "; ".join(log.splitlines()[:5]))
-    if "team: wait -> play" not in log:
+    if robot["played_s"] > 0 and "team: wait -> play" not in log:  # who is penalised in both halves plays in none
         wrong.append(f"{robot['name']} did not hear of playing")
+if not any(robot["played_s"] > 0 for robot in result["robots"]):
+    wrong.append("nobody played")
 mates = {}
 for robot in result["robots"]:
     mates.setdefault(robot["name"].split("_")[0], []).append(robot["messages"])

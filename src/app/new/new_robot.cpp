@@ -352,7 +352,7 @@ std::string roll_text(const RobotModel& model, const StandingPose& stance) {
   for (const StandingWheel& wheel : stance.wheels) {
     const Joint& joint = model.joints[wheel.joint];
     most_rad_s = std::min(most_rad_s, 0.8 * joint.velocity_max_rad_s);
-    const std::string name = Json(joint.name).dump();
+    const std::string name = json_text(Json(joint.name));
     wheels += (wheels.empty() ? "" : ", ") + ("{ name = " + name + ", forward = ") + number_text(wheel.forward) + " }";
   }
   std::string text(roll_template);
