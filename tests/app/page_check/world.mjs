@@ -1,6 +1,6 @@
 // What is drawn of a scenario's world, by the page and by the page as `kadans render` opens it: soles and things stand on
 // the ground that is drawn, wherever that slopes, has edges or is driven.
-import { writeFileSync } from 'node:fs';
+import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { check, chromium_options, folder, live_address, project, run, start, until } from './program.mjs';
 
@@ -171,11 +171,14 @@ const shapes = `<robot name="shapes">
 </robot>`;
 
 async function check_shapes(page) {
-  writeFileSync(`${folder}/shapes.urdf`, shapes);
-  const made = start(['new', 'robot', `${folder}/shapes.urdf`, '--no-run', '--in', folder], /behaviors/);
+  const made_in = `${folder}/shapes`;
+  rmSync(made_in, { recursive: true, force: true }); // of an earlier run
+  mkdirSync(made_in);
+  writeFileSync(`${made_in}/from.urdf`, shapes);
+  const made = start(['new', 'robot', `${made_in}/from.urdf`, '--no-run', '--in', made_in], /behaviors/);
   await made.begun;
   await until('the robot is written', () => made.child.exitCode !== null);
-  const view = start(['view', await record_of(`${folder}/config/scenarios/shapes_hold.json`, 'shapes', 0.1)], /(http:\S+)/);
+  const view = start(['view', await record_of(`${made_in}/config/scenarios/shapes_hold.json`, 'shapes', 0.1)], /(http:\S+)/);
   await page.goto((await view.begun)[1]);
   await loaded(page);
   const drawn = (link) => page.evaluate((name) => {
