@@ -64,21 +64,14 @@ void Estimator::update(const SensorFrame& sensors, double dt_s, std::uint64_t ti
                        RobotStatus& status) noexcept {
   if (!(dt_s > 0 && std::isfinite(dt_s))) dt_s = dt_s_;
   joints.count = health_.joint_count;
-  std::uint64_t fresh = 0;  // joints with a new reading, one bit each
   for (std::size_t i = 0; i < joints.count; ++i) {
     const std::uint32_t period_ticks = health_.joints[i].period_ticks;
     const bool due = period_ticks == 1 || !started_ || tick % period_ticks == 0;
-    const std::uint32_t seen = joints_[i].last_sequence;
     update_joint(i, sensors.joints[i], due && i < sensors.joint_count, dt_s);
-    if (joints_[i].last_sequence != seen) fresh |= std::uint64_t{1} << i;
-  }
-  for (const ElasticPair& pair : pairs_) {
-    if ((fresh & pair.joints) != 0) update_pair(pair, sensors);
-  }
-  for (std::size_t i = 0; i < joints.count; ++i) {
     const JointState& state = joints_[i].state;
     joints.joints[i] = {state.position_rad, state.velocity_rad_s, state.effort_Nm};
   }
+  for (const ElasticPair& pair : pairs_) update_pair(pair, sensors, joints);
   const Axes base = update_base(sensors.imu, sensors.time_ns, dt_s, status.base);
   status.foot_count = health_.foot_count;
   for (std::size_t i = 0; i < feet_.size(); ++i) update_foot(i, sensors.feet[i], status.feet[i]);
@@ -114,8 +107,10 @@ inline void Estimator::update_joint(std::size_t joint, const JointSample& sample
 }
 
 // Each drive's torque, by its spring where it has one, as torques of the joints.
-void Estimator::update_pair(const ElasticPair& pair, const SensorFrame& sensors) noexcept {
+void Estimator::update_pair(const ElasticPair& pair, const SensorFrame& sensors, JointStates& joints) noexcept {
   const Transmission& coupling = pair.transmission;
+  const auto read_now = [&](std::size_t joint) { return joints_[joint].elapsed_s == 0; };
+  if (std::ranges::none_of(coupling.joints(), read_now)) return;
   Transmission::Pair bent_rad, effort_Nm;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::size_t joint = coupling.joints()[i];
@@ -131,7 +126,10 @@ void Estimator::update_pair(const ElasticPair& pair, const SensorFrame& sensors)
   }
   effort_Nm = coupling.joint_effort_Nm(effort_Nm);
   if (!std::isfinite(effort_Nm[0] + effort_Nm[1])) return;
-  for (std::size_t i = 0; i < 2; ++i) joints_[coupling.joints()[i]].state.effort_Nm = effort_Nm[i];
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::size_t joint = coupling.joints()[i];
+    joints.joints[joint].effort_Nm = joints_[joint].state.effort_Nm = effort_Nm[i];
+  }
 }
 
 Axes Estimator::update_base(const ImuSample& sample, std::int64_t now_ns, double dt_s, BaseStatus& base) noexcept {
@@ -277,7 +275,7 @@ void Estimator::add_joints(const RobotModel& model, const EstimateSettings& sett
     const Transmission::Pair spring{of_joint(settings.spring_Nm_per_rad, pair[0], 0.0),
                                     of_joint(settings.spring_Nm_per_rad, pair[1], 0.0)};
     if (spring[0] == 0 && spring[1] == 0) continue;
-    pairs_.push_back({transmission, spring, std::uint64_t{1} << pair[0] | std::uint64_t{1} << pair[1]});
+    pairs_.push_back({transmission, spring});
     for (const std::size_t joint : pair) {
       joints_[joint].spring_Nm_per_rad = 0;
       joints_[joint].paired = true;

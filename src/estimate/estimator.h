@@ -87,14 +87,13 @@ class Estimator {
   struct ElasticPair {
     Transmission transmission;
     Transmission::Pair spring_Nm_per_rad;  // of the drives
-    std::uint64_t joints;                  // one bit each
   };
 
   void add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s);
   void add_feet(const RobotModel& model, const EstimateSettings& settings);
   [[gnu::always_inline]] void update_joint(std::size_t joint, const JointSample& sample, bool look,
                                            double dt_s) noexcept;
-  void update_pair(const ElasticPair& pair, const SensorFrame& sensors) noexcept;
+  void update_pair(const ElasticPair& pair, const SensorFrame& sensors, JointStates& joints) noexcept;
   Axes update_base(const ImuSample& sample, std::int64_t now_ns, double dt_s, BaseStatus& base) noexcept;
   void update_foot(std::size_t foot, const FootSample& sample, FootStatus& status) noexcept;
   void update_channels(const SensorFrame& sensors, RobotStatus& status) noexcept;

@@ -32,6 +32,13 @@ bool RobotModel::on_one_path(std::size_t joint, std::size_t other) const {
   return link == carrier;
 }
 
+const Transmission* RobotModel::coupling_of(std::size_t joint) const noexcept {
+  for (const Transmission& one : transmissions) {
+    if (one.coupled() && std::ranges::find(one.joints(), joint) != one.joints().end()) return &one;
+  }
+  return nullptr;
+}
+
 void RobotModel::lead_mimics(std::span<double> position_rad) const noexcept {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (const auto& mimic = joints[i].mimic)

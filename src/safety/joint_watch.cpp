@@ -28,7 +28,7 @@ JointWatch::JointWatch(const SafetySettings& settings, const JointLimits& limits
       jump_rad_s_(2 * limits.velocity_max_rad_s),
       stuck_motion_rad_(settings.sensors.stuck_motion_rad),
       stuck_effort_Nm_(settings.sensors.stuck_effort_share * limits.effort_max_Nm),
-      spring_Nm_per_rad_(limits.spring_Nm_per_rad),
+      compliance_{.own_rad_per_Nm = limits.spring_Nm_per_rad > 0 ? 1 / limits.spring_Nm_per_rad : 0},
       warm_C_(settings.thermal.warm_C),
       hot_C_(settings.thermal.hot_C),
       lower_rad_(limits.lower_rad),

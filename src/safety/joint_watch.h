@@ -77,11 +77,8 @@ class JointWatch {
 
   JointWatch() = default;
   JointWatch(const SafetySettings& settings, const JointLimits& limits) noexcept;
-  // Of a coupled joint: replaces the spring of its own.
-  void set_compliance(const Compliance& compliance) noexcept {
-    spring_Nm_per_rad_ = 0;
-    coupled_ = compliance;
-  }
+  // Of a coupled joint, in place of that of a spring of its own.
+  void set_compliance(const Compliance& compliance) noexcept { compliance_ = compliance; }
 
   [[gnu::always_inline]] FaultMask look(const Input& input) noexcept;
   // Value and limit of a fault that look() has just found.
@@ -108,20 +105,19 @@ class JointWatch {
   double by_motor_rad(const Input& input) noexcept {
     if (!elastic()) return input.sample.motor_position_rad;
     const double partner_Nm = std::isfinite(input.partner_Nm) ? input.partner_Nm : 0;  // its own watch tells of it
-    const double deflection_rad = spring_Nm_per_rad_ > 0 ? input.sample.motor_effort_Nm / spring_Nm_per_rad_
-                                                         : coupled_.own_rad_per_Nm * input.sample.motor_effort_Nm +
-                                                               coupled_.partner_rad_per_Nm * partner_Nm;
+    const double deflection_rad =
+        compliance_.own_rad_per_Nm * input.sample.motor_effort_Nm + compliance_.partner_rad_per_Nm * partner_Nm;
     mean_rad_ += input.dt_s / (input.dt_s + swing_s) * (input.sample.motor_position_rad - deflection_rad - mean_rad_);
     return mean_rad_;
   }
-  bool elastic() const noexcept { return spring_Nm_per_rad_ > 0 || coupled_.own_rad_per_Nm > 0; }
+  bool elastic() const noexcept { return compliance_.own_rad_per_Nm > 0; }
   FaultMask derate() noexcept;
 
   double lowest_rad_ = 0, highest_rad_ = 0;  // limits with their margins
   double fastest_rad_s_ = 0;
   double jump_rad_ = 0, jump_rad_s_ = 0;
-  double stuck_motion_rad_ = 0, stuck_effort_Nm_ = 0, spring_Nm_per_rad_ = 0;
-  Compliance coupled_;
+  double stuck_motion_rad_ = 0, stuck_effort_Nm_ = 0;
+  Compliance compliance_;
   double warm_C_ = 0, hot_C_ = 0, continuous_share_ = 1;
   double lower_rad_ = 0, upper_rad_ = 0;
   std::uint32_t stuck_ticks_ = 0, silent_ticks_max_ = 0;

@@ -111,6 +111,8 @@ struct RobotModel {
   std::vector<std::string> drive_names() const;  // by joint; a drive that no transmission names has its joint's name
   // Whether one of the two joints carries the other, as couplings need.
   bool on_one_path(std::size_t joint, std::size_t other) const;
+  // The transmission by which this joint moves with another one; nullptr: it has a drive of its own.
+  const Transmission* coupling_of(std::size_t joint) const noexcept;
   // Puts the joints that mimic where those that they mimic lead them. position_rad has one value a joint.
   void lead_mimics(std::span<double> position_rad) const noexcept;
   std::vector<std::string> link_names() const;  // merged names too

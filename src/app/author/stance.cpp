@@ -168,12 +168,9 @@ class StanceSearch {
     find_wheels(stance);
     if (stance.wheels.empty()) find_legs();
     if (legs_.size() < 2) {
-      const auto is_wheel = [&](std::size_t joint) {
-        return std::ranges::find(stance.wheels, joint, &StandingWheel::joint) != stance.wheels.end();
-      };
       stance.stand = stance.low = position_;
       for (std::size_t i = 0; i < position_.size(); ++i) {
-        if (model_.joints[i].passive() || is_wheel(i)) continue;
+        if (model_.joints[i].passive() || stance.is_wheel(i)) continue;
         const double way = std::min(0.3, 0.8 * model_.joints[i].velocity_max_rad_s * sway_s / peak_speed);
         const double aside = within(i, position_[i] + way, 0.1);
         stance.low[i] = aside > position_[i] + way / 3 ? aside : within(i, position_[i] - way, 0.1);
@@ -212,7 +209,7 @@ class StanceSearch {
   }
 
  private:
-  // How far what lies between points reaches in each direction on the ground: calls use(low, high, of `middle`).
+  // How far what lies between points reaches in each direction on the ground, counted from `middle`: use(low, high).
   template <typename Use>
   static void across(const std::vector<Vector3d>& points, const Vector3d& middle, Use&& use) {
     constexpr int directions = 90;
@@ -221,10 +218,11 @@ class StanceSearch {
       const Vector3d way(std::cos(angle), std::sin(angle), 0);
       double low = std::numeric_limits<double>::infinity(), high = -low;
       for (const Vector3d& point : points) {
-        low = std::min(low, way.dot(point));
-        high = std::max(high, way.dot(point));
+        const double at = way.dot(point - middle);
+        low = std::min(low, at);
+        high = std::max(high, at);
       }
-      use(low, high, way.dot(middle));
+      use(low, high);
     }
   }
   // Of all soles together on the ground, across the direction in which they are narrowest.
@@ -234,17 +232,14 @@ class StanceSearch {
       for (const Vec3& corner : foot.corners_m) corners.push_back(body_.point(foot.link, corner));
     }
     double narrowest = std::numeric_limits<double>::infinity();
-    across(corners, {}, [&](double low, double high, double) { narrowest = std::min(narrowest, high - low); });
+    across(corners, Vector3d::Zero(), [&](double low, double high) { narrowest = std::min(narrowest, high - low); });
     return narrowest;
   }
 
   // What turns without end about an axis that lies, and hangs from the base, on a joint that steers it perhaps.
   bool may_be_wheel(std::size_t joint) const {
     if (model_.joints[joint].type != JointType::continuous || std::abs(body_.axis(joint).z()) > 0.3) return false;
-    for (const Transmission& transmission : model_.transmissions) {
-      if (transmission.coupled() && std::ranges::find(transmission.joints(), joint) != transmission.joints().end())
-        return false;  // it runs in one mode with what it is coupled to
-    }
+    if (model_.coupling_of(joint) != nullptr) return false;  // it runs in one mode with what it is coupled to
     for (std::size_t link = model_.joints[joint].parent; link > 0; link = model_.joints[link - 1].parent) {
       if (std::abs(body_.axis(link - 1).z()) < 0.9) return false;
     }
@@ -269,18 +264,20 @@ class StanceSearch {
       }
     }
     bool carried = true;
-    across(carrying, body_.com(), [&](double from, double to, double com) {
-      carried = carried && com - from > least_reach_m && to - com > least_reach_m;
-    });
+    across(carrying, body_.com(),
+           [&](double low_m, double high_m) { carried = carried && low_m < -least_reach_m && high_m > least_reach_m; });
     if (!carried) stance.wheels.clear();
     if (stance.wheels.empty()) return;
     stance.held = false;
     stance.height_m = -low;
-    // Those whose axes lie across x roll along it; of a robot that has none, those like its first one.
+    point_forward(stance.wheels);
+  }
+  // Those whose axes lie across x roll along it; of a robot that has none, those like its first one.
+  void point_forward(std::vector<StandingWheel>& wheels) const {
     const auto rolls_along_x = [&](const StandingWheel& wheel) { return std::abs(body_.axis(wheel.joint).y()) > 0.5; };
-    const bool along_x = std::ranges::any_of(stance.wheels, rolls_along_x);
-    const Vector3d axis = along_x ? Vector3d::UnitY() : body_.axis(stance.wheels.front().joint);
-    for (StandingWheel& wheel : stance.wheels) {
+    const bool along_x = std::ranges::any_of(wheels, rolls_along_x);
+    const Vector3d axis = along_x ? Vector3d::UnitY() : body_.axis(wheels.front().joint);
+    for (StandingWheel& wheel : wheels) {
       const double alike = axis.dot(body_.axis(wheel.joint));
       wheel.forward = std::abs(alike) > 0.5 ? std::copysign(1.0, alike) : 0;
     }

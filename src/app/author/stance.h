@@ -3,6 +3,7 @@
 // shapes, limits of torque.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -39,6 +40,9 @@ struct StandingPose {
   double height_m = 0;                // of the base's frame over the ground, in `stand`; clear of it when held
   double com_m = 0;                   // of the centre of mass over the feet's frames, in `stand`
 
+  bool is_wheel(std::size_t joint) const noexcept {
+    return std::ranges::find(wheels, joint, &StandingWheel::joint) != wheels.end();
+  }
   // What it stands on; nothing when it is held.
   std::span<const StandingFoot> stands_on() const noexcept {
     return held ? std::span<const StandingFoot>() : std::span(feet);

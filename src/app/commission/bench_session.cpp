@@ -13,13 +13,6 @@ constexpr double still_within_rad = 0.004, still_for_s = 0.4;
 
 }  // namespace
 
-const Transmission* coupling_of(const RobotModel& model, std::size_t joint) noexcept {
-  for (const Transmission& one : model.transmissions) {
-    if (one.coupled() && std::ranges::find(one.joints(), joint) != one.joints().end()) return &one;
-  }
-  return nullptr;
-}
-
 BenchSession::BenchSession(Bench& bench, Person& person, const RobotModel& model, const Settings& settings)
     : bench_(bench),
       person_(person),

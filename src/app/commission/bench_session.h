@@ -26,9 +26,6 @@ namespace kadans {
 // The person has gone, or wants to end; what was found is written.
 struct PersonGone {};
 
-// The transmission by which this joint moves with another one; nullptr: it has a drive of its own.
-const Transmission* coupling_of(const RobotModel& model, std::size_t joint) noexcept;
-
 class BenchSession {
  public:
   struct Settings {
@@ -77,7 +74,7 @@ class BenchSession {
   void see();
   // The transmission by which this drive is coupled, while drives are pushed; else nullptr.
   const Transmission* pair_of(std::size_t joint) const noexcept {
-    return by_drives_ ? coupling_of(model_, joint) : nullptr;
+    return by_drives_ ? model_.coupling_of(joint) : nullptr;
   }
   std::string look_for_stop(std::size_t joint, bool far) const;
   bool still();

@@ -25,7 +25,7 @@ struct CommissionStep {
   const std::string& joint_name(std::size_t joint) const { return robot.model.joints[joint].name; }
   // What is pushed in this joint's place when drives are: named by the joint where that has a drive of its own.
   const std::string& drive_name(std::size_t joint) const {
-    return coupling_of(robot.model, joint) != nullptr ? wiring.drive_name(joint_name(joint)) : joint_name(joint);
+    return robot.model.coupling_of(joint) != nullptr ? wiring.drive_name(joint_name(joint)) : joint_name(joint);
   }
   double number_at(std::size_t joint, std::string_view field, double otherwise) const {
     return wiring.number(joint_name(joint), field, otherwise);

@@ -61,7 +61,7 @@ void flip(CommissionStep& step, const std::string& joint, std::string_view field
 void find_direction(CommissionStep& step, std::size_t joint, double inertia_kg_m2) {
   BenchSession& session = step.session;
   const std::string name = step.drive_name(joint);
-  const bool coupled = coupling_of(step.robot.model, joint) != nullptr;
+  const bool coupled = step.robot.model.coupling_of(joint) != nullptr;
   const std::string called = (coupled ? "drive '" : "joint '") + name + "'";
   const double most_Nm = session.effort_max_Nm(joint);
   Turn turn(joint,

@@ -61,7 +61,7 @@ std::vector<GainFields> fields_of(CommissionStep& step, const ParameterTable& pa
       all.push_back(fields);
     }
   }
-  if (coupling_of(step.robot.model, joint) != nullptr) return all;
+  if (step.robot.model.coupling_of(joint) != nullptr) return all;
   const DriveConstants drive = step.wiring.constants_of(name);
   const double squared = std::pow(step.wiring.drive_per_joint(name), 2);  // of what a drive's gain is at its joint
   if (!drive.stiffness.name.empty() && drive.stiffness.value > 0)

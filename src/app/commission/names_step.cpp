@@ -26,14 +26,14 @@ std::size_t answering(const CommissionStep& step, const Wiggle& wiggle, std::siz
   for (std::size_t i = 0; i < joints; ++i) {
     if (std::abs(answers[i]) > std::abs(answers[most])) most = i;
   }
-  const Transmission* const pair = coupling_of(step.robot.model, own);
-  if (pair != nullptr && pair == coupling_of(step.robot.model, most)) return most;
+  const Transmission* const pair = step.robot.model.coupling_of(own);
+  if (pair != nullptr && pair == step.robot.model.coupling_of(most)) return most;
   return std::abs(answers[own]) > 0.5 * std::abs(answers[most]) ? own : most;
 }
 
 // Two drives move two joints, and one of these stood still: then both drives turn as far.
 bool alike(const CommissionStep& step, const Wiggle& wiggle, std::size_t own) {
-  const Transmission* const pair = coupling_of(step.robot.model, own);
+  const Transmission* const pair = step.robot.model.coupling_of(own);
   if (pair == nullptr || !wiggle.seen()) return false;
   const double one = std::abs(wiggle.answers_rad()[pair->joints()[0]]);
   const double other = std::abs(wiggle.answers_rad()[pair->joints()[1]]);
@@ -78,7 +78,7 @@ bool name_drive(CommissionStep& step, std::size_t drive, const std::vector<doubl
   for (std::size_t i = 0; i < joints; ++i) {
     if (step.robot.model.joints[i].passive()) continue;
     which.answers.push_back(step.drive_name(i));
-    if (coupling_of(step.robot.model, i) != nullptr)
+    if (step.robot.model.coupling_of(i) != nullptr)
       which.text += " '" + step.drive_name(i) + "': " + positive_turn_of_drive(step.robot.model, i) +
                     ", or all of it the other way.";
   }
@@ -113,7 +113,7 @@ bool name_drive(CommissionStep& step, std::size_t drive, const std::vector<doubl
   }
   moved[name] = {joint, step.drive_name(seen_by)};
   step.done(drive, joint + " " + step.drive_name(seen_by));
-  const bool coupled = coupling_of(step.robot.model, drive) != nullptr;
+  const bool coupled = step.robot.model.coupling_of(drive) != nullptr;
   session.tell("drive '" + name + (coupled ? "' turns as '" : "' moves joint '") + joint + (coupled ? "' shall" : "'") +
                ", seen by encoder '" + step.drive_name(seen_by) + "'");
   return true;

@@ -112,7 +112,7 @@ void find_scale(CommissionStep& step, std::size_t joint, double inertia_kg_m2) {
     session.tell("joint '" + name + "': no scale in the configuration belongs to its torque");
     return step.done(joint, "none");
   }
-  if (coupling_of(step.robot.model, joint) != nullptr) {
+  if (step.robot.model.coupling_of(joint) != nullptr) {
     session.tell("joint '" + name + "' is moved by two drives: a load at the joint does not tell their scales apart");
     return step.done(joint, "none");
   }

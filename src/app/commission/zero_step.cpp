@@ -50,7 +50,7 @@ void write_zero(CommissionStep& step, std::size_t joint, double true_rad) {
     return step.session.tell("joint '" + name + "': its zero is right, within " + degrees_text(off_rad));
   }
   std::string now;
-  if (const Transmission* const pair = coupling_of(step.robot.model, joint)) {
+  if (const Transmission* const pair = step.robot.model.coupling_of(joint)) {
     const std::size_t own = pair->joints()[0] == joint ? 0 : 1;
     for (std::size_t drive = 0; drive < 2; ++drive) {
       const double per_joint = pair->drive_per_joint(drive, own);
@@ -132,7 +132,7 @@ void find_zero(CommissionStep& step, std::size_t joint, double inertia_kg_m2) {
                .text = "How is the zero of joint '" + name + "' found?",
                .answers = {"jig", "lower-stop", "upper-stop", "right"}};
   const std::string home = step.wiring.fields().home.empty() ? "" : step.wiring.value(name, step.wiring.fields().home);
-  const bool coupled = coupling_of(step.robot.model, joint) != nullptr;
+  const bool coupled = step.robot.model.coupling_of(joint) != nullptr;
   if (!coupled && !home.empty() && home != "\"power_on\"") how.answers.insert(how.answers.begin() + 1, "home");
   const std::string method = step.session.ask(how);
   if (method == "right") return step.done(joint, "right");

@@ -149,11 +149,6 @@ std::string name_from(const std::string& text) {
   return name;
 }
 
-void fill_in(std::string& text, std::string_view blank, const std::string& filling) {
-  for (std::size_t at = 0; (at = text.find(blank, at)) != std::string::npos; at += filling.size())
-    text.replace(at, blank.size(), filling);
-}
-
 // The URDF's text with its meshes in a folder beside it; `copies` gets the name there of each mesh's file.
 std::string with_own_meshes(const std::string& text, const std::string& file, const UrdfPackages& packages,
                             std::map<std::string, std::string>& copies) {
@@ -328,21 +323,11 @@ bool balances(const StandingPose& stance, std::size_t joint) {
          });
 }
 
-bool is_wheel(const StandingPose& stance, std::size_t joint) {
-  return std::ranges::find(stance.wheels, joint, &StandingWheel::joint) != stance.wheels.end();
-}
-
 // Of the loop in a wheel's drive: a tenth of its top speed off asks for its whole torque. Many files give no top speed.
 double wheel_gain(const Joint& joint) {
   constexpr double most_Nms_per_rad = 1e4, share = 0.1, usual_rad_s = 20;
   return std::min(most_Nms_per_rad,
                   joint.effort_max_Nm / (share * std::clamp(joint.velocity_max_rad_s, 0.1, usual_rad_s)));
-}
-
-bool is_coupled(const RobotModel& model, std::size_t joint) {
-  return std::ranges::any_of(model.transmissions, [joint](const Transmission& transmission) {
-    return transmission.coupled() && std::ranges::find(transmission.joints(), joint) != transmission.joints().end();
-  });
 }
 
 // The behavior that rolls a robot on wheels.
@@ -352,14 +337,12 @@ std::string roll_text(const RobotModel& model, const StandingPose& stance) {
   for (const StandingWheel& wheel : stance.wheels) {
     const Joint& joint = model.joints[wheel.joint];
     most_rad_s = std::min(most_rad_s, 0.8 * joint.velocity_max_rad_s);
-    const std::string name = json_text(Json(joint.name));
-    wheels += (wheels.empty() ? "" : ", ") + ("{ name = " + name + ", forward = ") + number_text(wheel.forward) + " }";
+    wheels += (wheels.empty() ? "" : ", ") + ("{ name = " + source_text(joint.name) + ", forward = ") +
+              number_text(wheel.forward) + " }";
   }
-  std::string text(roll_template);
-  fill_in(text, "@rate@", number_text(figures(std::min(4.0, 0.5 * most_rad_s))));
-  fill_in(text, "@most@", number_text(figures(most_rad_s)));
-  fill_in(text, "@wheels@", wheels);
-  return text;
+  return filled_template(roll_template, {{"@rate@", number_text(figures(std::min(4.0, 0.5 * most_rad_s)))},
+                                         {"@most@", number_text(figures(most_rad_s))},
+                                         {"@wheels@", wheels}});
 }
 
 Json robot_json(const RobotDescription& robot, const std::string& name, const StandingPose& stance,
@@ -375,13 +358,13 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
     const std::string& joint = model.joints[i].name;
     if (!(holds[i].stiffness_Nm_per_rad > 0)) continue;
     Json& drive = drives[drive_names[i]] = {{"rotor_inertia_kg_m2", figures(holds[i].rotor_inertia_kg_m2)}};
-    if (is_wheel(stance, i)) {
+    if (stance.is_wheel(i)) {
       wheels.push_back(joint);
       drive["velocity_gain_Nms_per_rad"] = figures(wheel_gain(model.joints[i]));
       continue;
     }
     motors.push_back(joint);
-    if (!is_coupled(model, i)) {  // of the drive's own modes; a coupled drive is seen from its own side
+    if (model.coupling_of(i) == nullptr) {  // of the drive's own modes; a coupled drive is seen from its own side
       drive["position_gain_Nm_per_rad"] = figures(holds[i].stiffness_Nm_per_rad);
       drive["velocity_gain_Nms_per_rad"] = figures(holds[i].damping_Nms_per_rad);
     }
@@ -554,11 +537,9 @@ int run_new_robot(const NewRobotOptions& options) {
                              {config / "robot.json", json_text(robot, 2) + "\n"},
                              {scenario, json_text(scenario_json(name, stance), 2) + "\n"}};
   const auto add_behavior = [&](const std::string& behavior, std::string text) {
-    std::string test(test_template);
-    fill_in(test, "@name@", name);
-    fill_in(test, "@behavior@", behavior);
     files.push_back({behaviors / (behavior + ".lua"), std::move(text)});
-    files.push_back({behaviors / (behavior + "_test.lua"), std::move(test)});
+    files.push_back({behaviors / (behavior + "_test.lua"),
+                     filled_template(test_template, {{"@name@", name}, {"@behavior@", behavior}})});
   };
   const bool rolls = !stance.wheels.empty();
   if (rolls) add_behavior("roll", roll_text(model, stance));

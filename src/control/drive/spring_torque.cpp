@@ -13,14 +13,8 @@ constexpr double turn = 2 * std::numbers::pi;
 }  // namespace
 
 SpringTorque::SpringTorque(const ObjectSetup& setup) {
-  const auto coupling_of = [&](std::size_t joint) {
-    return std::ranges::find_if(setup.model.transmissions, [&](const Transmission& transmission) {
-      return transmission.coupled() && std::ranges::find(transmission.joints(), joint) != transmission.joints().end();
-    });
-  };
-  const auto none = setup.model.transmissions.end();
   for (const JointAxis& axis : joint_axes(setup)) {
-    if (coupling_of(axis.joint) != none) continue;
+    if (setup.model.coupling_of(axis.joint) != nullptr) continue;
     const DriveLaw drive = axis.joint < setup.drives.size() ? setup.drives[axis.joint] : DriveLaw{};
     add(axis, {.spring_Nm_per_rad = drive.spring_Nm_per_rad,
                .rotor_inertia_kg_m2 = drive.rotor_inertia_kg_m2,
@@ -28,9 +22,9 @@ SpringTorque::SpringTorque(const ObjectSetup& setup) {
   }
   single_ = parts_.size();
   for (const std::size_t joint : setup.joints) {
-    const auto coupling = coupling_of(joint);
-    if (coupling != none && coupling->joints()[0] == joint) add_pair(setup, *coupling);
-    if (coupling == none) continue;
+    const Transmission* const coupling = setup.model.coupling_of(joint);
+    if (coupling == nullptr) continue;
+    if (coupling->joints()[0] == joint) add_pair(setup, *coupling);
     for (const std::size_t other : coupling->joints()) {
       if (std::ranges::find(setup.joints, other) != setup.joints.end()) continue;
       throw std::invalid_argument("joint " + setup.model.joints[joint].name + " is coupled with " +
@@ -50,7 +44,7 @@ void SpringTorque::add(JointAxis axis, const SpringTorqueLoop::Config& config) {
 
 void SpringTorque::add_pair(const ObjectSetup& setup, const Transmission& transmission) {
   const std::vector<std::size_t>& joints = transmission.joints();
-  pairs_.push_back({transmission, {parts_.size(), parts_.size() + 1}});
+  couplings_.push_back(transmission);
   for (std::size_t i = 0; i < 2; ++i) {
     const DriveLaw drive = joints[i] < setup.drives.size() ? setup.drives[joints[i]] : DriveLaw{};
     const std::string& joint = setup.model.joints[joints[i]].name;
@@ -107,12 +101,12 @@ void SpringTorque::step(const ControlInput& input, ActuationFrame& actuation) no
     const double motor_Nm = part.loop.step(asked.effort_Nm, input.joints.joints[part.axis.joint], input.dt_s);
     asked.effort_Nm += part.share * (motor_Nm - asked.effort_Nm);
   }
-  for (const Pair& pair : pairs_) step_pair(input, pair, std::span(parts_).subspan(pair.parts[0], 2), actuation);
+  for (std::size_t i = 0; i < couplings_.size(); ++i)
+    step_pair(input, couplings_[i], std::span(parts_).subspan(single_ + 2 * i, 2), actuation);
 }
 
-void SpringTorque::step_pair(const ControlInput& input, const Pair& pair, std::span<Part> parts,
+void SpringTorque::step_pair(const ControlInput& input, const Transmission& coupling, std::span<Part> parts,
                              ActuationFrame& actuation) noexcept {
-  const Transmission& coupling = pair.transmission;
   const std::size_t first = coupling.joints()[0], second = coupling.joints()[1];
   JointActuation &one = actuation.joints[first], &other = actuation.joints[second];
   if (one.mode != ActuationMode::effort || other.mode != ActuationMode::effort) {

@@ -16,7 +16,6 @@
 // Not finite  the motor gets the wanted joint torque.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -113,19 +112,15 @@ class SpringTorque final : public ControlObject {
     SpringTorqueLoop loop{};
     double share = 1;
   };
-  struct Pair {
-    Transmission transmission;
-    std::array<std::size_t, 2> parts;  // of its drives
-  };
   void add(JointAxis axis, const SpringTorqueLoop::Config& config);
   void add_pair(const ObjectSetup& setup, const Transmission& transmission);
   void declare(Declaration& declaration, Part& part, double least);
-  static void step_pair(const ControlInput& input, const Pair& pair, std::span<Part> parts,
+  static void step_pair(const ControlInput& input, const Transmission& coupling, std::span<Part> parts,
                         ActuationFrame& actuation) noexcept;
 
-  std::vector<Part> parts_;  // joint by joint, then drive by drive of each pair
+  std::vector<Part> parts_;  // joint by joint, then two drives of each coupling
   std::size_t single_ = 0;   // parts that are of a joint alone
-  std::vector<Pair> pairs_;
+  std::vector<Transmission> couplings_;
 };
 
 std::unique_ptr<ControlObject> make_spring_torque(const ObjectSetup& setup);

@@ -120,7 +120,7 @@ class VirtualBench final : public Bench {
       seen_.away_rad = std::max(seen_.away_rad, std::abs(world_->truth().position_rad[i] - from_rad));
       if (model_.joints[i].passive()) continue;
       const double most_Nm =
-          coupling_of(model_, i) != nullptr ? plant_.drives[i].torque_max_Nm : model_.joints[i].effort_max_Nm;
+          model_.coupling_of(i) != nullptr ? plant_.drives[i].torque_max_Nm : model_.joints[i].effort_max_Nm;
       const double share = std::abs(world_->truth().motor_torque_Nm[i]) / most_Nm;
       seen_.torque_share = std::max(seen_.torque_share, share);
       if (share > 0) seen_.torque_until_ns = now_ns_;
@@ -153,7 +153,7 @@ class VirtualBench final : public Bench {
     return is;
   }
   std::string drive_name(std::size_t joint) const {
-    return coupling_of(model_, joint) != nullptr ? model_.drive_names()[joint] : model_.joints[joint].name;
+    return model_.coupling_of(joint) != nullptr ? model_.drive_names()[joint] : model_.joints[joint].name;
   }
   // By the name of a joint, or of one of two drives that move it.
   std::size_t number_of(const std::string& name) const {
