@@ -46,6 +46,11 @@ class Declaration {
 
   // `parameter.name` without the object: "l_knee.kp_Nm_per_rad". Throws std::invalid_argument as the tables do.
   ParameterId parameter(Parameter parameter, double* value);
+  // The same of a value that is its own default.
+  ParameterId tunable(const std::string& name, const std::string& unit, double min, double max, double& value,
+                      const std::string& doc) {
+    return parameter({name, unit, min, max, value, doc}, &value);
+  }
   SetpointId setpoint(Setpoint setpoint);
   template <typename T>
   SignalId signal(Signal signal, const T* source) {

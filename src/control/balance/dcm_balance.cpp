@@ -28,20 +28,18 @@ DcmBalance::DcmBalance(const ObjectSetup& setup)
 
 void DcmBalance::declare(Declaration& d) {
   Config& c = config_;
-  d.parameter({"share", "", 0, 1, 1, "Share of all its torques."}, &c.share);
-  d.parameter({"offset_x_m", "m", -0.2, 0.2, 0.02, "Where the divergent component shall be, forward of the ankles."},
-              &c.offset_x_m);
-  d.parameter({"ankle_per_m", "", 0, 10, 1, "Shift of the centre of pressure per error."}, &c.ankle_per_m);
-  d.parameter({"ankle_max_Nm", "Nm", 0, 50, 12, "Bound of an ankle's torque."}, &c.ankle_max_Nm);
-  d.parameter({"smooth_s", "s", 0, 0.1, 0, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
-  d.parameter({"reach_front_m", "m", 0, 0.5, 0.1, "Error forward that the ankles hold."}, &c.reach_front_m);
-  d.parameter({"reach_back_m", "m", 0, 0.5, 0.06, "Error backward that the ankles hold."}, &c.reach_back_m);
-  d.parameter({"reach_side_m", "m", 0, 0.5, 0, "Error to the side that the posture holds."}, &c.reach_side_m);
-  d.parameter({"hip_Nm_per_m", "Nm/m", -5000, 5000, 0, "Torque of a hip per error beyond reach."}, &c.hip_Nm_per_m);
-  d.parameter({"arm_Nm_per_m", "Nm/m", -5000, 5000, 0, "Torque of a shoulder per error beyond reach."},
-              &c.arm_Nm_per_m);
-  d.parameter({"roll_Nm_per_m", "Nm/m", -5000, 5000, 0, "Torque of a hip roll per error to the side."},
-              &c.roll_Nm_per_m);
+  d.tunable("share", "", 0, 1, c.share, "Share of all its torques.");
+  d.tunable("offset_x_m", "m", -0.2, 0.2, c.offset_x_m,
+            "Where the divergent component shall be, forward of the ankles.");
+  d.tunable("ankle_per_m", "", 0, 10, c.ankle_per_m, "Shift of the centre of pressure per error.");
+  d.tunable("ankle_max_Nm", "Nm", 0, 50, c.ankle_max_Nm, "Bound of an ankle's torque.");
+  d.tunable("smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none.");
+  d.tunable("reach_front_m", "m", 0, 0.5, c.reach_front_m, "Error forward that the ankles hold.");
+  d.tunable("reach_back_m", "m", 0, 0.5, c.reach_back_m, "Error backward that the ankles hold.");
+  d.tunable("reach_side_m", "m", 0, 0.5, c.reach_side_m, "Error to the side that the posture holds.");
+  d.tunable("hip_Nm_per_m", "Nm/m", -5000, 5000, c.hip_Nm_per_m, "Torque of a hip per error beyond reach.");
+  d.tunable("arm_Nm_per_m", "Nm/m", -5000, 5000, c.arm_Nm_per_m, "Torque of a shoulder per error beyond reach.");
+  d.tunable("roll_Nm_per_m", "Nm/m", -5000, 5000, c.roll_Nm_per_m, "Torque of a hip roll per error to the side.");
   const State& s = state_;
   d.signal({"com_x_m", "m", "Centre of mass, forward of the feet's middle."}, &s.com_x_m);
   d.signal({"com_y_m", "m", "Centre of mass, left of the feet's middle."}, &s.com_y_m);

@@ -79,39 +79,33 @@ void Stance::declare(Declaration& d) {
 
 void Stance::declare_pressure(Declaration& d) {
   Config& c = config_;
-  d.parameter({"share", "", 0, 1, c.share, "Share of all its torques."}, &c.share);
-  d.parameter({"offset_x_m", "m", -0.2, 0.2, c.offset_x_m, "Where the divergent component shall be, forward."},
-              &c.offset_x_m);
-  d.parameter({"offset_y_m", "m", -0.2, 0.2, c.offset_y_m, "The same, to the left."}, &c.offset_y_m);
-  d.parameter({"pull_x", "", 0, 10, c.pull_x, "Shift of the pressure per error forward."}, &c.pull_x);
-  d.parameter({"pull_y", "", 0, 10, c.pull_y, "Shift of the pressure per error to the side."}, &c.pull_y);
-  d.parameter({"need", "", 1, 10, c.need, "Of pull, what the trunk has to bow for."}, &c.need);
-  d.parameter({"toe_m", "m", 0, 0.5, c.toe_m, "How far before its frame a foot may be pressed."}, &c.toe_m);
-  d.parameter({"heel_m", "m", 0, 0.5, c.heel_m, "How far behind its frame a foot may be pressed."}, &c.heel_m);
-  d.parameter({"flat_m_per_rad", "m/rad", 0, 5, c.flat_m_per_rad, "Pressure shifts back on a foot that tips."},
-              &c.flat_m_per_rad);
-  d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
-  d.parameter({"side_m", "m", 0, 0.5, c.side_m, "How far out of the feet's frames the pressure may go."}, &c.side_m);
-  d.parameter({"grip", "", 0, 2, c.grip, "Most of the force along the ground, per weight."}, &c.grip);
+  d.tunable("share", "", 0, 1, c.share, "Share of all its torques.");
+  d.tunable("offset_x_m", "m", -0.2, 0.2, c.offset_x_m, "Where the divergent component shall be, forward.");
+  d.tunable("offset_y_m", "m", -0.2, 0.2, c.offset_y_m, "The same, to the left.");
+  d.tunable("pull_x", "", 0, 10, c.pull_x, "Shift of the pressure per error forward.");
+  d.tunable("pull_y", "", 0, 10, c.pull_y, "Shift of the pressure per error to the side.");
+  d.tunable("need", "", 1, 10, c.need, "Of pull, what the trunk has to bow for.");
+  d.tunable("toe_m", "m", 0, 0.5, c.toe_m, "How far before its frame a foot may be pressed.");
+  d.tunable("heel_m", "m", 0, 0.5, c.heel_m, "How far behind its frame a foot may be pressed.");
+  d.tunable("flat_m_per_rad", "m/rad", 0, 5, c.flat_m_per_rad, "Pressure shifts back on a foot that tips.");
+  d.tunable("sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame.");
+  d.tunable("side_m", "m", 0, 0.5, c.side_m, "How far out of the feet's frames the pressure may go.");
+  d.tunable("grip", "", 0, 2, c.grip, "Most of the force along the ground, per weight.");
 }
 
 void Stance::declare_trunk(Declaration& d) {
   Config& c = config_;
   c.trunk.declare(d, TrunkRighting::Leans::forward_only, {2000, 200});
-  d.parameter({"height_m", "m", 0, 2, c.height_m, "Of the centre of mass over the feet's frames."}, &c.height_m);
-  d.parameter({"height_N_per_m", "N/m", 0, 20000, c.height_N_per_m, "Lifts it there."}, &c.height_N_per_m);
-  d.parameter({"height_Ns_per_m", "Ns/m", 0, 2000, c.height_Ns_per_m, "Damps it."}, &c.height_Ns_per_m);
-  d.parameter({"lift_N_per_m", "N/m", 0, 5000, c.lift_N_per_m, "Harder on the ground, per distance of the pressure."},
-              &c.lift_N_per_m);
-  d.parameter({"lift_max", "", 0, 1, c.lift_max, "Most of both, per weight."}, &c.lift_max);
-  d.parameter({"turn_max_Nm", "Nm", 0, 200, c.turn_max_Nm, "Bound of the moment that turns the trunk."},
-              &c.turn_max_Nm);
-  d.parameter({"arm_Nm_per_m", "Nm/m", 0, 1000, c.arm_Nm_per_m, "Torque of a shoulder, per pressure beyond the soles."},
-              &c.arm_Nm_per_m);
-  d.parameter({"arm_from_m", "m", 0, 1, c.arm_from_m, "How far beyond that begins."}, &c.arm_from_m);
-  d.parameter({"trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured."},
-              &c.trust_per_s);
-  d.parameter({"smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
+  d.tunable("height_m", "m", 0, 2, c.height_m, "Of the centre of mass over the feet's frames.");
+  d.tunable("height_N_per_m", "N/m", 0, 20000, c.height_N_per_m, "Lifts it there.");
+  d.tunable("height_Ns_per_m", "Ns/m", 0, 2000, c.height_Ns_per_m, "Damps it.");
+  d.tunable("lift_N_per_m", "N/m", 0, 5000, c.lift_N_per_m, "Harder on the ground, per distance of the pressure.");
+  d.tunable("lift_max", "", 0, 1, c.lift_max, "Most of both, per weight.");
+  d.tunable("turn_max_Nm", "Nm", 0, 200, c.turn_max_Nm, "Bound of the moment that turns the trunk.");
+  d.tunable("arm_Nm_per_m", "Nm/m", 0, 1000, c.arm_Nm_per_m, "Torque of a shoulder, per pressure beyond the soles.");
+  d.tunable("arm_from_m", "m", 0, 1, c.arm_from_m, "How far beyond that begins.");
+  d.tunable("trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured.");
+  d.tunable("smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none.");
 }
 
 void Stance::declare_signals(Declaration& d) {

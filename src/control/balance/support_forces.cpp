@@ -112,26 +112,23 @@ SupportForces::SupportForces(const ObjectSetup& setup)
 
 void SupportForces::declare(Declaration& d) {
   Config& c = config_;
-  d.parameter({"share", "", 0, 1, c.share, "Share of all its torques."}, &c.share);
-  d.parameter({"offset_x_m", "m", -0.5, 0.5, c.offset_x_m, "Where the divergent component shall be, forward."},
-              &c.offset_x_m);
-  d.parameter({"offset_y_m", "m", -0.5, 0.5, c.offset_y_m, "The same, to the left."}, &c.offset_y_m);
-  d.parameter({"pull", "", 0, 10, c.pull, "Shift of the pressure per error."}, &c.pull);
+  d.tunable("share", "", 0, 1, c.share, "Share of all its torques.");
+  d.tunable("offset_x_m", "m", -0.5, 0.5, c.offset_x_m, "Where the divergent component shall be, forward.");
+  d.tunable("offset_y_m", "m", -0.5, 0.5, c.offset_y_m, "The same, to the left.");
+  d.tunable("pull", "", 0, 10, c.pull, "Shift of the pressure per error.");
   c.trunk.declare(d, TrunkRighting::Leans::anyhow, {5000, 500});
-  d.parameter({"turn_Nms_per_rad", "Nms/rad", 0, 500, c.turn_Nms_per_rad, "Damps turning about the vertical."},
-              &c.turn_Nms_per_rad);
-  d.parameter({"height_m", "m", 0, 2, c.height_m, "Of the centre of mass over the feet."}, &c.height_m);
-  d.parameter({"height_N_per_m", "N/m", 0, 20000, c.height_N_per_m, "Lifts it there."}, &c.height_N_per_m);
-  d.parameter({"height_Ns_per_m", "Ns/m", 0, 5000, c.height_Ns_per_m, "Damps it."}, &c.height_Ns_per_m);
-  d.parameter({"lift_max", "", 0, 1, c.lift_max, "Most of both, per weight."}, &c.lift_max);
-  d.parameter({"grip", "", 0, 2, c.grip, "Most of a foot's force along the ground, per force on it."}, &c.grip);
-  d.parameter({"smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none."}, &c.smooth_s);
+  d.tunable("turn_Nms_per_rad", "Nms/rad", 0, 500, c.turn_Nms_per_rad, "Damps turning about the vertical.");
+  d.tunable("height_m", "m", 0, 2, c.height_m, "Of the centre of mass over the feet.");
+  d.tunable("height_N_per_m", "N/m", 0, 20000, c.height_N_per_m, "Lifts it there.");
+  d.tunable("height_Ns_per_m", "Ns/m", 0, 5000, c.height_Ns_per_m, "Damps it.");
+  d.tunable("lift_max", "", 0, 1, c.lift_max, "Most of both, per weight.");
+  d.tunable("grip", "", 0, 2, c.grip, "Most of a foot's force along the ground, per force on it.");
+  d.tunable("smooth_s", "s", 0, 0.1, c.smooth_s, "Time constant of the torques' low pass; 0: none.");
   for (Foot& foot : feet_) {
     constexpr std::array<const char*, 3> axes{"x", "y", "z"};
     for (std::size_t k = 0; k < 3; ++k)
-      d.parameter(
-          {foot.name + "." + axes[k] + "_m", "m", -2, 2, 0, "Where it touches the ground, in the link's frame."},
-          &foot.at_m[k]);
+      d.tunable(foot.name + "." + axes[k] + "_m", "m", -2, 2, foot.at_m[k],
+                "Where it touches the ground, in the link's frame.");
   }
   declare_signals(d);
 }

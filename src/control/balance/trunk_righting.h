@@ -23,21 +23,12 @@ struct TrunkRighting {
 
   // The numbers above as parameters of an object; without roll_rad where it leans forward only.
   void declare(Declaration& d, Leans leans, const Most& most) {
-    d.parameter({"pitch_rad", "rad", -1, 1, pitch_rad, "How far the trunk leans forward."}, &pitch_rad);
-    if (leans == Leans::anyhow)
-      d.parameter({"roll_rad", "rad", -1, 1, roll_rad, "How far the trunk leans to the right."}, &roll_rad);
-    d.parameter(
-        {"upright_Nm_per_rad", "Nm/rad", 0, most.Nm_per_rad, upright_Nm_per_rad, "Turns the trunk back, forward."},
-        &upright_Nm_per_rad);
-    d.parameter(
-        {"upright_Nms_per_rad", "Nms/rad", 0, most.Nms_per_rad, upright_Nms_per_rad, "Damps the trunk, forward."},
-        &upright_Nms_per_rad);
-    d.parameter(
-        {"level_Nm_per_rad", "Nm/rad", 0, most.Nm_per_rad, level_Nm_per_rad, "Turns the trunk back, to the side."},
-        &level_Nm_per_rad);
-    d.parameter(
-        {"level_Nms_per_rad", "Nms/rad", 0, most.Nms_per_rad, level_Nms_per_rad, "Damps the trunk, to the side."},
-        &level_Nms_per_rad);
+    d.tunable("pitch_rad", "rad", -1, 1, pitch_rad, "How far the trunk leans forward.");
+    if (leans == Leans::anyhow) d.tunable("roll_rad", "rad", -1, 1, roll_rad, "How far the trunk leans to the right.");
+    d.tunable("upright_Nm_per_rad", "Nm/rad", 0, most.Nm_per_rad, upright_Nm_per_rad, "Turns the trunk back, forward.");
+    d.tunable("upright_Nms_per_rad", "Nms/rad", 0, most.Nms_per_rad, upright_Nms_per_rad, "Damps the trunk, forward.");
+    d.tunable("level_Nm_per_rad", "Nm/rad", 0, most.Nm_per_rad, level_Nm_per_rad, "Turns the trunk back, to the side.");
+    d.tunable("level_Nms_per_rad", "Nms/rad", 0, most.Nms_per_rad, level_Nms_per_rad, "Damps the trunk, to the side.");
   }
 
   // To the right and forward.

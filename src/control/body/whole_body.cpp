@@ -139,14 +139,12 @@ void WholeBody::declare(Declaration& declaration) {
                               .joint = no_joint,
                               .safe = 0});
   BodySettings& s = settings_;
-  declaration.parameter({"effort_share", "", 0.1, 1, 0.9, "Share of the torque limits that it plans with."},
-                        &s.effort_share);
-  declaration.parameter({"velocity_share", "", 0.05, 1, 0.8, "Share of the velocity limits that it plans with."},
-                        &s.velocity_share);
-  declaration.parameter({"posture_weight", "", 1e-5, 100, 1e-3, "How much the posture counts beside the tasks."},
-                        &s.posture_weight);
-  declaration.parameter({"posture_per_s", "1/s", 0, 20, 2, "How fast joints go back to the posture."},
-                        &s.posture_per_s);
+  declaration.tunable("effort_share", "", 0.1, 1, s.effort_share, "Share of the torque limits that it plans with.");
+  declaration.tunable("velocity_share", "", 0.05, 1, s.velocity_share,
+                      "Share of the velocity limits that it plans with.");
+  declaration.tunable("posture_weight", "", 1e-5, 100, s.posture_weight,
+                      "How much the posture counts beside the tasks.");
+  declaration.tunable("posture_per_s", "1/s", 0, 20, s.posture_per_s, "How fast joints go back to the posture.");
   declaration.signal({"iterations", "", "Iterations of the newest program."}, &shown_.iterations);
   declaration.signal(
       {"status", "", "Of the newest program: 0 solved, 1 infeasible, 2 iterations exhausted, 3 refused."},
@@ -186,14 +184,11 @@ void WholeBody::declare_task(Declaration& declaration, std::size_t index) {
 void WholeBody::declare_weight(Declaration& declaration, std::size_t index) {
   const BodyTask& task = layout_.tasks[index];
   BodySettings::Task& s = settings_.tasks[index];
-  declaration.parameter({task.name + ".weight", "", 0, 1000, 1, "How much the task counts beside others; 0: not."},
-                        &s.weight);
-  declaration.parameter({task.name + ".priority", "", 1, 2, 1, "1, or 2: gets what tasks of 1 leave."}, &s.priority);
-  declaration.parameter({task.name + ".gain_per_s", "1/s", 0.5, 20, 8, "How fast its error is corrected."},
-                        &s.gain_per_s);
+  declaration.tunable(task.name + ".weight", "", 0, 1000, s.weight, "How much the task counts beside others; 0: not.");
+  declaration.tunable(task.name + ".priority", "", 1, 2, s.priority, "1, or 2: gets what tasks of 1 leave.");
+  declaration.tunable(task.name + ".gain_per_s", "1/s", 0.5, 20, s.gain_per_s, "How fast its error is corrected.");
   for (std::size_t k = 0; task.kind == BodyTask::Kind::hand && k < 3; ++k) {
-    declaration.parameter({task.name + ".point_" + points[k], "m", -1, 1, 0, "The hand, in its link's frame."},
-                          &s.point_m[k]);
+    declaration.tunable(task.name + ".point_" + points[k], "m", -1, 1, s.point_m[k], "The hand, in its link's frame.");
   }
 }
 
@@ -210,21 +205,17 @@ void WholeBody::declare_ground(Declaration& d) {
                       .joint = no_joint});
     d.signal({"load_" + side + "_N", "N", "What the foot shall bear."}, &shown_.load_N[i]);
   }
-  d.parameter({"friction", "", 0.05, 2, 0.5, "Friction of the ground that it counts on."}, &s.friction);
-  d.parameter({"toe_m", "m", 0.02, 0.5, 0.1, "From a foot's frame forward to the sole's edge."}, &s.toe_m);
-  d.parameter({"heel_m", "m", 0.02, 0.5, 0.1, "From a foot's frame back to the sole's edge."}, &s.heel_m);
-  d.parameter({"side_m", "m", 0.02, 0.5, 0.05, "From a foot's frame sideways to the sole's edges."}, &s.side_m);
-  d.parameter({"sole_m", "m", 0, 0.5, 0.05, "Height of a foot's frame over its sole."}, &s.sole_m);
-  d.parameter({"edge_m", "m", 0, 0.015, 0.01, "How far the centre of pressure stays from the edges."}, &s.edge_m);
-  d.parameter({"balance_m", "m", 0, 0.05, 0.03,
-               "How far the centre of mass, and the point over which it comes to rest, stay from the edges."},
-              &s.balance_m);
-  d.parameter({"tilt_max_rad", "rad", 0, 3.2, 3.2, "How far the trunk may lean on the way of a motion."},
-              &s.tilt_max_rad);
-  d.parameter({"passive_Nm_per_rad", "Nm/rad", 0, 1000, 0, "Springs in joints without a motor."},
-              &s.passive_Nm_per_rad);
-  d.parameter({"passive_Nms_per_rad", "Nm s/rad", 0, 100, 0, "Dampers in joints without a motor."},
-              &s.passive_Nms_per_rad);
+  d.tunable("friction", "", 0.05, 2, s.friction, "Friction of the ground that it counts on.");
+  d.tunable("toe_m", "m", 0.02, 0.5, s.toe_m, "From a foot's frame forward to the sole's edge.");
+  d.tunable("heel_m", "m", 0.02, 0.5, s.heel_m, "From a foot's frame back to the sole's edge.");
+  d.tunable("side_m", "m", 0.02, 0.5, s.side_m, "From a foot's frame sideways to the sole's edges.");
+  d.tunable("sole_m", "m", 0, 0.5, s.sole_m, "Height of a foot's frame over its sole.");
+  d.tunable("edge_m", "m", 0, 0.015, s.edge_m, "How far the centre of pressure stays from the edges.");
+  d.tunable("balance_m", "m", 0, 0.05, s.balance_m,
+            "How far the centre of mass, and the point over which it comes to rest, stay from the edges.");
+  d.tunable("tilt_max_rad", "rad", 0, 3.2, s.tilt_max_rad, "How far the trunk may lean on the way of a motion.");
+  d.tunable("passive_Nm_per_rad", "Nm/rad", 0, 1000, s.passive_Nm_per_rad, "Springs in joints without a motor.");
+  d.tunable("passive_Nms_per_rad", "Nm s/rad", 0, 100, s.passive_Nms_per_rad, "Dampers in joints without a motor.");
   for (std::size_t k = 0; k < 3; ++k)
     d.signal({std::string("com_") + points[k], "m", "Where the centre of mass is led."}, &shown_.com_m[k]);
 }

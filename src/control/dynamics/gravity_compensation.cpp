@@ -111,7 +111,7 @@ GravityCompensation::GravityCompensation(const ObjectSetup& setup)
 GravityCompensation::~GravityCompensation() = default;
 
 void GravityCompensation::declare(Declaration& declaration) {
-  declaration.parameter({"gain", "", 0, 1, 1, "Share of gravity that is compensated."}, &config_.gain);
+  declaration.tunable("gain", "", 0, 1, config_.gain, "Share of gravity that is compensated.");
   declaration.signal({"gain", "", "Share of gravity that is compensated."}, &gain_);
   declaration.signal({"model_age_s", "s", "Age of the measurement from which the gravity torques were computed."},
                      &model_age_s_);

@@ -190,8 +190,8 @@ void Gaze::declare(Declaration& declaration) {
                         &settings_.damping_singular);
   declaration.parameter({"null_per_s", "1/s", 0, 50, 4, "How fast the joints are centred while the gaze stays."},
                         &settings_.null_per_s);
-  declaration.parameter({"vor_gain", "", 0, 1.5, 1, "Share of the neck's error of velocity that the eyes counter."},
-                        &vor_gain_);
+  declaration.tunable("vor_gain", "", 0, 1.5, vor_gain_,
+                      "Share of the neck's error of velocity that the eyes counter.");
   declaration.signal({"left_error_rad", "rad", "Angle between the left eye and the target."}, &left_rad_);
   declaration.signal({"right_error_rad", "rad", "Angle between the right eye and the target."}, &right_rad_);
   declaration.signal({"unreachable", "", "Whether the eyes come no nearer to the target."}, &unreachable_);

@@ -182,7 +182,7 @@ FeedforwardPlayer::FeedforwardPlayer(const ObjectSetup& setup) : Jointwise(setup
 }
 
 void FeedforwardPlayer::declare(Declaration& declaration) {
-  declaration.parameter({"rate_Hz", "Hz", 0, 20, 1, "Periods of the series in a second."}, &rate_Hz_);
+  declaration.tunable("rate_Hz", "Hz", 0, 20, rate_Hz_, "Periods of the series in a second.");
   declaration.signal({"phase_turns", "", "Part of the period that has passed, 0 to 1."}, &phase_.turns);
   Jointwise::declare(declaration);
 }

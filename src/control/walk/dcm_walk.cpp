@@ -71,40 +71,31 @@ DcmWalk::DcmWalk(const ObjectSetup& setup)
 void DcmWalk::declare(Declaration& declaration) {
   const FittedDeclaration d(declaration, similarity_);
   Config& c = config_;
-  d.parameter({"tilt_max_rad", "rad", 0, 1.5, c.tilt_max_rad, "Tilt of the trunk beyond which it gives up."},
-              &c.tilt_max_rad);
-  d.parameter({"height_m", "m", 0.1, 2, c.height_m, "Of the centre of mass over the foot that stands."}, &c.height_m);
-  d.parameter({"height_N_per_m", "N/m", 0, 200000, c.height_N_per_m, "Keeps that height."}, &c.height_N_per_m);
-  d.parameter({"height_Ns_per_m", "N s/m", 0, 20000, c.height_Ns_per_m, "Damps it."}, &c.height_Ns_per_m);
-  d.parameter({"lift_max", "", 0, 1, c.lift_max, "Most of both, per weight."}, &c.lift_max);
-  d.parameter({"lean_rad", "rad", -0.5, 0.5, c.lean_rad, "Of the torso, forward."}, &c.lean_rad);
-  d.parameter({"torso_Nm_per_rad", "Nm/rad", 0, 20000, c.torso_Nm_per_rad, "Holds the torso, in pitch."},
-              &c.torso_Nm_per_rad);
-  d.parameter({"torso_Nms_per_rad", "Nm s/rad", 0, 2000, c.torso_Nms_per_rad, "Damps it."}, &c.torso_Nms_per_rad);
-  d.parameter({"level_Nm_per_rad", "Nm/rad", 0, 20000, c.level_Nm_per_rad, "Holds the torso, in roll."},
-              &c.level_Nm_per_rad);
-  d.parameter({"level_Nms_per_rad", "Nm s/rad", 0, 2000, c.level_Nms_per_rad, "Damps it."}, &c.level_Nms_per_rad);
-  d.parameter({"counter_share", "", 0, 1, c.counter_share, "Of the swing hip's torque that the stance hip takes."},
-              &c.counter_share);
-  d.parameter({"grip", "", 0, 2, c.grip, "Largest force along the ground, per load."}, &c.grip);
-  d.parameter({"yaw_grip_m", "m", 0, 1, c.yaw_grip_m,
-               "Largest torque of the yaw of a leg that bears, per load of its foot; 0: as much as its motor has."},
-              &c.yaw_grip_m);
-  d.own({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame."}, &c.sole_m);
-  d.parameter({"slope_s", "s", 0.01, 100, c.slope_s, "In which the slope of the ground is learnt."}, &c.slope_s);
-  d.parameter({"slope_max", "", 0, 1, c.slope_max, "The largest slope that it believes in."}, &c.slope_max);
-  d.parameter({"shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load."}, &c.shift_s);
-  d.parameter({"ankle_smooth_s", "s", 0, 0.1, c.ankle_smooth_s, "Low pass of the ankles' torques."}, &c.ankle_smooth_s);
-  d.parameter({"by_now", "", 0, 1, c.by_now, "How far the swinging leg's length and sole follow where it is by now."},
-              &c.by_now);
-  d.parameter(
-      {"ankle_by_load", "", 0, 1, c.ankle_by_load, "How far an ankle's torque follows the load that its foot bears."},
-      &c.ankle_by_load);
-  d.parameter({"fade_s", "s", 0, 0.1, c.fade_s, "In which the torques of a leg's part pass into the next one's."},
-              &c.fade_s);
-  d.parameter({"stand_s", "s", 0, 10, c.stand_s, "After the last step, before it counts as standing."}, &c.stand_s);
-  d.parameter({"learn_share", "", 0, 1, c.learn_share, "Of a swing's torques that the leg's next one begins with."},
-              &c.learn_share);
+  d.tunable("tilt_max_rad", "rad", 0, 1.5, c.tilt_max_rad, "Tilt of the trunk beyond which it gives up.");
+  d.tunable("height_m", "m", 0.1, 2, c.height_m, "Of the centre of mass over the foot that stands.");
+  d.tunable("height_N_per_m", "N/m", 0, 200000, c.height_N_per_m, "Keeps that height.");
+  d.tunable("height_Ns_per_m", "N s/m", 0, 20000, c.height_Ns_per_m, "Damps it.");
+  d.tunable("lift_max", "", 0, 1, c.lift_max, "Most of both, per weight.");
+  d.tunable("lean_rad", "rad", -0.5, 0.5, c.lean_rad, "Of the torso, forward.");
+  d.tunable("torso_Nm_per_rad", "Nm/rad", 0, 20000, c.torso_Nm_per_rad, "Holds the torso, in pitch.");
+  d.tunable("torso_Nms_per_rad", "Nm s/rad", 0, 2000, c.torso_Nms_per_rad, "Damps it.");
+  d.tunable("level_Nm_per_rad", "Nm/rad", 0, 20000, c.level_Nm_per_rad, "Holds the torso, in roll.");
+  d.tunable("level_Nms_per_rad", "Nm s/rad", 0, 2000, c.level_Nms_per_rad, "Damps it.");
+  d.tunable("counter_share", "", 0, 1, c.counter_share, "Of the swing hip's torque that the stance hip takes.");
+  d.tunable("grip", "", 0, 2, c.grip, "Largest force along the ground, per load.");
+  d.tunable("yaw_grip_m", "m", 0, 1, c.yaw_grip_m,
+            "Largest torque of the yaw of a leg that bears, per load of its foot; 0: as much as its motor has.");
+  d.own("sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below a foot's frame.");
+  d.tunable("slope_s", "s", 0.01, 100, c.slope_s, "In which the slope of the ground is learnt.");
+  d.tunable("slope_max", "", 0, 1, c.slope_max, "The largest slope that it believes in.");
+  d.tunable("shift_s", "s", 0.001, 1, c.shift_s, "In which a leg that landed takes the load.");
+  d.tunable("ankle_smooth_s", "s", 0, 0.1, c.ankle_smooth_s, "Low pass of the ankles' torques.");
+  d.tunable("by_now", "", 0, 1, c.by_now, "How far the swinging leg's length and sole follow where it is by now.");
+  d.tunable("ankle_by_load", "", 0, 1, c.ankle_by_load,
+            "How far an ankle's torque follows the load that its foot bears.");
+  d.tunable("fade_s", "s", 0, 0.1, c.fade_s, "In which the torques of a leg's part pass into the next one's.");
+  d.tunable("stand_s", "s", 0, 10, c.stand_s, "After the last step, before it counts as standing.");
+  d.tunable("learn_share", "", 0, 1, c.learn_share, "Of a swing's torques that the leg's next one begins with.");
   config_.gains.declare(d);
   declare_plan(d);
   declare_signals(declaration);
@@ -112,74 +103,56 @@ void DcmWalk::declare(Declaration& declaration) {
 
 void DcmWalk::declare_plan(const FittedDeclaration& d) {
   WalkPlan::Config& c = plan_config_;
-  d.parameter({"step_s", "s", 0.1, 2, c.step_s, "Time of a step."}, &c.step_s);
-  d.parameter({"step_min_s", "s", 0.05, 2, c.step_min_s, "Shortest step."}, &c.step_min_s);
-  d.parameter({"step_max_s", "s", 0.1, 2, c.step_max_s, "Longest step."}, &c.step_max_s);
-  d.own({"width_m", "m", 0, 1, c.width_m, "Between the feet, sideways."}, &c.width_m);
-  d.parameter({"apart_min_m", "m", 0, 1, c.apart_min_m, "Least distance of the feet, sideways."}, &c.apart_min_m);
-  d.parameter({"apart_max_m", "m", 0, 1, c.apart_max_m, "Largest distance of the feet, sideways."}, &c.apart_max_m);
-  d.parameter({"reach_m", "m", 0, 1, c.reach_m, "Longest step."}, &c.reach_m);
-  d.parameter({"lift_m", "m", 0, 0.3, c.lift_m, "Height of a swing."}, &c.lift_m);
-  d.parameter({"place_share", "", 0.5, 1, c.place_share, "Of a swing, after which the foot is over its foothold."},
-              &c.place_share);
-  d.parameter({"sink_m_s", "m/s", 0, 2, c.sink_m_s, "How a late foot looks for the ground."}, &c.sink_m_s);
-  d.parameter({"place_weight", "", 0, 100, c.place_weight, "Of the meant step, beside the offset's 1."},
-              &c.place_weight);
-  d.parameter({"time_weight", "m2/s2", 0, 100, c.time_weight, "Of the meant time, beside the offset's 1."},
-              &c.time_weight);
-  d.parameter({"side_rate_share", "", 0.3, 1.5, c.side_rate_share, "Rate of falling sideways, of that along."},
-              &c.side_rate_share);
-  d.parameter({"trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured."},
-              &c.trust_per_s);
-  d.parameter({"both_trust_per_s", "1/s", 0, 1000, c.both_trust_per_s, "The same while both feet bear."},
-              &c.both_trust_per_s);
-  d.parameter({"by_load", "", 0, 1, c.by_load, "How far the feet's loads decide which one's measured xi counts."},
-              &c.by_load);
-  d.parameter({"edge_share", "", 0, 2, c.edge_share, "Of the measured pressure across, for where xi will be."},
-              &c.edge_share);
-  d.parameter({"ankle_gain", "", 0, 20, c.ankle_gain, "Shift of the pressure per error of xi."}, &c.ankle_gain);
-  d.parameter({"shift_x_m", "m", -0.1, 0.1, c.shift_x_m, "Where the pressure is meant to be, before a foot's frame."},
-              &c.shift_x_m);
-  d.parameter({"trim_per_s", "1/s", 0, 10, c.trim_per_s, "How fast the meant speed is corrected."}, &c.trim_per_s);
-  d.parameter({"trim_max_m_s", "m/s", 0, 1, c.trim_max_m_s, "Largest such correction."}, &c.trim_max_m_s);
-  d.parameter({"touch_N", "N", 1, 2000, c.touch_N, "Force of a foot that has landed."}, &c.touch_N);
-  d.parameter({"touch_s", "s", 0, 0.1, c.touch_s, "How long it must bear that."}, &c.touch_s);
-  d.parameter({"early_share", "", 0, 1, c.early_share, "Of a swing, before which no landing counts."}, &c.early_share);
-  d.parameter({"sway_gain", "", 0, 20, c.sway_gain, "Shift of the load per error of xi, before the first step."},
-              &c.sway_gain);
-  d.parameter({"sway_s", "s", 0, 5, c.sway_s, "Longest time from standing to the first step."}, &c.sway_s);
-  d.parameter({"speed_max_m_s2", "m/s2", 0.01, 10, c.speed_max_m_s2, "How fast the meant velocity changes."},
-              &c.speed_max_m_s2);
-  d.parameter({"brake_m_s2", "m/s2", 0.01, 10, c.brake_m_s2, "How fast it does once the robot shall stand."},
-              &c.brake_m_s2);
-  d.parameter({"sunk_m", "m", 0.001, 1, c.sunk_m, "How far it may sink before it rests on both feet."}, &c.sunk_m);
-  d.parameter({"rest_s", "s", 0, 10, c.rest_s, "Longest rest."}, &c.rest_s);
-  d.own({"heel_m", "m", 0.001, 0.5, c.sole.heel_m, "Of the sole that may bear, behind the foot's frame."},
-        &c.sole.heel_m);
-  d.own({"toe_m", "m", 0.001, 0.5, c.sole.toe_m, "Before it."}, &c.sole.toe_m);
+  d.tunable("step_s", "s", 0.1, 2, c.step_s, "Time of a step.");
+  d.tunable("step_min_s", "s", 0.05, 2, c.step_min_s, "Shortest step.");
+  d.tunable("step_max_s", "s", 0.1, 2, c.step_max_s, "Longest step.");
+  d.own("width_m", "m", 0, 1, c.width_m, "Between the feet, sideways.");
+  d.tunable("apart_min_m", "m", 0, 1, c.apart_min_m, "Least distance of the feet, sideways.");
+  d.tunable("apart_max_m", "m", 0, 1, c.apart_max_m, "Largest distance of the feet, sideways.");
+  d.tunable("reach_m", "m", 0, 1, c.reach_m, "Longest step.");
+  d.tunable("lift_m", "m", 0, 0.3, c.lift_m, "Height of a swing.");
+  d.tunable("place_share", "", 0.5, 1, c.place_share, "Of a swing, after which the foot is over its foothold.");
+  d.tunable("sink_m_s", "m/s", 0, 2, c.sink_m_s, "How a late foot looks for the ground.");
+  d.tunable("place_weight", "", 0, 100, c.place_weight, "Of the meant step, beside the offset's 1.");
+  d.tunable("time_weight", "m2/s2", 0, 100, c.time_weight, "Of the meant time, beside the offset's 1.");
+  d.tunable("side_rate_share", "", 0.3, 1.5, c.side_rate_share, "Rate of falling sideways, of that along.");
+  d.tunable("trust_per_s", "1/s", 0, 1000, c.trust_per_s, "Rate at which xi follows what is measured.");
+  d.tunable("both_trust_per_s", "1/s", 0, 1000, c.both_trust_per_s, "The same while both feet bear.");
+  d.tunable("by_load", "", 0, 1, c.by_load, "How far the feet's loads decide which one's measured xi counts.");
+  d.tunable("edge_share", "", 0, 2, c.edge_share, "Of the measured pressure across, for where xi will be.");
+  d.tunable("ankle_gain", "", 0, 20, c.ankle_gain, "Shift of the pressure per error of xi.");
+  d.tunable("shift_x_m", "m", -0.1, 0.1, c.shift_x_m, "Where the pressure is meant to be, before a foot's frame.");
+  d.tunable("trim_per_s", "1/s", 0, 10, c.trim_per_s, "How fast the meant speed is corrected.");
+  d.tunable("trim_max_m_s", "m/s", 0, 1, c.trim_max_m_s, "Largest such correction.");
+  d.tunable("touch_N", "N", 1, 2000, c.touch_N, "Force of a foot that has landed.");
+  d.tunable("touch_s", "s", 0, 0.1, c.touch_s, "How long it must bear that.");
+  d.tunable("early_share", "", 0, 1, c.early_share, "Of a swing, before which no landing counts.");
+  d.tunable("sway_gain", "", 0, 20, c.sway_gain, "Shift of the load per error of xi, before the first step.");
+  d.tunable("sway_s", "s", 0, 5, c.sway_s, "Longest time from standing to the first step.");
+  d.tunable("speed_max_m_s2", "m/s2", 0.01, 10, c.speed_max_m_s2, "How fast the meant velocity changes.");
+  d.tunable("brake_m_s2", "m/s2", 0.01, 10, c.brake_m_s2, "How fast it does once the robot shall stand.");
+  d.tunable("sunk_m", "m", 0.001, 1, c.sunk_m, "How far it may sink before it rests on both feet.");
+  d.tunable("rest_s", "s", 0, 10, c.rest_s, "Longest rest.");
+  d.own("heel_m", "m", 0.001, 0.5, c.sole.heel_m, "Of the sole that may bear, behind the foot's frame.");
+  d.own("toe_m", "m", 0.001, 0.5, c.sole.toe_m, "Before it.");
   declare_kick(d);
 }
 
 void DcmWalk::declare_kick(const FittedDeclaration& d) {
   KickSwing::Config& c = plan_config_.kick;
-  d.own({"kick.ball_radius_m", "m", 0.02, 0.3, c.ball_radius_m, "Of the ball that it kicks."}, &c.ball_radius_m);
-  d.own({"kick.tip_m", "m", 0, 0.5, c.tip_m, "How far the tip of a foot is before its frame."}, &c.tip_m);
-  d.parameter({"kick.strike_s", "s", 0.05, 1, c.strike_s, "From lift-off to the strike."}, &c.strike_s);
-  d.parameter({"kick.after_s", "s", 0.02, 1, c.after_s, "Least time from there to the landing."}, &c.after_s);
-  d.parameter({"kick.step_s", "s", 0.1, 2, c.step_s, "Time of the step that kicks."}, &c.step_s);
-  d.parameter(
-      {"kick.swing_s_per_m_s", "s2/m", 0, 1, c.swing_s_per_m_s, "Least time to the strike, by the foot's speed."},
-      &c.swing_s_per_m_s);
-  d.parameter({"kick.follow_m", "m", 0, 0.5, c.follow_m, "How far the foot goes on beyond the strike, forward."},
-              &c.follow_m);
-  d.parameter({"kick.lead_s", "s", 0, 0.1, c.lead_s, "How far the reference is ahead, for the lag of the leg."},
-              &c.lead_s);
-  d.parameter({"kick.height_m", "m", 0, 0.2, c.height_m, "Of the sole at the strike."}, &c.height_m);
-  d.parameter({"kick.near_m", "m", -0.5, 0.5, c.near_m, "Where the foot may be at the strike, at least."}, &c.near_m);
-  d.parameter({"kick.far_m", "m", -0.5, 0.5, c.far_m, "Likewise, at most."}, &c.far_m);
-  d.parameter({"kick.inside_m", "m", 0, 1, c.inside_m, "Likewise to the side of the other foot, at least."},
-              &c.inside_m);
-  d.parameter({"kick.outside_m", "m", 0, 1, c.outside_m, "Likewise, at most."}, &c.outside_m);
+  d.own("kick.ball_radius_m", "m", 0.02, 0.3, c.ball_radius_m, "Of the ball that it kicks.");
+  d.own("kick.tip_m", "m", 0, 0.5, c.tip_m, "How far the tip of a foot is before its frame.");
+  d.tunable("kick.strike_s", "s", 0.05, 1, c.strike_s, "From lift-off to the strike.");
+  d.tunable("kick.after_s", "s", 0.02, 1, c.after_s, "Least time from there to the landing.");
+  d.tunable("kick.step_s", "s", 0.1, 2, c.step_s, "Time of the step that kicks.");
+  d.tunable("kick.swing_s_per_m_s", "s2/m", 0, 1, c.swing_s_per_m_s, "Least time to the strike, by the foot's speed.");
+  d.tunable("kick.follow_m", "m", 0, 0.5, c.follow_m, "How far the foot goes on beyond the strike, forward.");
+  d.tunable("kick.lead_s", "s", 0, 0.1, c.lead_s, "How far the reference is ahead, for the lag of the leg.");
+  d.tunable("kick.height_m", "m", 0, 0.2, c.height_m, "Of the sole at the strike.");
+  d.tunable("kick.near_m", "m", -0.5, 0.5, c.near_m, "Where the foot may be at the strike, at least.");
+  d.tunable("kick.far_m", "m", -0.5, 0.5, c.far_m, "Likewise, at most.");
+  d.tunable("kick.inside_m", "m", 0, 1, c.inside_m, "Likewise to the side of the other foot, at least.");
+  d.tunable("kick.outside_m", "m", 0, 1, c.outside_m, "Likewise, at most.");
 }
 
 void DcmWalk::declare_signals(Declaration& d) {

@@ -58,10 +58,8 @@ LegInverse::Angles LegInverse::angles(const Vec3& ankle_m, double yaw_rad, doubl
 void LegGains::declare(const FittedDeclaration& d) {
   for (std::size_t i = 0; i < leg_joints; ++i) {
     const std::string name = leg_joint_names[i];
-    d.parameter({name + ".kp_Nm_per_rad", "Nm/rad", 0, 20000, kp_Nm_per_rad[i], "Torque per position error."},
-                &kp_Nm_per_rad[i]);
-    d.parameter({name + ".kd_Nms_per_rad", "Nm s/rad", 0, 2000, kd_Nms_per_rad[i], "Torque per velocity error."},
-                &kd_Nms_per_rad[i]);
+    d.tunable(name + ".kp_Nm_per_rad", "Nm/rad", 0, 20000, kp_Nm_per_rad[i], "Torque per position error.");
+    d.tunable(name + ".kd_Nms_per_rad", "Nm s/rad", 0, 2000, kd_Nms_per_rad[i], "Torque per velocity error.");
   }
 }
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
-#include <utility>
 
 #include "kadans/control/control_object.h"
 
@@ -37,14 +37,17 @@ class FittedDeclaration {
   FittedDeclaration(Declaration& declaration, const Similarity& similarity) noexcept
       : declaration_(&declaration), similarity_(similarity) {}
 
-  // `initial` is the default of the other robot, and becomes this one's. The range is as it is said.
-  void parameter(Parameter parameter, double* value) const {
-    const auto [min, max] = std::pair{parameter.min, parameter.max};
-    parameter.initial = std::clamp(parameter.initial * similarity_.of(parameter.unit), min, max);
-    declaration_->parameter(std::move(parameter), value);
+  // `value` is the default of the other robot, and becomes this one's. The range is as it is said.
+  void tunable(const std::string& name, const std::string& unit, double min, double max, double& value,
+               const std::string& doc) const {
+    const double fitted = std::clamp(value * similarity_.of(unit), min, max);
+    declaration_->parameter({name, unit, min, max, fitted, doc}, &value);
   }
-  // `initial` is this robot's already.
-  void own(Parameter parameter, double* value) const { declaration_->parameter(std::move(parameter), value); }
+  // `value` is this robot's already.
+  void own(const std::string& name, const std::string& unit, double min, double max, double& value,
+           const std::string& doc) const {
+    declaration_->tunable(name, unit, min, max, value, doc);
+  }
 
  private:
   Declaration* declaration_;

@@ -28,12 +28,11 @@ StanceLeg::StanceLeg(const ObjectSetup& setup)
 
 void StanceLeg::declare(Declaration& d) {
   Config& c = config_;
-  d.parameter({"rise_s", "s", 0, 1, c.rise_s, "Time in which its torques rise after the start."}, &c.rise_s);
-  d.parameter({"pressure_x_m", "m", -0.5, 0.5, c.pressure_x_m, "Centre of pressure, forward of the foot's frame."},
-              &c.pressure_x_m);
+  d.tunable("rise_s", "s", 0, 1, c.rise_s, "Time in which its torques rise after the start.");
+  d.tunable("pressure_x_m", "m", -0.5, 0.5, c.pressure_x_m, "Centre of pressure, forward of the foot's frame.");
   c.trunk.declare(d, TrunkRighting::Leans::anyhow, {2000, 200});
-  d.parameter({"grip", "", 0, 2, c.grip, "Most of the force along the ground, per weight."}, &c.grip);
-  d.parameter({"sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below the foot's frame."}, &c.sole_m);
+  d.tunable("grip", "", 0, 2, c.grip, "Most of the force along the ground, per weight.");
+  d.tunable("sole_m", "m", 0, 0.5, c.sole_m, "How far the sole is below the foot's frame.");
   declare_signals(d);
 }
 
