@@ -16,7 +16,7 @@ WorldConfig read(const std::string& entries) {
   WorldConfig world;
   Problems problems("file");
   const std::string text = "{\"world\": [" + entries + "]}";
-  read_fields(parse_json(text, "file"), problems, [&](Fields& f) { world_fields(f, world, problems); });
+  read_fields(parse_json(text, "file"), problems, [&](Fields& f) { world_fields(f, world); });
   problems.throw_if_any();
   return world;
 }

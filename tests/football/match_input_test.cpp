@@ -246,9 +246,8 @@ TEST_CASE(
 TEST_CASE("The shipped schema of match files is what their reader says, and the shipped matches keep to it") {
   using namespace kadans::schema_checks;
   MatchConfig match;
-  kadans::Problems problems("");
   const std::string schema = kadans::json_schema(kadans::describe_fields([&](kadans::Fields& f) {
-                                                   kadans::InputObject object(f, problems);
+                                                   kadans::InputObject object(f);
                                                    match_fields(object, match);
                                                  }),
                                                  "Match");

@@ -22,7 +22,6 @@
 namespace kadans {
 
 class Fields;
-class Problems;
 
 class InputObject {
  public:
@@ -32,7 +31,7 @@ class InputObject {
   };
   using Read = std::function<void(InputObject&)>;
 
-  InputObject(Fields& fields, Problems& problems) noexcept : fields_(&fields), problems_(&problems) {}
+  explicit InputObject(Fields& fields) noexcept : fields_(&fields) {}
 
   // What is not in the file keeps its value. True: it was there and right.
   bool number(std::string_view name, double& value, Range range, std::string_view doc, bool required = false);
@@ -58,7 +57,6 @@ class InputObject {
 
  private:
   Fields* fields_;
-  Problems* problems_;
 };
 
 // Throws InputError. Where a file is based on another one, that one is read first, so that its mistakes have their own

@@ -184,7 +184,7 @@ std::vector<Fields> Fields::open(FieldInfo::Kind kind, std::string_view name, st
   std::vector<Fields> children;
   if (value_ == nullptr) {
     FieldInfo& field = described_->fields.back();
-    children.emplace_back(kind == FieldInfo::Kind::object ? field : field.fields.back());
+    children.emplace_back(kind == FieldInfo::Kind::object ? field : field.fields.back(), *problems_);
     return children;
   }
   if (given == nullptr) return children;

@@ -83,7 +83,7 @@ class Fields {
  public:
   // The object of a whole file.
   Fields(const JsonValue& value, Problems& problems) : value_(&value), problems_(&problems) {}
-  explicit Fields(FieldInfo& described) : described_(&described) {}
+  Fields(FieldInfo& described, Problems& problems) : problems_(&problems), described_(&described) {}
 
   bool number(std::string_view name, double& value, NumberRange range, std::string_view doc,
               Need need = Need::optional);
@@ -149,6 +149,16 @@ class Fields {
   std::string path(std::string_view name) const;  // "plant.drives["*_knee"].viscous_Nms_per_rad"
   const std::string& path() const noexcept { return path_; }
 
+  // Mistakes that the fields together make: of a field, told at its value, of which something MUST be; of the whole
+  // object; or as it is told.
+  void refuse(std::string_view name, const std::string& what) const { refuse(place(name), path(name) + what); }
+  void refuse(std::string_view name, double value, const std::string& must) const {
+    refuse(name, " is " + number_text(value) + ", must be " + must);
+  }
+  void refuse(const std::string& what) const { refuse(place(), path_ + what); }
+  void refuse(TextPlace place, const std::string& message) const { problems_->add(place, message); }
+  Problems& problems() const noexcept { return *problems_; }
+
   // Keys of this object that no field asks for are somebody else's.
   void leave_others() noexcept { any_key_ = true; }
   // After the last field: refuses the keys that no field asked for.
@@ -202,7 +212,8 @@ void read_fields(const JsonValue& value, Problems& problems, Read&& read) {
 template <typename Read>
 FieldInfo describe_fields(Read&& read) {
   FieldInfo info;
-  Fields fields(info);
+  Problems problems("");  // of a description there are none
+  Fields fields(info, problems);
   read(fields);
   return info;
 }

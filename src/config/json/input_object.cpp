@@ -34,7 +34,7 @@ bool InputObject::object(std::string_view name, std::string_view doc, const Read
   return fields_->object(
       name, doc,
       [&](Fields& inner) {
-        InputObject object(inner, *problems_);
+        InputObject object(inner);
         read(object);
       },
       need(required));
@@ -44,7 +44,7 @@ bool InputObject::list(std::string_view name, std::string_view doc, const Read& 
   return fields_->list(
       name, {}, doc,
       [&](Fields& inner) {
-        InputObject object(inner, *problems_);
+        InputObject object(inner);
         read(object);
       },
       need(required));
@@ -54,21 +54,21 @@ bool InputObject::reading() const noexcept { return fields_->reading(); }
 
 bool InputObject::path(std::string_view name, std::string& value, std::string_view doc, bool required) {
   return fields_->string(name, value, doc, need(required)) &&
-         !resolve_file_or_folder(value, fields_->place(name), fields_->path(name), *problems_).empty();
+         !resolve_file_or_folder(value, fields_->place(name), fields_->path(name), fields_->problems()).empty();
 }
 
 bool InputObject::is_file(const std::string& path) const {
   std::error_code ignored;
-  return std::filesystem::is_regular_file(resolve(path, problems_->file()), ignored);
+  return std::filesystem::is_regular_file(resolve(path, fields_->problems().file()), ignored);
 }
 
 void InputObject::refuse(std::string_view name, const std::string& message) {
-  if (reading()) problems_->add(fields_->place(name), message);
+  fields_->refuse(fields_->place(name), message);
 }
 
 InputProblem InputObject::place(std::string_view name) const {
-  const TextPlace at = reading() ? fields_->place(name) : TextPlace{};
-  return {.file = problems_->file(), .line = at.line, .column = at.column, .message = {}};
+  const TextPlace at = fields_->place(name);
+  return {.file = fields_->problems().file(), .line = at.line, .column = at.column, .message = {}};
 }
 
 void read_input_object(const std::filesystem::path& file, const InputObject::Read& read) {
@@ -80,7 +80,7 @@ void read_input_text(std::string_view text, const std::filesystem::path& file, c
   if (!json.bases.empty()) read_input_object(json.bases.front(), read);
   Problems problems(file.string());
   read_fields(json.value, problems, [&](Fields& fields) {
-    InputObject object(fields, problems);
+    InputObject object(fields);
     read(object);
   });
   problems.throw_if_any();

@@ -9,7 +9,7 @@
 
 namespace kadans {
 
-void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& problems, Need need_scenarios) {
+void experiment_fields(Fields& f, ExperimentConfig& experiment, Need need_scenarios) {
   std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
   f.string("based_on", base, "another plan; this file says only what is different");
@@ -19,8 +19,9 @@ void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& proble
   f.strings("scenarios", scenarios, {1, 1000}, "files, from the project root; the cases use them in turn",
             need_scenarios);
   for (const PlacedName& scenario : scenarios) {
-    experiment.scenarios.push_back(
-        {scenario.name, resolve_file(scenario.name, scenario.place, "scenarios", problems).string(), scenario.place});
+    experiment.scenarios.push_back({scenario.name,
+                                    resolve_file(scenario.name, scenario.place, "scenarios", f.problems()).string(),
+                                    scenario.place});
   }
   f.integer("seed", experiment.seed, {0, std::numeric_limits<std::uint64_t>::max()},
             "seed of the sample and of the seeds of all runs");
@@ -28,12 +29,12 @@ void experiment_fields(Fields& f, ExperimentConfig& experiment, Problems& proble
             "the sample also chooses what the scenarios randomise (default: each run's seed draws it)");
   f.map("vary", "quantities that differ from case to case, by a pattern of their names", [&](Fields& e) {
     ExperimentAxis axis{.variation = {.pattern = {e.key(), e.key_place()}, .distribution = {}}};
-    distribution_fields(e, axis.variation.distribution, problems);
+    distribution_fields(e, axis.variation.distribution);
     e.integer("steps", axis.steps, {1, 10'000},
               "number of points in a grid, including both ends; not for values, each of which is a point");
     if (e.reading()) experiment.vary.push_back(std::move(axis));
   });
-  metrics_fields(f, experiment.metrics, problems);
+  metrics_fields(f, experiment.metrics);
 }
 
 void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, Problems& problems) {
@@ -54,7 +55,7 @@ std::vector<MetricConfig> read_metrics(const std::string& file) {
   if (member == nullptr) problems.add(json.place, "there are no metrics in this file");
   JsonValue only{.kind = JsonValue::Kind::object, .place = json.place};
   if (member != nullptr) only.members.push_back(*member);
-  read_fields(only, problems, [&](Fields& f) { metrics_fields(f, metrics, problems); });
+  read_fields(only, problems, [&](Fields& f) { metrics_fields(f, metrics); });
   problems.throw_if_any();
   return metrics;
 }
@@ -68,22 +69,21 @@ void placed_string(Fields& f, const char* key, PlacedName& name, const char* doc
   name.place = f.place(key);
 }
 
-void verify(const Fields& f, const SweepPlan& plan, Problems& problems) {
+void verify(const Fields& f, const SweepPlan& plan) {
   if (plan.sampling != Sampling::grid && plan.cases == 0)
-    problems.add(f.place("cases"),
-                 "cases is missing: how many runs a " + std::string(name(plan.sampling)) + " sample has");
+    f.refuse("cases", " is missing: how many runs a " + std::string(name(plan.sampling)) + " sample has");
   if (plan.sampling == Sampling::grid && plan.vary.empty())
-    problems.add(f.place("vary"), "vary is missing: a grid needs something to vary");
+    f.refuse("vary", " is missing: a grid needs something to vary");
   if (plan.sampling == Sampling::grid && plan.sample_randomise)
-    problems.add(f.place("sample_randomise"), "sample_randomise: a grid varies only what vary names");
-  verify_metric(plan.first_try, plan, problems);
-  verify_metric(plan.time, plan, problems);
-  verify_metric(plan.worst, plan, problems);
-  verify_metric(plan.heat_map.metric, plan, problems);
+    f.refuse("sample_randomise", ": a grid varies only what vary names");
+  verify_metric(plan.first_try, plan, f.problems());
+  verify_metric(plan.time, plan, f.problems());
+  verify_metric(plan.worst, plan, f.problems());
+  verify_metric(plan.heat_map.metric, plan, f.problems());
 }
 
-void plan_fields(Fields& f, SweepPlan& plan, Problems& problems) {
-  experiment_fields(f, plan, problems);
+void plan_fields(Fields& f, SweepPlan& plan) {
+  experiment_fields(f, plan);
   f.choice("sampling", plan.sampling, sampling_names, "how the points are chosen");
   f.integer("cases", plan.cases, {0, sweep_cases_max},
             "number of runs of all scenarios together; a grid without it runs each point once, with it uses the points "
@@ -100,7 +100,7 @@ void plan_fields(Fields& f, SweepPlan& plan, Problems& problems) {
     placed_string(e, "metric", plan.heat_map.metric,
                   "metric whose mean is drawn (default: the share of runs that passed)");
   });
-  if (f.reading()) verify(f, plan, problems);
+  if (f.reading()) verify(f, plan);
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ SweepPlan read_sweep_plan_text(const std::string& text, const std::string& file)
   const BasedJson json = parse_based_json(text, file);
   if (!json.bases.empty()) (void)read_sweep_plan(json.bases.front());
   Problems problems(file);
-  read_fields(json.value, problems, [&](Fields& f) { plan_fields(f, plan, problems); });
+  read_fields(json.value, problems, [&](Fields& f) { plan_fields(f, plan); });
   problems.throw_if_any();
   return plan;
 }
@@ -124,13 +124,12 @@ SweepPlan read_sweep_plan(const std::filesystem::path& file) {
 
 FieldInfo describe_sweep_plan() {
   SweepPlan plan;
-  Problems problems("");
-  return describe_fields([&](Fields& f) { plan_fields(f, plan, problems); });
+  return describe_fields([&](Fields& f) { plan_fields(f, plan); });
 }
 
 namespace {
 
-void parameter_fields(Fields& e, bool of_program, TunedParameter& parameter, Problems& problems) {
+void parameter_fields(Fields& e, bool of_program, TunedParameter& parameter) {
   double min = 0, max = 0, start = 0;
   bool log = false;
   e.number("min", min, {}, "least value, in the parameter's unit", Need::required);
@@ -140,41 +139,38 @@ void parameter_fields(Fields& e, bool of_program, TunedParameter& parameter, Pro
     parameter.start = start;
   if (!e.reading()) return;
   parameter.range = {.kind = log ? Distribution::Kind::log_uniform : Distribution::Kind::uniform, .of = {min, max}};
-  if (!(min < max)) problems.add(e.place("max"), e.path("max") + " must be above min, " + number_text(min));
-  if (log && !(min > 0)) problems.add(e.place("min"), e.path("min") + " must be above 0 for log");
-  if (parameter.start && !(start >= min && start <= max))
-    problems.add(e.place("start"), e.path("start") + " must be between min and max");
+  if (!(min < max)) e.refuse("max", " must be above min, " + number_text(min));
+  if (log && !(min > 0)) e.refuse("min", " must be above 0 for log");
+  if (parameter.start && !(start >= min && start <= max)) e.refuse("start", " must be between min and max");
   const std::string& name = parameter.pattern.name;
   if (of_program) {
-    if (!parameter.start)
-      problems.add(e.place("start"), e.path("start") + " is missing: a program has no configuration");
+    if (!parameter.start) e.refuse("start", " is missing: a program has no configuration");
     return;
   }
   if (!name.starts_with("control.") || name.ends_with("_scale") || name.find('.', 8) == std::string::npos ||
       name.substr(8, name.find('.', 8) - 8).find('*') != std::string::npos) {
-    problems.add(parameter.pattern.place,
-                 in_quotes(name) +
-                     " cannot be written to a robot's configuration: it must be control.OBJECT.PARAMETER, "
-                     "such as control.posture.*_knee.kp_Nm_per_rad");
+    e.refuse(parameter.pattern.place,
+             in_quotes(name) +
+                 " cannot be written to a robot's configuration: it must be control.OBJECT.PARAMETER, "
+                 "such as control.posture.*_knee.kp_Nm_per_rad");
   }
 }
 
 // What a program scores has nothing of scenarios.
-void verify_program(const Fields& f, const TunePlan& plan, Problems& problems) {
+void verify_program(const Fields& f, const TunePlan& plan) {
   if (plan.program.empty()) {
-    if (plan.scenarios.empty())
-      problems.add(f.place("scenarios"), "scenarios is missing: what is scored, if it is not a program");
-    if (!plan.check_program.empty()) problems.add(f.place("check_program"), "check_program needs program");
-    verify_metric(plan.score, plan, problems);
+    if (plan.scenarios.empty()) f.refuse("scenarios", " is missing: what is scored, if it is not a program");
+    if (!plan.check_program.empty()) f.refuse("check_program", " needs program");
+    verify_metric(plan.score, plan, f.problems());
     return;
   }
   for (const char* key : {"scenarios", "vary", "metrics", "runs", "check_runs", "sample_randomise"}) {
-    if (f.has(key)) problems.add(f.place(key), std::string(key) + " means nothing beside program");
+    if (f.has(key)) f.refuse(key, " means nothing beside program");
   }
 }
 
-void plan_fields(Fields& f, TunePlan& plan, Problems& problems) {
-  experiment_fields(f, plan, problems, Need::optional);
+void plan_fields(Fields& f, TunePlan& plan) {
+  experiment_fields(f, plan, Need::optional);
   f.strings(
       "program", plan.program, {1, 100},
       "in place of scenarios: a program and its arguments; NAME=VALUE of each parameter follows them, and the last "
@@ -183,7 +179,7 @@ void plan_fields(Fields& f, TunePlan& plan, Problems& problems) {
             "the program that judges the values found, in the same way (default: the same program)");
   f.map("tune", "parameters to be tuned, by a pattern of their names", [&](Fields& e) {
     TunedParameter parameter{.pattern = {e.key(), e.key_place()}, .range = {}, .start = {}};
-    parameter_fields(e, !plan.program.empty(), parameter, problems);
+    parameter_fields(e, !plan.program.empty(), parameter);
     if (e.reading()) plan.tune.push_back(std::move(parameter));
   });
   f.integer("runs", plan.runs, {1, 10'000},
@@ -198,8 +194,8 @@ void plan_fields(Fields& f, TunePlan& plan, Problems& problems) {
   f.boolean("greatest", plan.greatest, "the score is maximised instead");
   f.number("failed_score", plan.failed_score, {}, "score of a run that did not pass or has no value", Need::required);
   if (!f.reading()) return;
-  if (plan.tune.empty()) problems.add(f.place("tune"), "tune is missing: the parameters that are sought");
-  verify_program(f, plan, problems);
+  if (plan.tune.empty()) f.refuse("tune", " is missing: the parameters that are sought");
+  verify_program(f, plan);
 }
 
 }  // namespace
@@ -208,7 +204,7 @@ TunePlan read_tune_plan_text(const std::string& text, const std::string& file) {
   TunePlan plan;
   plan.file = file;
   Problems problems(file);
-  read_fields(parse_based_json(text, file).value, problems, [&](Fields& f) { plan_fields(f, plan, problems); });
+  read_fields(parse_based_json(text, file).value, problems, [&](Fields& f) { plan_fields(f, plan); });
   problems.throw_if_any();
   return plan;
 }
@@ -219,8 +215,7 @@ TunePlan read_tune_plan(const std::filesystem::path& file) {
 
 FieldInfo describe_tune_plan() {
   TunePlan plan;
-  Problems problems("");
-  return describe_fields([&](Fields& f) { plan_fields(f, plan, problems); });
+  return describe_fields([&](Fields& f) { plan_fields(f, plan); });
 }
 
 }  // namespace kadans

@@ -21,10 +21,9 @@ struct InputEvent {
 };
 
 // The fields of one input, whose events `rise` and `fall` are; with an event of either it goes to `all`.
-void input_event_fields(Fields& f, InputEvent event, const char* rise, const char* fall, std::vector<InputEvent>& all,
-                        Problems& problems);
+void input_event_fields(Fields& f, InputEvent event, const char* rise, const char* fall, std::vector<InputEvent>& all);
 // An entry of a map of buttons: "button_1": { "press": "kick", "release": "rest" }.
-void button_fields(Fields& entry, std::vector<InputEvent>& all, Problems& problems);
+void button_fields(Fields& entry, std::vector<InputEvent>& all);
 inline constexpr const char* buttons_doc = "events that buttons send to behaviors: button_1 and so on";
 
 // Those of `all`, and of `own` where both are about the same input.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t plugins_max = 64;
 
-void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
+void engine_fields(Fields& f, EngineSettings& engine) {
   f.number("control_period_s", engine.control_period_s, {1e-5, 1, "s"}, "period of the control engine");
   f.number("behavior_period_s", engine.behavior_period_s, {1e-5, 10, "s"},
            "period of the behavior engine, a whole multiple of control_period_s");
@@ -27,13 +27,12 @@ void engine_fields(Fields& f, EngineSettings& engine, Problems& problems) {
             "largest number of commands applied in one control tick; the largest transaction must pass");
   f.number("command_age_max_s", engine.command_age_max_s, {1e-3, 60, "s"}, "age above which a command is refused");
   if (f.reading() && engine.behavior_divisor() == 0) {
-    problems.add(f.place("behavior_period_s"),
-                 f.path("behavior_period_s") + " is " + number_text(engine.behavior_period_s) +
-                     ", must be a whole multiple of control_period_s, " + number_text(engine.control_period_s) + " s");
+    f.refuse("behavior_period_s", engine.behavior_period_s,
+             "a whole multiple of control_period_s, " + number_text(engine.control_period_s) + " s");
   }
 }
 
-void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
+void safe_fields(Fields& f, RobotConfig& config) {
   f.string("pose", config.safe.pose, "pose to which the robot moves", Need::required);
   f.number("after_s", config.safe.after_s, {0, 60, "s"},
            "time for which the last set-points are held before the motion");
@@ -42,20 +41,20 @@ void safe_fields(Fields& f, RobotConfig& config, Problems& problems) {
     return;  // without a model no pose is read
   const std::vector<std::string> names = names_of(config.poses);
   if (std::find(names.begin(), names.end(), config.safe.pose) != names.end()) return;
-  problems.add_unknown(f.place("pose"), "pose", config.safe.pose, names);
+  f.problems().add_unknown(f.place("pose"), "pose", config.safe.pose, names);
 }
 
 const std::vector<std::string> axis_names{joystick_axis_names.begin(), joystick_axis_names.end()};
 constexpr std::uint64_t axis_code_max = 63;
 constexpr NumberRange any_value{-2147483648.0, 2147483647.0, ""};
 
-void axis_fields(Fields& f, JoystickAxis& axis, Problems& problems) {
+void axis_fields(Fields& f, JoystickAxis& axis) {
   f.integer("code", axis.code, {0, axis_code_max}, "the kernel's number of the axis, as `evtest` shows it");
   f.boolean("inverted", axis.inverted, "the axis counts in the opposite direction");
   f.number("min", axis.min, any_value, "value at one end of the axis (default: what the device reports)");
   f.number("max", axis.max, any_value, "value at the other end of the axis");
   if (f.has("min") == f.has("max") && (!f.has("min") || axis.min < axis.max)) return;
-  problems.add(f.place("min"), f.path() + ": min and max go together, and min is less");
+  f.refuse(f.place("min"), f.path() + ": min and max go together, and min is less");
 }
 
 }  // namespace
@@ -71,11 +70,11 @@ void RobotReader::read(Fields& f) {
   f.list("transmissions", {0, max_joints}, "what stands between drives and joints, as in ros2_control",
          [&](Fields& e) { transmission(e); });
   f.object("engine", "periods and bounds of the engines",
-           [&](Fields& engine) { engine_fields(engine, config_.engine, problems_); });
+           [&](Fields& engine) { engine_fields(engine, config_.engine); });
   f.map("poses", "positions in radians by joint pattern, for behaviors and the start", [&](Fields& e) { pose(e); });
   f.map("behaviors", "parameters of behaviors on this robot, by behavior", [&](Fields& e) { behavior(e); });
   f.object("safe", "the posture to which the robot moves when a behavior has failed",
-           [&](Fields& safe) { safe_fields(safe, config_, problems_); });
+           [&](Fields& safe) { safe_fields(safe, config_); });
   f.object("plant", "what a model of the robot has in addition to its links", [&](Fields& e) { plant(e); });
   f.map("sensors", "sensors in addition to joints, IMU and feet, by name", [&](Fields& e) { sensor(e); });
   for (auto* const channels : {&config_.estimate.channels, &config_.safety.channels})
@@ -83,11 +82,11 @@ void RobotReader::read(Fields& f) {
   f.object("start", "the pose and place in which the robot starts", [&](Fields& e) { start(e); });
   f.object("joystick", "a joystick that behaviors read as s.joystick", [&](Fields& e) { joystick(e); });
   f.object("estimate", "settings of the estimator", [&](Fields& e) { estimate(e); });
-  f.object(
-      "supervisor", "what decides what is played, and what it knows of the world (docs/supervisor.md)", [&](Fields& e) {
-        const std::filesystem::path folder = std::filesystem::path(config_.file).parent_path().filename();
-        supervisor_fields(e, config_.supervisor, {.project_file = config_.file, .robot = folder.string()}, problems_);
-      });
+  f.object("supervisor", "what decides what is played, and what it knows of the world (docs/supervisor.md)",
+           [&](Fields& e) {
+             const std::filesystem::path folder = std::filesystem::path(config_.file).parent_path().filename();
+             supervisor_fields(e, config_.supervisor, {.project_file = config_.file, .robot = folder.string()});
+           });
   f.object("record", "what is recorded", [&](Fields& record) { record_fields(record, config_.record); });
   f.object("safety", "limits and reactions of the safety layer", [&](Fields& e) { safety(e); });
   f.object(
@@ -100,8 +99,8 @@ void RobotReader::load_model(Fields& f) {
   const std::filesystem::path file = resolve_file(urdf, f.place("urdf"), "urdf", problems_);
   if (file.empty()) return;
   if (file.extension() == ".xacro")
-    return problems_.add(f.place("urdf"), "urdf is xacro: expand it once, so that what runs is one file: 'xacro " +
-                                              shell_word(urdf) + " > FILE.urdf'");
+    return f.refuse("urdf", " is xacro: expand it once, so that what runs is one file: 'xacro " + shell_word(urdf) +
+                                " > FILE.urdf'");
   try {
     config_.model = read_urdf(file.string(), {.mesh_hull = mesh_hull}, &config_.urdf_warnings);
   } catch (const InputError& error) {
@@ -211,10 +210,9 @@ void RobotReader::joystick(Fields& f) {
     JoystickAxis scratch;
     const bool known = axis != joystick_axis_names.end();
     if (entry.reading() && !known) problems_.add_unknown(entry.key_place(), "axis", entry.key(), axis_names);
-    axis_fields(entry, known ? settings.axes[static_cast<std::size_t>(axis - joystick_axis_names.begin())] : scratch,
-                problems_);
+    axis_fields(entry, known ? settings.axes[static_cast<std::size_t>(axis - joystick_axis_names.begin())] : scratch);
   });
-  f.map("buttons", buttons_doc, [&](Fields& e) { button_fields(e, config_.input_events, problems_); });
+  f.map("buttons", buttons_doc, [&](Fields& e) { button_fields(e, config_.input_events); });
 }
 
 }  // namespace kadans

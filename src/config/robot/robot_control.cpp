@@ -136,7 +136,7 @@ void RobotReader::initial_sets(Fields& f) {
             "instead of initial_set, several control sets that share no joint");
   const std::vector<std::string> names = names_of(config_.sets);
   if (f.reading() && names.size() > max_control_sets) {
-    problems_.add(f.place("sets"), f.path("sets") + ": at most " + std::to_string(max_control_sets) + " control sets");
+    f.refuse("sets", ": at most " + std::to_string(max_control_sets) + " control sets");
     return;
   }
   SetMask initial = 0;
@@ -186,12 +186,11 @@ void RobotReader::object(Fields& f) {
     problems_.add_unknown(object.type.place, "type of control object", object.type.name, object_types_);
   }
   if (!object.name.empty() && object.name.find_first_of(".* ") != std::string::npos) {
-    problems_.add(f.place("name"),
-                  f.path("name") + ": " + in_quotes(object.name) + " must not contain '.', '*' or a space");
+    f.refuse("name", ": " + in_quotes(object.name) + " must not contain '.', '*' or a space");
   }
   const std::vector<std::string> names = names_of(config_.objects);
   if (std::find(names.begin(), names.end(), object.name) != names.end()) {
-    problems_.add(f.place("name"), f.path("name") + ": another control object is named " + in_quotes(object.name));
+    f.refuse("name", ": another control object is named " + in_quotes(object.name));
   }
   object_joints(patterns, object);
   config_.objects.push_back(std::move(object));

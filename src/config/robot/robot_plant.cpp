@@ -47,8 +47,7 @@ constexpr NumberRange sensor_position_m{-10, 10, "m"};
 // A plant type's list of fields, as one of the file's.
 class TypeFields final : public PlantFields {
  public:
-  TypeFields(Fields& fields, Problems& problems, std::span<const std::string> drives)
-      : fields_(fields), problems_(problems), drives_(drives) {}
+  TypeFields(Fields& fields, std::span<const std::string> drives) : fields_(fields), drives_(drives) {}
   void number(std::string_view name, double& value, Range range, std::string_view doc) override {
     fields_.number(name, value, {range.min, range.max, range.unit}, doc);
   }
@@ -62,19 +61,19 @@ class TypeFields final : public PlantFields {
   }
   void map(std::string_view name, const ReadEntry& read, std::string_view doc) override {
     fields_.map(name, doc, [&](Fields& entry) {
-      TypeFields fields(entry, problems_, drives_);
+      TypeFields fields(entry, drives_);
       read(fields, entry.key());
     });
   }
   bool reading() const noexcept override { return fields_.reading(); }
   std::span<const std::string> drives() const noexcept override { return drives_; }
   void refuse(std::string_view name, const std::string& why) override {
-    problems_.add(where(name), (given(name) ? fields_.path(name) : fields_.path()) + ": " + why);
+    fields_.refuse(where(name), (given(name) ? fields_.path(name) : fields_.path()) + ": " + why);
   }
   InputProblem place(std::string_view name) const override {
     if (!fields_.reading()) return {};
     const TextPlace at = where(name);
-    return {.file = problems_.file(), .line = at.line, .column = at.column, .message = {}};
+    return {.file = fields_.problems().file(), .line = at.line, .column = at.column, .message = {}};
   }
 
  private:
@@ -85,7 +84,6 @@ class TypeFields final : public PlantFields {
   }
 
   Fields& fields_;
-  Problems& problems_;
   std::span<const std::string> drives_;
 };
 
@@ -135,10 +133,10 @@ void RobotReader::transmission(Fields& f) {
   try {
     const Transmission made(settings);
     if (made.coupled() && !model.on_one_path(made.joints()[0], made.joints()[1]))
-      return problems_.add(f.place("joints"), f.path("joints") + ": one of two coupled joints must carry the other");
+      return f.refuse("joints", ": one of two coupled joints must carry the other");
     model.transmissions.push_back(made);
   } catch (const std::invalid_argument& error) {
-    return problems_.add(f.place(), f.path() + ": " + error.what());
+    return f.refuse(std::string(": ") + error.what());
   }
   drive_names_ = model.drive_names();
   default_drives(model.transmissions.back());
@@ -174,15 +172,13 @@ void RobotReader::drive(Fields& entry) {
   for (const std::size_t i : meant) {
     const DriveSettings& d = config_.plant.drives[i];
     if (config_.model.joints[i].passive() && d.torque_max_Nm > 0 && entry.has("torque_max_Nm")) {
-      return problems_.add(entry.place("torque_max_Nm"), entry.path("torque_max_Nm") + " gives a motor to joint '" +
-                                                             drive_names_[i] +
-                                                             "', which is passive (effort 0 in the URDF)");
+      return entry.refuse("torque_max_Nm",
+                          " gives a motor to joint '" + drive_names_[i] + "', which is passive (effort 0 in the URDF)");
     }
     if (!(d.knee_velocity_rad_s <= d.velocity_max_rad_s)) {
-      return problems_.add(entry.place("knee_velocity_rad_s"), entry.path("knee_velocity_rad_s") + " is " +
-                                                                   number_text(d.knee_velocity_rad_s) + ", joint '" +
-                                                                   drive_names_[i] + "' has velocity_max_rad_s " +
-                                                                   number_text(d.velocity_max_rad_s));
+      return entry.refuse("knee_velocity_rad_s", " is " + number_text(d.knee_velocity_rad_s) + ", joint '" +
+                                                     drive_names_[i] + "' has velocity_max_rad_s " +
+                                                     number_text(d.velocity_max_rad_s));
     }
   }
 }
@@ -270,8 +266,7 @@ void RobotReader::foot(Fields& f) {
   std::string name;
   f.string("name", name,
            "its name in behaviors, s.feet.NAME (default: of two without names left and right, else the link's)");
-  if (name.find('.') != std::string::npos)
-    problems_.add(f.place("name"), f.path("name") + ": a foot's name has no dot");
+  if (name.find('.') != std::string::npos) f.refuse("name", ": a foot's name has no dot");
   if (!have_model_) return;
   if (!foot.link.empty() && !config_.model.find_link(foot.link)) {
     problems_.add_unknown(f.place("link"), "link", foot.link, config_.model.link_names());
@@ -288,7 +283,7 @@ void RobotReader::name_feet(Fields& f) {
     if (foot.name.empty()) foot.name = !pair ? foot.link : i == 0 ? "left" : "right";
     for (std::size_t other = 0; other < i; ++other) {
       if (feet[other].name == foot.name || feet[other].link == foot.link)
-        problems_.add(f.place("feet"), f.path("feet") + ": two feet are '" + foot.name + "'");
+        f.refuse("feet", ": two feet are '" + foot.name + "'");
     }
   }
 }
@@ -304,7 +299,7 @@ void RobotReader::plant(Fields& f) {
   });
   f.object("imu", "inertial measurement unit on the base link", [&](Fields& e) { imu(e); });
   f.object("serial_imu", "an IMU on a serial line of its own, beside a bus with drives", [&](Fields& e) {
-    TypeFields fields(e, problems_, drive_names_);
+    TypeFields fields(e, drive_names_);
     config_.serial_imu.fields(fields);
   });
   if (config_.serial_imu.given()) {
@@ -343,7 +338,7 @@ void RobotReader::plant(Fields& f) {
   for (const auto& type : config_.plant_types) {
     if (!type->has_fields()) continue;
     f.object(type->name(), type->doc(), [&](Fields& e) {
-      TypeFields fields(e, problems_, drive_names_);
+      TypeFields fields(e, drive_names_);
       type->fields(fields);
     });
   }
@@ -378,7 +373,7 @@ void RobotReader::sensor(Fields& entry) {
                        {.of = InputEvent::Of::sensor,
                         .index = static_cast<std::uint32_t>(config_.plant.channels.size()),
                         .input = "sensors." + channel.name},
-                       "rise", "fall", config_.input_events, problems_);
+                       "rise", "fall", config_.input_events);
   });
   if (!entry.reading()) return;
   constexpr std::size_t longest = 32;
@@ -387,9 +382,7 @@ void RobotReader::sensor(Fields& entry) {
     problems_.add(entry.key_place(), "'" + channel.name +
                                          "' is no name of a sensor: letters, digits and '_', at most " +
                                          std::to_string(longest) + ", no digit first");
-  if (!(channel.min <= channel.max))
-    problems_.add(entry.place("max"), entry.path("max") + " is " + number_text(channel.max) +
-                                          ", must be at least min, " + number_text(channel.min));
+  if (!(channel.min <= channel.max)) entry.refuse("max", channel.max, "at least min, " + number_text(channel.min));
   if (config_.plant.channels.size() == max_channels)
     return problems_.add(entry.key_place(), "a robot has at most " + std::to_string(max_channels) + " sensors");
   if (channel.doc.empty()) channel.doc = "Sensor " + channel.name + ".";
@@ -431,9 +424,7 @@ void RobotReader::estimate(Fields& f) {
   f.number("contact_off_N", estimate.contact_off_N, {1e-3, 1e4, "N"},
            "a foot that bears less force is no longer in contact");
   if (f.reading() && !(estimate.contact_off_N <= estimate.contact_on_N)) {
-    problems_.add(f.place("contact_off_N"), f.path("contact_off_N") + " is " + number_text(estimate.contact_off_N) +
-                                                ", must be at most contact_on_N, " +
-                                                number_text(estimate.contact_on_N));
+    f.refuse("contact_off_N", estimate.contact_off_N, "at most contact_on_N, " + number_text(estimate.contact_on_N));
   }
   f.map("joints", "settings that differ for some joints, by joint pattern", [&](Fields& entry) {
     each_joint(entry, estimate.joint_velocity_cutoff_Hz, [&](double& cutoff_Hz) {
@@ -564,8 +555,8 @@ void RobotReader::limits(Fields& entry) {
 // Limits may only be narrower than the URDF's.
 bool RobotReader::within_urdf(const Fields& entry, const JointLimits& l, const Joint& joint) {
   const auto refuse_field = [&](const char* field, double urdf) {
-    problems_.add(entry.place(field), entry.path(field) + " goes beyond the URDF's " + number_text(urdf) +
-                                          " of joint '" + joint.name + "'; limits may only be narrowed");
+    entry.refuse(field, " goes beyond the URDF's " + number_text(urdf) + " of joint '" + joint.name +
+                            "'; limits may only be narrowed");
     return false;
   };
   if (!(l.lower_rad >= joint.lower_rad)) return refuse_field("lower_rad", joint.lower_rad);
@@ -575,9 +566,9 @@ bool RobotReader::within_urdf(const Fields& entry, const JointLimits& l, const J
   }
   if (!(l.effort_max_Nm <= joint.effort_max_Nm)) return refuse_field("effort_max_Nm", joint.effort_max_Nm);
   if (l.lower_rad <= l.upper_rad) return true;
-  problems_.add(entry.place("upper_rad"), entry.path() + ": lower_rad " + number_text(l.lower_rad) +
-                                              " is above upper_rad " + number_text(l.upper_rad) + " for joint '" +
-                                              joint.name + "'");
+  entry.refuse(entry.place("upper_rad"), entry.path() + ": lower_rad " + number_text(l.lower_rad) +
+                                             " is above upper_rad " + number_text(l.upper_rad) + " for joint '" +
+                                             joint.name + "'");
   return false;
 }
 
@@ -629,7 +620,7 @@ void RobotReader::safety(Fields& f) {
   f.number("damp_s", s.damp_s, {0, 60, "s"}, "time for which it damps before it is off");
   f.map("reactions", "what follows from a fault, by the fault's name", [&](Fields& entry) { reaction(entry); });
   if (f.reading() && !(s.thermal.ambient_C < s.thermal.warm_C && s.thermal.warm_C <= s.thermal.hot_C)) {
-    problems_.add(f.place("thermal"), f.path("thermal") + ": ambient_C < warm_C <= hot_C must hold");
+    f.refuse("thermal", ": ambient_C < warm_C <= hot_C must hold");
   }
   s.foot_joints.clear();
   for (const EstimateFoot& foot : config_.estimate.feet) {

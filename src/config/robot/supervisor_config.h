@@ -39,6 +39,6 @@ struct SupervisorConfig {
 };
 
 // `folders`: where the decisions and the behaviors are found.
-void supervisor_fields(Fields& f, SupervisorConfig& config, const PlayFolders& folders, Problems& problems);
+void supervisor_fields(Fields& f, SupervisorConfig& config, const PlayFolders& folders);
 
 }  // namespace kadans

@@ -21,9 +21,9 @@ constexpr std::array<Spread, 3> spreads{{
      "mean and standard deviation; the distribution is cut off at four standard deviations"},
 }};
 
-void verify(const Fields& f, const Spread& spread, const Distribution& distribution, Problems& problems) {
+void verify(const Fields& f, const Spread& spread, const Distribution& distribution) {
   const auto [low, high] = distribution.of;
-  const auto refuse = [&](const std::string& what) { problems.add(f.place(spread.key), f.path(spread.key) + what); };
+  const auto refuse = [&](const std::string& what) { f.refuse(spread.key, what); };
   if (spread.kind == Distribution::Kind::normal) {
     if (high < 0) refuse(": the standard deviation is " + number_text(high) + ", must not be negative");
     return;
@@ -72,7 +72,7 @@ double Distribution::at(double u) const noexcept {
   return 0;
 }
 
-void distribution_fields(Fields& f, Distribution& distribution, Problems& problems) {
+void distribution_fields(Fields& f, Distribution& distribution) {
   int given = 0;
   for (const Spread& spread : spreads) {
     std::array<double, 2> of{};
@@ -80,7 +80,7 @@ void distribution_fields(Fields& f, Distribution& distribution, Problems& proble
     ++given;
     distribution.kind = spread.kind;
     distribution.of = of;
-    verify(f, spread, distribution, problems);
+    verify(f, spread, distribution);
   }
   if (f.number_list("values", distribution.values, {1, 10'000}, {}, "one of these values; all are equally likely")) {
     ++given;
@@ -90,14 +90,13 @@ void distribution_fields(Fields& f, Distribution& distribution, Problems& proble
             "all quantities that the pattern matches have the same value (default: each has its own)");
   if (!f.reading() || given == 1) return;
   const bool tried = f.has("uniform") || f.has("log_uniform") || f.has("normal") || f.has("values");
-  if (given > 1 || !tried)
-    problems.add(f.place(), f.path() + " must have one of uniform, log_uniform, normal and values");
+  if (given > 1 || !tried) f.refuse(" must have one of uniform, log_uniform, normal and values");
 }
 
-void variation_fields(Fields& f, std::string_view name, std::vector<Variation>& variations, Problems& problems) {
+void variation_fields(Fields& f, std::string_view name, std::vector<Variation>& variations) {
   f.map(name, "quantities that each seed draws anew, by a pattern of their names", [&](Fields& e) {
     Variation variation{.pattern = {e.key(), e.key_place()}, .distribution = {}};
-    distribution_fields(e, variation.distribution, problems);
+    distribution_fields(e, variation.distribution);
     if (e.reading()) variations.push_back(std::move(variation));
   });
 }

@@ -29,7 +29,7 @@ struct Distribution {
 // The standard normal quantile, p in (0, 1) (Wichura, 1988, algorithm AS 241, PPND7; about seven digits).
 double normal_quantile(double p) noexcept;
 
-void distribution_fields(Fields& f, Distribution& distribution, Problems& problems);
+void distribution_fields(Fields& f, Distribution& distribution);
 
 // Quantities of a robot, chosen by a pattern over their names, and their distribution.
 struct Variation {
@@ -38,6 +38,6 @@ struct Variation {
 };
 
 // The members of "randomise": the keys are the patterns.
-void variation_fields(Fields& f, std::string_view name, std::vector<Variation>& variations, Problems& problems);
+void variation_fields(Fields& f, std::string_view name, std::vector<Variation>& variations);
 
 }  // namespace kadans

@@ -25,69 +25,62 @@ void list_fields(Fields& f, ScenarioCheck& check) {
 }
 
 // What each kind needs and what means nothing to it.
-void verify_kind(const Fields& f, const ScenarioCheck& check, Problems& problems) {
+void verify_kind(const Fields& f, const ScenarioCheck& check) {
   const bool clocked = check.kind == CheckKind::within || check.kind == CheckKind::settles;
   const auto& kind = check_kinds.at(static_cast<std::size_t>(check.kind));
   const auto unasked = [&](const char* key) {
-    if (f.has(key)) problems.add(f.place(key), f.path(key) + " means nothing to a check of kind " + in_quotes(kind));
+    if (f.has(key)) f.refuse(key, " means nothing to a check of kind " + in_quotes(kind));
   };
   if (clocked) {
-    if (!f.has("within_s"))
-      problems.add(f.place(), f.path() + " is of kind " + in_quotes(kind) + " and needs within_s");
-    if (check.kind == CheckKind::within && check.when.empty())
-      problems.add(f.place(), f.path() + " is of kind 'within' and needs when");
+    if (!f.has("within_s")) f.refuse(" is of kind " + in_quotes(kind) + " and needs within_s");
+    if (check.kind == CheckKind::within && check.when.empty()) f.refuse(" is of kind 'within' and needs when");
   } else {
     unasked("when");
     unasked("within_s");
   }
   if (check.kind == CheckKind::at_end && (f.has("from_s") || f.has("until_s"))) {
-    problems.add(f.place(f.has("from_s") ? "from_s" : "until_s"),
-                 f.path() + " is judged at the end, from_s and until_s mean nothing here");
+    f.refuse(f.place(f.has("from_s") ? "from_s" : "until_s"),
+             f.path() + " is judged at the end, from_s and until_s mean nothing here");
   }
 }
 
-void verify_demand(const Fields& f, const ScenarioCheck& check, Problems& problems) {
+void verify_demand(const Fields& f, const ScenarioCheck& check) {
   if (f.has("signal") == f.has("that")) {
-    problems.add(f.place(), f.path() + (f.has("that") ? " has both signal and that, must have one of them"
-                                                      : " needs a signal with min or max, or a condition in that"));
+    f.refuse(f.has("that") ? " has both signal and that, must have one of them"
+                           : " needs a signal with min or max, or a condition in that");
     return;
   }
   if (f.has("that")) {
     for (const char* bound : {"min", "max"}) {
-      if (f.has(bound))
-        problems.add(f.place(bound), f.path(bound) + " belongs to a signal, here the condition decides");
+      if (f.has(bound)) f.refuse(bound, " belongs to a signal, here the condition decides");
     }
     return;
   }
-  if (!f.has("min") && !f.has("max")) problems.add(f.place(), f.path() + " needs min, max or both");
+  if (!f.has("min") && !f.has("max")) f.refuse(" needs min, max or both");
   if (!(check.min <= check.max)) {
-    problems.add(f.place("max"),
-                 f.path("max") + " is " + number_text(check.max) + ", must be at least min, " + number_text(check.min));
+    f.refuse("max", check.max, "at least min, " + number_text(check.min));
   }
 }
 
-void verify_times(const Fields& f, const ScenarioCheck& check, double duration_s, Problems& problems) {
+void verify_times(const Fields& f, const ScenarioCheck& check, double duration_s) {
   if (!(check.from_s <= check.until_s)) {
-    problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(check.until_s) +
-                                         ", must be at least from_s, " + number_text(check.from_s) + " s");
+    f.refuse("until_s", check.until_s, "at least from_s, " + number_text(check.from_s) + " s");
   }
   if (duration_s > 0 && !(check.from_s <= duration_s)) {
-    problems.add(f.place("from_s"), f.path("from_s") + " is " + number_text(check.from_s) + ", the scenario ends at " +
-                                        number_text(duration_s) + " s");
+    f.refuse("from_s", " is " + number_text(check.from_s) + ", the scenario ends at " + number_text(duration_s) + " s");
   }
 }
 
 }  // namespace
 
-void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std::vector<ScenarioCheck>& others,
-                  Problems& problems) {
+void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std::vector<ScenarioCheck>& others) {
   list_fields(f, check);
   if (!f.reading()) return;
-  verify_demand(f, check, problems);
-  verify_kind(f, check, problems);
-  verify_times(f, check, duration_s, problems);
+  verify_demand(f, check);
+  verify_kind(f, check);
+  verify_times(f, check, duration_s);
   if (std::ranges::find(others, check.name, &ScenarioCheck::name) != others.end()) {
-    problems.add(f.place("name"), f.path("name") + ": another check is named " + in_quotes(check.name));
+    f.refuse("name", ": another check is named " + in_quotes(check.name));
   }
 }
 
@@ -97,30 +90,28 @@ const std::array<std::string, 8> metric_kinds{"max", "min", "mean", "rms", "end"
 bool takes_number(MetricKind kind) { return kind <= MetricKind::end; }
 bool takes_condition(MetricKind kind) { return kind >= MetricKind::end; }
 
-void verify(const Fields& f, const MetricConfig& metric, Problems& problems) {
+void verify(const Fields& f, const MetricConfig& metric) {
   const std::string kind = in_quotes(metric_kinds.at(static_cast<std::size_t>(metric.kind)));
   const std::size_t given = std::size_t{f.has("signal")} + f.has("value") + f.has("that");
   const char* const number = f.has("signal") ? "signal" : "value";
   if (given != 1) {
-    problems.add(f.place(), f.path() + (given > 1 ? " must have one of signal, value and that, not more"
-                                                  : " needs a signal, a number in value, or a condition in that"));
+    f.refuse(given > 1 ? " must have one of signal, value and that, not more"
+                       : " needs a signal, a number in value, or a condition in that");
   } else if (f.has(number) && !takes_number(metric.kind)) {
-    problems.add(f.place(number), f.path(number) + ": a metric of kind " + kind + " needs a condition in that");
+    f.refuse(number, ": a metric of kind " + kind + " needs a condition in that");
   } else if (f.has("that") && !takes_condition(metric.kind)) {
-    problems.add(f.place("that"),
-                 f.path("that") + ": a metric of kind " + kind + " needs a signal, or a number in value");
+    f.refuse("that", ": a metric of kind " + kind + " needs a signal, or a number in value");
   }
   if (metric.name.find_first_of(" ,\"'=") != std::string::npos || metric.name.empty())
-    problems.add(metric.place, "metric " + in_quotes(metric.name) + " must be a word, such as tilt_max_rad");
+    f.refuse(metric.place, "metric " + in_quotes(metric.name) + " must be a word, such as tilt_max_rad");
   if (!(metric.from_s <= metric.until_s)) {
-    problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(metric.until_s) +
-                                         ", must be at least from_s, " + number_text(metric.from_s) + " s");
+    f.refuse("until_s", metric.until_s, "at least from_s, " + number_text(metric.from_s) + " s");
   }
 }
 
 }  // namespace
 
-void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics, Problems& problems) {
+void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics) {
   f.map("metrics", "numbers by which each run is judged, by name", [&](Fields& e) {
     MetricConfig metric{.name = e.key(), .place = e.key_place(), .signal = {}, .value = {}, .that = {}};
     e.choice("kind", metric.kind, metric_kinds, "how the metric is computed from the signal, number or condition",
@@ -134,7 +125,7 @@ void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics, Problems& pro
     metric.value_place = e.place("value");
     metric.that_place = e.place("that");
     if (!e.reading()) return;
-    verify(e, metric, problems);
+    verify(e, metric);
     metrics.push_back(std::move(metric));
   });
 }

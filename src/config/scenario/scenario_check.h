@@ -40,8 +40,7 @@ struct ScenarioCheck {
 
 // The fields of one check. When there is a file, it also verifies that the fields fit together. `others` are the checks
 // before it.
-void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std::vector<ScenarioCheck>& others,
-                  Problems& problems);
+void check_fields(Fields& f, ScenarioCheck& check, double duration_s, const std::vector<ScenarioCheck>& others);
 
 // Whether the check can judge a run that ends at duration_s, before the scenario's end.
 inline bool judges_run_until(const ScenarioCheck& check, double duration_s) noexcept {
@@ -90,7 +89,7 @@ struct MetricConfig {
 };
 
 // The members of "metrics": the keys are the names.
-void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics, Problems& problems);
+void metrics_fields(Fields& f, std::vector<MetricConfig>& metrics);
 
 // The whole definition in one line: two metrics with the same line are the same.
 std::string definition(const MetricConfig& metric);

@@ -22,12 +22,11 @@ struct Wants {
   bool list = false, reload = false, event = false;
 };
 
-void verify(const Fields& f, const ScenarioEvent& event, Wants wants, Problems& problems) {
+void verify(const Fields& f, const ScenarioEvent& event, Wants wants) {
   const std::string& kind = play_order_names[static_cast<std::size_t>(event.order.kind)];
   const auto field = [&](const char* name, bool wanted) {
-    if (wanted && !f.has(name)) problems.add(f.place(), f.path(name) + " is missing: to " + kind + " needs it");
-    if (!wanted && f.has(name))
-      problems.add(f.place(name), f.path(name) + " means nothing here: to " + kind + " has none");
+    if (wanted && !f.has(name)) f.refuse(f.place(), f.path(name) + " is missing: to " + kind + " needs it");
+    if (!wanted && f.has(name)) f.refuse(name, " means nothing here: to " + kind + " has none");
   };
   field("list", wants.list);
   field("behavior", wants.reload);
@@ -74,32 +73,29 @@ std::array<std::string, fault_kinds.size()> names_of_kinds() {
   return names;
 }
 
-void verify(const Fields& f, const ScenarioFault& fault, Problems& problems) {
+void verify(const Fields& f, const ScenarioFault& fault) {
   const KindInfo& info = fault_kinds.at(static_cast<std::size_t>(fault.kind));
   const std::string kind = std::string(" of kind '") + info.name + "'";
-  if (info.size[0] != '\0' && !f.has("size"))
-    problems.add(f.place(), f.path() + " is" + kind + " and needs size: " + info.size);
-  if (info.size[0] == '\0' && f.has("size"))
-    problems.add(f.place("size"), f.path("size") + " means nothing to a fault" + kind);
+  if (info.size[0] != '\0' && !f.has("size")) f.refuse(" is" + kind + " and needs size: " + info.size);
+  if (info.size[0] == '\0' && f.has("size")) f.refuse("size", " means nothing to a fault" + kind);
   const bool wants_of = fault.of_sensor() || fault.of_drive();
   if (wants_of && fault.of.name.empty())
-    problems.add(f.place(), f.path() + " is" + kind + " and needs of: the " +
-                                (fault.of_sensor() ? "joint, the foot's link, a sensor, or imu" : "drive"));
-  if (!wants_of && f.has("of")) problems.add(f.place("of"), f.path("of") + " means nothing to a fault" + kind);
+    f.refuse(" is" + kind + " and needs of: the " +
+             (fault.of_sensor() ? "joint, the foot's link, a sensor, or imu" : "drive"));
+  if (!wants_of && f.has("of")) f.refuse("of", " means nothing to a fault" + kind);
   if (!(fault.from_s < fault.until_s))
-    problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(fault.until_s) +
-                                         ", must be after from_s, " + number_text(fault.from_s) + " s");
+    f.refuse("until_s", fault.until_s, "after from_s, " + number_text(fault.from_s) + " s");
   if ((fault.kind == FaultKind::drive_late || fault.kind == FaultKind::commands_late ||
        fault.kind == FaultKind::clock_missed) &&
       !(fault.size >= 1 && fault.size <= 255))
-    problems.add(f.place("size"), f.path("size") + " is " + number_text(fault.size) + ", must be 1..255 ticks");
+    f.refuse("size", fault.size, "1..255 ticks");
 }
 
 const std::array<std::string, 2> shape_names{"constant", "half_sine"};
 
 }  // namespace
 
-void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, Problems& problems) {
+void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders) {
   std::string list, file;
   PlayOrder& order = event.order;
   f.number("at_s", event.at_s, {0, time_max_s, "s"}, "time of the event", Need::required);
@@ -111,26 +107,25 @@ void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, P
   f.string("event", order.event.name, "for emit: name of an event that a behavior declares");
   f.object("data", "for emit: the event's data", [&](Fields& data) {
     if (const JsonValue* given = data.plain_entries("value of the field"))
-      order.event.data = read_event_data(*given, problems);
+      order.event.data = read_event_data(*given, f.problems());
   });
   if (!f.reading() || !known) return;
   using Kind = PlayOrder::Kind;
   verify(
       f, event,
-      {order.kind == Kind::play || order.kind == Kind::replace, order.kind == Kind::reload, order.kind == Kind::emit},
-      problems);
+      {order.kind == Kind::play || order.kind == Kind::replace, order.kind == Kind::reload, order.kind == Kind::emit});
   order.event.place = f.place("event");
   order.event.who = "scenario";
-  check_event_name({order.event.name, order.event.place}, problems);
+  check_event_name({order.event.name, order.event.place}, f.problems());
   order.behavior.place = f.place("behavior");
-  if (!file.empty()) order.file = resolve_file(file, f.place("file"), "reload", problems);
+  if (!file.empty()) order.file = resolve_file(file, f.place("file"), "reload", f.problems());
   if (list.empty()) return;
   TextPlace start = f.place("list");
   ++start.column;  // behind the quote
-  order.list = read_play_items(list, start, folders, problems);
+  order.list = read_play_items(list, start, folders, f.problems());
 }
 
-void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
+void fault_fields(Fields& f, ScenarioFault& fault) {
   constexpr NumberRange time{0, 1e6, "s"};
   f.choice("kind", fault.kind, names_of_kinds(), "kind of fault", Need::required);
   f.string("of", fault.of.name,
@@ -141,10 +136,10 @@ void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems) {
   f.number("size", fault.size, {-1e6, 1e6, ""}, "size of the fault; the kind says what it means");
   if (!f.reading()) return;
   fault.of.place = f.place("of");
-  verify(f, fault, problems);
+  verify(f, fault);
 }
 
-void push_fields(Fields& f, ScenarioPush& push, Problems& problems) {
+void push_fields(Fields& f, ScenarioPush& push) {
   constexpr NumberRange time{0, 1e6, "s"};
   f.string("link", push.link.name, "the link that is pushed", Need::required);
   f.number("at_s", push.at_s, time, "time at which the push begins", Need::required);
@@ -158,7 +153,7 @@ void push_fields(Fields& f, ScenarioPush& push, Problems& problems) {
   if (!f.reading()) return;
   push.link.place = f.place("link");
   if (f.has("impulse_Ns") == f.has("force_N")) {
-    problems.add(f.place(), f.path() + " must have one of impulse_Ns and force_N");
+    f.refuse(" must have one of impulse_Ns and force_N");
     return;
   }
   if (f.has("impulse_Ns")) return;
@@ -169,7 +164,7 @@ void push_fields(Fields& f, ScenarioPush& push, Problems& problems) {
 namespace {
 
 // What plays the robot, and what it cannot play.
-void plant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void plant_fields(Fields& f, ScenarioConfig& scenario) {
   const std::vector<std::string> models = plant_type_names(&PlantType::is_model);
   constexpr std::string_view doc = "what plays the robot";
   auto chosen = static_cast<std::size_t>(std::ranges::find(models, scenario.plant) - models.begin());
@@ -188,12 +183,11 @@ void plant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     others += (others.empty() ? "" : ", ") + name;
   for (const std::string key : {"world", "robots"}) {
     if (!f.has(key)) continue;
-    problems.add(f.place(key),
-                 key + ": only the " + others + " plant has one, this scenario's plant is " + scenario.plant);
+    f.refuse(key, ": only the " + others + " plant has one, this scenario's plant is " + scenario.plant);
   }
 }
 
-void bus_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void bus_fields(Fields& f, ScenarioConfig& scenario) {
   ScenarioBus& bus = scenario.bus;
   f.string("type", bus.type.name,
            "the bus, as `kadans run --plant` names it; where its drives are stands in the robot's configuration",
@@ -202,17 +196,16 @@ void bus_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
   f.strings("faults", bus.faults, {0, 1000},
             "what befalls the bus or its drives, as KIND[:OF]@S[+D][=SIZE]: cable_out@2+0.5, drive_hot:tilt@3=85");
   if (f.reading() && !scenario.robots.empty())
-    problems.add(f.place(), "bus: a robot on a bus is alone in its world, this scenario has robots");
+    f.refuse(": a robot on a bus is alone in its world, this scenario has robots");
 }
 
 // How it is run among others.
-void suite_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void suite_fields(Fields& f, ScenarioConfig& scenario) {
   std::vector<PlacedName> tags;
   f.strings("tags", tags, {0, 100}, "words by which kadans test finds it");
   for (const PlacedName& tag : tags) {
     if (tag.name.empty() || tag.name.find_first_of("/ ,*") != std::string::npos)
-      problems.add(tag.place,
-                   "tag " + in_quotes(tag.name) + " must be a word without blanks, commas, slashes and stars");
+      f.refuse(tag.place, "tag " + in_quotes(tag.name) + " must be a word without blanks, commas, slashes and stars");
     scenario.tags.push_back(tag.name);
   }
   f.integer("repeat", scenario.repeat, {1, 10'000}, "number of runs in kadans test, each with the next seed");
@@ -221,32 +214,32 @@ void suite_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
 }
 
 // How this run's robot differs from the configured one.
-void variant_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void variant_fields(Fields& f, ScenarioConfig& scenario) {
   f.string("start_pose", scenario.start_pose.name,
            "the pose in which the robot starts (default: the one in its configuration)");
   scenario.start_pose.place = f.place("start_pose");
   f.object("set", "quantities that differ from the robot's files, by a pattern of their names",
            [&](Fields& e) { e.number_entries(scenario.set, {}, "value of the quantity"); });
-  variation_fields(f, "randomise", scenario.randomise, problems);
+  variation_fields(f, "randomise", scenario.randomise);
 }
 
 // What plays on one robot, what pushes it, and what fails.
-void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void play_fields(Fields& f, ScenarioConfig& scenario) {
   std::vector<PlacedName> lists;
   f.strings("behaviors", lists, {0, 100}, "what to play, one after the other: files, or \"squat{depth_m=0.08}, wave\"");
   const PlayFolders folders = folders_of(scenario);
   for (const PlacedName& list : lists) {
     const TextPlace start{list.place.line, list.place.column + 1};  // behind the quote
-    std::ranges::move(read_play_items(list.name, start, folders, problems), std::back_inserter(scenario.behaviors));
+    std::ranges::move(read_play_items(list.name, start, folders, f.problems()), std::back_inserter(scenario.behaviors));
   }
   f.list("events", {0, 10'000}, "changes to the list of behaviors, each at its time", [&](Fields& e) {
     ScenarioEvent event;
-    event_fields(e, event, folders, problems);
+    event_fields(e, event, folders);
     if (e.reading()) scenario.events.push_back(std::move(event));
   });
   f.list("pushes", {0, 1000}, "pushes on the robot", [&](Fields& e) {
     ScenarioPush push;
-    push_fields(e, push, problems);
+    push_fields(e, push);
     if (e.reading()) scenario.pushes.push_back(std::move(push));
   });
   f.list("carried", {0, 1000}, "a person lifts the robot as it stands, and puts it down at rest elsewhere",
@@ -260,12 +253,12 @@ void play_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
          });
   f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {
     ScenarioFault fault;
-    fault_fields(e, fault, problems);
+    fault_fields(e, fault);
     if (e.reading()) scenario.faults.push_back(std::move(fault));
   });
 }
 
-void perception_fields(Fields& f, ScenarioPerception& perception, Problems& problems) {
+void perception_fields(Fields& f, ScenarioPerception& perception) {
   f.string("entry", perception.entry.name, "the entry of the world model that it tells of", Need::required);
   perception.entry.place = f.place("entry");
   f.string("object", perception.object.name, "the object of the world that is looked for; else record");
@@ -282,28 +275,29 @@ void perception_fields(Fields& f, ScenarioPerception& perception, Problems& prob
   if (!f.reading()) return;
   const bool recorded = f.has("record");
   if (recorded == f.has("object"))
-    problems.add(f.place("entry"), "perception needs either an object of the world, or a record: " +
-                                       std::string(recorded ? "it has both" : "it has none of them"));
+    f.refuse(f.place("entry"), "perception needs either an object of the world, or a record: " +
+                                   std::string(recorded ? "it has both" : "it has none of them"));
   if (!recorded && f.has("from_s"))
-    problems.add(f.place("from_s"), "from_s: only perception from a record has a time there");
+    f.refuse(f.place("from_s"), "from_s: only perception from a record has a time there");
   if (!recorded) return;
   for (const SightRange& range : sight_ranges) {
-    if (f.has(range.name)) problems.add(f.place(range.name), std::string(range.name) + ": comes with the record");
+    if (f.has(range.name)) f.refuse(f.place(range.name), std::string(range.name) + ": comes with the record");
   }
   for (const char* const key : {"imagined", "hidden"}) {
-    if (f.has(key)) problems.add(f.place(key), std::string(key) + ": comes with the record");
+    if (f.has(key)) f.refuse(f.place(key), std::string(key) + ": comes with the record");
   }
-  perception.record.name = resolve_file(perception.record.name, perception.record.place, "record", problems).string();
+  perception.record.name =
+      resolve_file(perception.record.name, perception.record.place, "record", f.problems()).string();
 }
 
 // What it knows, and what decides.
-void supervisor_part(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void supervisor_part(Fields& f, ScenarioConfig& scenario) {
   f.object("supervisor", "what decides what is played, in place of that of the robot's configuration",
-           [&](Fields& e) { supervisor_fields(e, scenario.supervisor, folders_of(scenario), problems); });
+           [&](Fields& e) { supervisor_fields(e, scenario.supervisor, folders_of(scenario)); });
   f.list("perception", {0, max_seen}, "perception of entries of the world model, simulated or from a record",
          [&](Fields& e) {
            ScenarioPerception perception;
-           perception_fields(e, perception, problems);
+           perception_fields(e, perception);
            if (e.reading()) scenario.perception.push_back(std::move(perception));
          });
 }
@@ -318,46 +312,45 @@ void check_robot_name(const std::string& name, const TextPlace& place, const Sce
     problems.add(place, "name " + in_quotes(name) + " must consist of small letters, digits and underscores");
 }
 
-void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig& scenario, Problems& problems) {
+void further_robot_fields(Fields& f, ScenarioConfig& robot, const ScenarioConfig& scenario) {
   f.string("name", robot.name, "the robot's name: its signals are NAME.plant.base.height_m and the like",
            Need::required);
   robot.plant_place = f.place("name");
-  check_robot_name(robot.name, robot.plant_place, scenario, problems);
+  check_robot_name(robot.name, robot.plant_place, scenario, f.problems());
   if (robot.name == "last")
-    problems.add(robot.plant_place, "name 'last': checks read last.SIGNAL as the signal's value one tick before");
+    f.refuse(robot.plant_place, "name 'last': checks read last.SIGNAL as the signal's value one tick before");
   constexpr std::array quantities{"actuation", "control", "ground", "imu",       "joint",
                                   "link",      "start",   "sight",  "perception"};
   if (std::ranges::find(quantities, robot.name) != quantities.end())
-    problems.add(robot.plant_place, "name " + in_quotes(robot.name) + ": `set` and --set read " + robot.name +
-                                        ".KEY as a quantity of the first robot");
+    f.refuse(robot.plant_place, "name " + in_quotes(robot.name) + ": `set` and --set read " + robot.name +
+                                    ".KEY as a quantity of the first robot");
   robot.file = scenario.file;
   robot.plant = scenario.plant;
   robot.robot = scenario.robot;
   std::string file;
   if (f.string("robot", file, "its configuration, from the project root; else that of the first robot"))
-    robot.robot = resolve_file(file, f.place("robot"), "robot", problems).string();
-  variant_fields(f, robot, problems);
-  play_fields(f, robot, problems);
-  supervisor_part(f, robot, problems);
+    robot.robot = resolve_file(file, f.place("robot"), "robot", f.problems()).string();
+  variant_fields(f, robot);
+  play_fields(f, robot);
+  supervisor_part(f, robot);
   if (std::ranges::count(robot.faults, ScenarioFault::Kind::clock_missed, &ScenarioFault::kind) > 0)
-    problems.add(f.place("faults"),
-                 f.path("faults") + ": clock_missed is a fault of all robots: it belongs to the scenario's own faults");
+    f.refuse("faults", ": clock_missed is a fault of all robots: it belongs to the scenario's own faults");
 }
 
-void joystick_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void joystick_fields(Fields& f, ScenarioConfig& scenario) {
   ScenarioJoystick& joystick = scenario.joystick;
   f.string("recording", joystick.recording, "input events, as evemu-record or cat wrote them", Need::required);
   joystick.place = f.place("recording");
   if (!joystick.recording.empty())
-    joystick.recording = resolve_file(joystick.recording, joystick.place, "recording", problems).string();
+    joystick.recording = resolve_file(joystick.recording, joystick.place, "recording", f.problems()).string();
   f.number("at_s", joystick.at_s, {0, scenario_duration_max_s, "s"}, "time of its first event");
   f.number("lost_at_s", joystick.lost_at_s, {0, scenario_duration_max_s, "s"},
            "time at which it is unplugged (default: never)");
   f.map("buttons", std::string(buttons_doc) + ", in place of those of the robot's configuration",
-        [&](Fields& e) { button_fields(e, joystick.buttons, problems); });
+        [&](Fields& e) { button_fields(e, joystick.buttons); });
 }
 
-void sight_fields(Fields& f, ScenarioSight& sight, const WorldConfig& world, Problems& problems) {
+void sight_fields(Fields& f, ScenarioSight& sight, const WorldConfig& world) {
   f.string("ball", sight.ball.name, "the object of the world that behaviors see as s.seen.ball", Need::required);
   sight.ball.place = f.place("ball");
   for (const SightRange& range : sight_ranges)
@@ -366,11 +359,11 @@ void sight_fields(Fields& f, ScenarioSight& sight, const WorldConfig& world, Pro
   std::vector<std::string> names;
   for (const WorldObject& object : world.settings.objects) names.push_back(object.name);
   if (std::ranges::find(names, sight.ball.name) == names.end())
-    problems.add_unknown(sight.ball.place, "object", sight.ball.name, names);
+    f.problems().add_unknown(sight.ball.place, "object", sight.ball.name, names);
 }
 
 // A record that is repeated says itself what its run was.
-void record_test_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void record_test_fields(Fields& f, ScenarioConfig& scenario) {
   std::vector<PlacedName> with;
   f.string("record", scenario.record,
            "a record of `kadans run` that is repeated in place of a simulation, from this file's folder");
@@ -378,52 +371,52 @@ void record_test_fields(Fields& f, ScenarioConfig& scenario, Problems& problems)
             "with a record: files of this project that take the place of the record's, from the project root");
   if (!f.reading()) return;
   if (!f.has("record")) {
-    if (f.has("with")) problems.add(f.place("with"), "with: only a scenario that repeats a record has one");
+    if (f.has("with")) f.refuse("with", ": only a scenario that repeats a record has one");
     return;
   }
   for (const char* const key : {"robot",      "plant",  "seed",    "repeat",  "start_pose", "set",        "randomise",
                                 "behaviors",  "events", "pushes",  "carried", "faults",     "supervisor", "perception",
                                 "robot_name", "robots", "network", "world",   "bus",        "joystick",   "sight"}) {
-    if (f.has(key)) problems.add(f.place(key), std::string(key) + ": comes with the record, which is repeated");
+    if (f.has(key)) f.refuse(key, ": comes with the record, which is repeated");
   }
   const std::filesystem::path file = std::filesystem::absolute(scenario.file).parent_path() / scenario.record;
   if (!std::filesystem::is_regular_file(file))
-    problems.add(f.place("record"), "record: there is no file " + in_quotes(file.lexically_normal().string()));
+    f.refuse("record", ": there is no file " + in_quotes(file.lexically_normal().string()));
   scenario.record = file.lexically_normal().string();
   for (const PlacedName& name : with)
-    scenario.with.push_back(resolve_file(name.name, name.place, "file", problems).string());
+    scenario.with.push_back(resolve_file(name.name, name.place, "file", f.problems()).string());
   if (!f.has("duration_s")) scenario.duration_s = scenario_duration_max_s;
 }
 
-void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
+void scenario_fields(Fields& f, ScenarioConfig& scenario) {
   std::string schema, base;
   f.string("$schema", schema, "the schema of this file, for editors");
   f.string("based_on", base, "another scenario; this file says only what is different");
   f.string("name", scenario.name, "the scenario's name", Need::required);
   f.string("doc", scenario.doc, "what it shows, one or two sentences");
-  record_test_fields(f, scenario, problems);
+  record_test_fields(f, scenario);
   const Need need = f.reading() && !f.has("record") ? Need::required : Need::optional;  // either these two or a record
   f.string("robot", scenario.robot, "the robot's configuration, from the project root; not with a record", need);
   if (!scenario.robot.empty()) {
-    scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", problems).string();
+    scenario.robot = resolve_file(scenario.robot, f.place("robot"), "robot", f.problems()).string();
   }
-  plant_fields(f, scenario, problems);
+  plant_fields(f, scenario);
   f.number("duration_s", scenario.duration_s, {1e-3, scenario_duration_max_s, "s"},
            "duration of the simulation; of a record, how much of it is repeated (default: all)", need);
   f.integer("seed", scenario.seed, {0, std::numeric_limits<std::uint64_t>::max()},
             "seed of all random numbers of the run");
-  suite_fields(f, scenario, problems);
-  variant_fields(f, scenario, problems);
-  play_fields(f, scenario, problems);
-  supervisor_part(f, scenario, problems);
+  suite_fields(f, scenario);
+  variant_fields(f, scenario);
+  play_fields(f, scenario);
+  supervisor_part(f, scenario);
   std::string robot_name;
   if (f.string("robot_name", robot_name, "what viewers call the first robot (default: as its configuration does)")) {
-    check_robot_name(robot_name, f.place("robot_name"), scenario, problems);
+    check_robot_name(robot_name, f.place("robot_name"), scenario, f.problems());
     scenario.robot_name = robot_name;
   }
   f.list("robots", {0, further_robots_max}, "further robots in the same world and time", [&](Fields& e) {
     ScenarioConfig robot;
-    further_robot_fields(e, robot, scenario, problems);
+    further_robot_fields(e, robot, scenario);
     if (e.reading()) scenario.robots.push_back(std::move(robot));
   });
   f.object("network", "the network between the robots", [&](Fields& e) {
@@ -431,16 +424,15 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario, Problems& problems) {
     e.number("jitter_s", scenario.network.jitter_s, {0, 10, "s"}, "the most that it takes longer");
     e.number("lost", scenario.network.lost, {0, 1}, "share of the messages that are lost");
   });
-  world_fields(f, scenario.world, problems);
+  world_fields(f, scenario.world);
   f.object("bus", "a bus with drives between the control and the model, byte by byte on virtual time",
-           [&](Fields& e) { bus_fields(e, scenario, problems); });
-  f.object("joystick", "a joystick that is played from a recording",
-           [&](Fields& e) { joystick_fields(e, scenario, problems); });
+           [&](Fields& e) { bus_fields(e, scenario); });
+  f.object("joystick", "a joystick that is played from a recording", [&](Fields& e) { joystick_fields(e, scenario); });
   f.object("sight", "simulated perception of a ball",
-           [&](Fields& e) { sight_fields(e, scenario.sight, scenario.world, problems); });
+           [&](Fields& e) { sight_fields(e, scenario.sight, scenario.world); });
   f.list("checks", {0, 1000}, "checks that must hold", [&](Fields& e) {
     ScenarioCheck check;
-    check_fields(e, check, scenario.duration_s, scenario.checks, problems);
+    check_fields(e, check, scenario.duration_s, scenario.checks);
     if (e.reading()) scenario.checks.push_back(std::move(check));
   });
 }
@@ -469,7 +461,7 @@ ScenarioConfig read_scenario_config_text(const std::string& text, const std::str
   const BasedJson json = parse_based_json(text, file);
   if (!json.bases.empty()) (void)read_tested_scenario(json.bases.front());
   Problems problems(file);
-  read_fields(json.value, problems, [&](Fields& f) { scenario_fields(f, scenario, problems); });
+  read_fields(json.value, problems, [&](Fields& f) { scenario_fields(f, scenario); });
   problems.throw_if_any();
   return scenario;
 }
@@ -488,8 +480,7 @@ ScenarioConfig read_scenario_config(const std::filesystem::path& file) {
 
 FieldInfo describe_scenario_config() {
   ScenarioConfig scenario;
-  Problems problems("");
-  return describe_fields([&](Fields& f) { scenario_fields(f, scenario, problems); });
+  return describe_fields([&](Fields& f) { scenario_fields(f, scenario); });
 }
 
 }  // namespace kadans

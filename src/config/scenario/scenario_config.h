@@ -31,7 +31,7 @@ struct ScenarioEvent {
 
 // The fields of one event. `folders` are used to find the behaviors of a list. The name of a reload's behavior is not
 // checked here, because the names are known only when the behaviors play.
-void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders, Problems& problems);
+void event_fields(Fields& f, ScenarioEvent& event, const PlayFolders& folders);
 
 // A fault that a scenario injects: in a sensor, a drive, the supply, the behaviors' tick, the transport of commands, or
 // the clock.
@@ -74,7 +74,7 @@ struct ScenarioFault {
   bool of_supply() const noexcept { return kind == Kind::supply || kind == Kind::emergency_button; }
 };
 
-void fault_fields(Fields& f, ScenarioFault& fault, Problems& problems);
+void fault_fields(Fields& f, ScenarioFault& fault);
 
 // A push on a link of the robot: a force that acts for a time.
 inline constexpr double push_max_Ns = 1e4;  // along each axis
@@ -97,7 +97,7 @@ struct ScenarioCarry {
 };
 
 // The fields of one push, with "impulse_Ns" or "force_N" (its peak).
-void push_fields(Fields& f, ScenarioPush& push, Problems& problems);
+void push_fields(Fields& f, ScenarioPush& push);
 
 // A scenario in one JSON file: a robot, a plant, the behaviors that play, and the checks that must hold.
 inline constexpr double scenario_duration_max_s = 1e6;  // of simulated time

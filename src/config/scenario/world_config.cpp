@@ -38,7 +38,7 @@ struct Entry {
 // Lists the fields of one entry: those of its kind, or all when there is no file, or no kind that we know.
 class EntryReader {
  public:
-  EntryReader(Fields& f, Entry& entry, Problems& problems) : f_(f), entry_(entry), problems_(problems) {}
+  EntryReader(Fields& f, Entry& entry) : f_(f), entry_(entry) {}
 
   bool read() {
     const bool known = f_.choice("kind", entry_.kind, part_kinds, "kind of object", Need::required);
@@ -145,9 +145,9 @@ class EntryReader {
       e.number("to_rad", arc.to_rad, {-7, 7, "rad"}, "where it ends (default: all around)");
       if (!e.reading()) return;
       if (!(arc.to_rad > arc.from_rad)) {
-        problems_.add(e.place(e.has("to_rad") ? "to_rad" : "from_rad"),
-                      e.path("to_rad") + " is " + number_text(arc.to_rad) + ", must be more than from_rad, " +
-                          number_text(arc.from_rad) + " rad");
+        e.refuse(e.place(e.has("to_rad") ? "to_rad" : "from_rad"), e.path("to_rad") + " is " + number_text(arc.to_rad) +
+                                                                       ", must be more than from_rad, " +
+                                                                       number_text(arc.from_rad) + " rad");
       }
       entry_.markings.arcs.push_back(arc);
     });
@@ -169,9 +169,8 @@ class EntryReader {
           e.numbers("velocity_m_s", knot.velocity_m_s, velocity_m_s, "velocity in world axes", Need::required);
           if (!e.reading()) return;
           if (!entry_.motion.knots.empty() && !(knot.time_s > entry_.motion.knots.back().time_s)) {
-            problems_.add(e.place("time_s"), e.path("time_s") + " is " + number_text(knot.time_s) +
-                                                 ", must be later than the one before, " +
-                                                 number_text(entry_.motion.knots.back().time_s) + " s");
+            e.refuse("time_s", knot.time_s,
+                     "later than the one before, " + number_text(entry_.motion.knots.back().time_s) + " s");
           }
           entry_.motion.knots.push_back(knot);
         },
@@ -182,31 +181,27 @@ class EntryReader {
 
   Fields& f_;
   Entry& entry_;
-  Problems& problems_;
   bool all_ = false;
 };
 
 // What the fields alone cannot say.
-void verify(const Fields& f, const Entry& entry, Problems& problems) {
+void verify(const Fields& f, const Entry& entry) {
   if (f.has("name") && !is_word(entry.name)) {
-    problems.add(f.place("name"), f.path("name") + ": " + in_quotes(entry.name) +
-                                      " must be a word of letters, digits and '_', it becomes part of signals' names");
+    f.refuse("name", ": " + in_quotes(entry.name) +
+                         " must be a word of letters, digits and '_', it becomes part of signals' names");
   }
   if (entry.kind == ObjectKind::pendulum && !(entry.distance_m < entry.length_m) && f.has("distance_m")) {
-    problems.add(f.place("distance_m"), f.path("distance_m") + " is " + number_text(entry.distance_m) +
-                                            ", must be less than length_m, " + number_text(entry.length_m) + " m");
+    f.refuse("distance_m", entry.distance_m, "less than length_m, " + number_text(entry.length_m) + " m");
   }
   if (entry.kind == ObjectKind::payload && !(entry.until_s > entry.from_s)) {
-    problems.add(f.place("until_s"), f.path("until_s") + " is " + number_text(entry.until_s) +
-                                         ", must be later than from_s, " + number_text(entry.from_s) + " s");
+    f.refuse("until_s", entry.until_s, "later than from_s, " + number_text(entry.from_s) + " s");
   }
   if (entry.kind != ObjectKind::box) return;
   if (f.has("mass_kg") && f.has("motion")) {
-    problems.add(f.place("motion"), f.path("motion") + ": a box with a mass moves freely and cannot be driven");
+    f.refuse("motion", ": a box with a mass moves freely and cannot be driven");
   }
   for (const std::string key : {"velocity_m_s", "carried"}) {
-    if (!f.has("mass_kg") && f.has(key))
-      problems.add(f.place(key), f.path(key) + " means nothing: a box without mass_kg is fixed");
+    if (!f.has("mass_kg") && f.has(key)) f.refuse(key, " means nothing: a box without mass_kg is fixed");
   }
 }
 
@@ -251,17 +246,17 @@ void add(const Fields& f, const Entry& entry, WorldConfig& world) {
 
 }  // namespace
 
-void world_fields(Fields& f, WorldConfig& world, Problems& problems) {
+void world_fields(Fields& f, WorldConfig& world) {
   std::vector<std::string> names;
   if (f.has("world")) world.place = f.place("world");
   f.list("world", {0, max_world_objects}, "objects around the robot, and loads that it carries", [&](Fields& e) {
     Entry entry;
-    const bool known = EntryReader(e, entry, problems).read();
+    const bool known = EntryReader(e, entry).read();
     if (!e.reading() || !known) return;
-    verify(e, entry, problems);
+    verify(e, entry);
     const std::string name = entry.kind == ObjectKind::ground ? "ground" : entry.name;  // "": markings have none
     if (!name.empty() && std::find(names.begin(), names.end(), name) != names.end()) {
-      problems.add(e.place("name"), e.path() + ": another entry is named " + in_quotes(name));
+      e.refuse(e.place("name"), e.path() + ": another entry is named " + in_quotes(name));
     }
     names.push_back(name);
     add(e, entry, world);

@@ -27,7 +27,7 @@ struct WorldConfig {
 };
 
 // Reads the list under the key "world".
-void world_fields(Fields& f, WorldConfig& world, Problems& problems);
+void world_fields(Fields& f, WorldConfig& world);
 
 // The settings for this robot. Throws InputError when a payload's link is not one of its links.
 const WorldSettings& world_for(const WorldConfig& world, const RobotModel& model, const std::string& file);
