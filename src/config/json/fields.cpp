@@ -78,12 +78,24 @@ FieldInfo info_of(FieldInfo::Kind kind, std::string_view name, std::string_view 
   return info;
 }
 
+FieldInfo list_info(std::string_view name, std::string_view doc, Need need, CountRange count, FieldInfo item) {
+  FieldInfo info = info_of(FieldInfo::Kind::list, name, doc, need);
+  info.count = count;
+  info.fields.push_back(std::move(item));
+  return info;
+}
+
 FieldInfo number_info(std::string_view name, NumberRange range, std::string_view doc, Need need) {
   FieldInfo info = info_of(FieldInfo::Kind::number, name, doc, need);
   info.unit = range.unit;
   info.min = range.min;
   info.max = range.max;
   return info;
+}
+
+// "a number in rad"
+std::string in_unit(const std::string& what, const NumberRange& range) {
+  return range.unit.empty() ? what : what + " in " + std::string(range.unit);
 }
 
 constexpr std::string_view doc_key = "doc";
@@ -109,34 +121,46 @@ TextPlace Fields::place(std::string_view name) const {
   return member == nullptr ? place() : member->value.place;
 }
 
-// The value of a field, or null: not given, or there is no file and the field is only described.
-const JsonValue* Fields::take(FieldInfo info, Need need) {
+// The value of a field, or null: not given or not of this kind, or there is no file and the field is only described.
+const JsonValue* Fields::take(FieldInfo info, Kind kind, const std::string& wanted) {
   known_.push_back(info.name);
   if (value_ == nullptr) {
     described_->fields.push_back(std::move(info));
     return nullptr;
   }
   const JsonMember* member = value_->find(info.name);
-  if (member != nullptr) return &member->value;
-  if (need == Need::required) {
+  if (member != nullptr) return is(kind, member->value, path(info.name), wanted, info.doc) ? &member->value : nullptr;
+  if (info.required) {
     problems_->add(value_->place,
                    "key '" + info.name + "' is missing" + (path_.empty() ? "" : " in " + path_) + with_doc(info.doc));
   }
   return nullptr;
 }
 
-void Fields::wrong_type(const JsonValue& value, const std::string& path, const std::string& wanted,
-                        std::string_view doc) {
-  problems_->add(value.place, path + " must be " + wanted + ", not " + described(value) + with_doc(doc));
+bool Fields::is(Kind kind, const JsonValue& value, const std::string& path, const std::string& wanted,
+                std::string_view doc) const {
+  if (value.kind == kind) return true;
+  refuse(value.place, path + " must be " + wanted + ", not " + described(value) + with_doc(doc));
+  return false;
+}
+
+bool Fields::is_counted(const JsonValue& list, const std::string& path, CountRange count, std::string_view doc) const {
+  if (list.items.size() >= count.min && list.items.size() <= count.max) return true;
+  refuse(list.place, path + " " + count_text(list.items.size(), count) + with_doc(doc));
+  return false;
+}
+
+// True when there is no file: the members of this object, whose keys are free, are described.
+bool Fields::describe_entries(FieldInfo each) {
+  any_key_ = true;
+  if (value_ != nullptr) return false;
+  described_->kind = FieldInfo::Kind::map;
+  described_->fields.assign(1, std::move(each));
+  return true;
 }
 
 void Fields::number_entries(std::vector<NumberEntry>& entries, NumberRange range, std::string_view doc) {
-  any_key_ = true;
-  if (value_ == nullptr) {
-    described_->kind = FieldInfo::Kind::map;
-    described_->fields.assign(1, number_info("", range, doc, Need::optional));
-    return;
-  }
+  if (describe_entries(number_info("", range, doc, Need::optional))) return;
   for (const JsonMember& member : value_->members) {
     if (member.name == doc_key) continue;
     NumberEntry entry{member.name, 0, member.place, member.value.place};
@@ -145,27 +169,14 @@ void Fields::number_entries(std::vector<NumberEntry>& entries, NumberRange range
 }
 
 const JsonValue* Fields::plain_entries(std::string_view doc) {
-  any_key_ = true;
-  if (value_ != nullptr) return value_;
-  described_->kind = FieldInfo::Kind::map;
-  described_->fields.assign(1, {.kind = FieldInfo::Kind::plain, .doc = std::string(doc)});
-  return nullptr;
+  return describe_entries(info_of(FieldInfo::Kind::plain, "", doc, Need::optional)) ? nullptr : value_;
 }
 
 void Fields::text_entries(std::vector<TextEntry>& entries, std::string_view doc) {
-  any_key_ = true;
-  if (value_ == nullptr) {
-    described_->kind = FieldInfo::Kind::map;
-    described_->fields.assign(1, {.kind = FieldInfo::Kind::string, .doc = std::string(doc)});
-    return;
-  }
+  if (describe_entries(info_of(FieldInfo::Kind::string, "", doc, Need::optional))) return;
   for (const JsonMember& member : value_->members) {
-    if (member.name == doc_key) continue;
-    if (member.value.kind == JsonValue::Kind::string) {
-      entries.push_back({member.name, member.value.text, member.place, member.value.place});
-    } else {
-      wrong_type(member.value, path(member.name), "a string", doc);
-    }
+    if (member.name == doc_key || !is(Kind::string, member.value, path(member.name), "a string", doc)) continue;
+    entries.push_back({member.name, member.value.text, member.place, member.value.place});
   }
 }
 
@@ -180,7 +191,9 @@ std::vector<Fields> Fields::open(FieldInfo::Kind kind, std::string_view name, st
   FieldInfo info = info_of(kind, name, doc, need);
   info.count = count;
   if (kind != FieldInfo::Kind::object) info.fields.emplace_back();
-  const JsonValue* given = take(std::move(info), need);
+  const bool list = kind == FieldInfo::Kind::list;
+  const JsonValue* given =
+      take(std::move(info), list ? Kind::array : Kind::object, list ? "an array of objects" : "an object");
   std::vector<Fields> children;
   if (value_ == nullptr) {
     FieldInfo& field = described_->fields.back();
@@ -188,11 +201,6 @@ std::vector<Fields> Fields::open(FieldInfo::Kind kind, std::string_view name, st
     return children;
   }
   if (given == nullptr) return children;
-  const Kind wanted = kind == FieldInfo::Kind::list ? Kind::array : Kind::object;
-  if (given->kind != wanted) {
-    wrong_type(*given, path(name), wanted == Kind::array ? "an array of objects" : "an object", doc);
-    return children;
-  }
   if (kind == FieldInfo::Kind::object) children.push_back(open_child(*given, path(name)));
   open_items(kind, *given, path(name), count, doc, children);
   return children;
@@ -202,18 +210,12 @@ std::vector<Fields> Fields::open(FieldInfo::Kind kind, std::string_view name, st
 void Fields::open_items(FieldInfo::Kind kind, const JsonValue& given, const std::string& path, CountRange count,
                         std::string_view doc, std::vector<Fields>& children) {
   const auto open_item = [&](const JsonValue& item, const std::string& item_path) {
-    if (item.kind != Kind::object) {
-      wrong_type(item, item_path, "an object", doc);
-      return false;
-    }
+    if (!is(Kind::object, item, item_path, "an object", doc)) return false;
     children.push_back(open_child(item, item_path));
     return true;
   };
   if (kind == FieldInfo::Kind::list) {
-    if (!(given.items.size() >= count.min && given.items.size() <= count.max)) {
-      problems_->add(given.place, path + " " + count_text(given.items.size(), count) + with_doc(doc));
-      return;
-    }
+    if (!is_counted(given, path, count, doc)) return;
     for (std::size_t i = 0; i < given.items.size(); ++i) {
       open_item(given.items[i], path + "[" + std::to_string(i) + "]");
     }
@@ -231,7 +233,7 @@ void Fields::finish() {
   for (const JsonMember& member : value_->members) {
     const bool known = any_key_ || std::find(known_.begin(), known_.end(), member.name) != known_.end();
     if (member.name == doc_key) {
-      if (member.value.kind != Kind::string) wrong_type(member.value, path(doc_key), "a string", "a note for people");
+      is(Kind::string, member.value, path(doc_key), "a string", "a note for people");
     } else if (!known) {
       problems_->add_unknown(member.place, "key", member.name, known_, path_.empty() ? "" : "in " + path_);
     }
@@ -240,10 +242,7 @@ void Fields::finish() {
 
 bool Fields::read_number(const JsonValue& value, const std::string& path, NumberRange range, std::string_view doc,
                          double& result) {
-  if (value.kind != Kind::number) {
-    wrong_type(value, path, range.unit.empty() ? "a number" : "a number in " + std::string(range.unit), doc);
-    return false;
-  }
+  if (!is(Kind::number, value, path, in_unit("a number", range), doc)) return false;
   if (!(value.number >= range.min && value.number <= range.max)) {
     problems_->add(value.place, path + " is " + value.text.substr(0, 40) + ", " + range_text(range) + with_doc(doc));
     return false;
@@ -252,10 +251,19 @@ bool Fields::read_number(const JsonValue& value, const std::string& path, Number
   return true;
 }
 
+bool Fields::read_numbers(const JsonValue& list, const std::string& path, NumberRange range, std::string_view doc,
+                          std::span<double> results) {
+  bool all = true;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    all = read_number(list.items[i], path + "[" + std::to_string(i) + "]", range, doc, results[i]) && all;
+  }
+  return all;
+}
+
 bool Fields::number(std::string_view name, double& value, NumberRange range, std::string_view doc, Need need) {
   FieldInfo info = number_info(name, range, doc, need);
   if (need == Need::optional && std::isfinite(value)) info.default_json = number_text(value);
-  const JsonValue* given = take(std::move(info), need);
+  const JsonValue* given = take(std::move(info), Kind::number, in_unit("a number", range));
   return given != nullptr && read_number(*given, path(name), range, doc, value);
 }
 
@@ -266,12 +274,8 @@ bool Fields::whole_number(std::string_view name, std::uint64_t& value, IntegerRa
   info.min = static_cast<double>(range.min);
   info.max = static_cast<double>(range.max);
   if (need == Need::optional) info.default_json = std::to_string(value);
-  const JsonValue* given = take(std::move(info), need);
+  const JsonValue* given = take(std::move(info), Kind::number, "a whole number");
   if (given == nullptr) return false;
-  if (given->kind != Kind::number) {
-    wrong_type(*given, path(name), "a whole number", doc);
-    return false;
-  }
   const std::optional<std::uint64_t> number = whole(*given);
   if (!number || *number < range.min || *number > range.max) {
     const std::string limits = range_text(std::to_string(range.min), std::to_string(range.max), range.unit);
@@ -286,23 +290,15 @@ bool Fields::whole_number(std::string_view name, std::uint64_t& value, IntegerRa
 bool Fields::boolean(std::string_view name, bool& value, std::string_view doc, Need need) {
   FieldInfo info = info_of(FieldInfo::Kind::boolean, name, doc, need);
   if (need == Need::optional) info.default_json = value ? "true" : "false";
-  const JsonValue* given = take(std::move(info), need);
+  const JsonValue* given = take(std::move(info), Kind::boolean, "true or false");
   if (given == nullptr) return false;
-  if (given->kind != Kind::boolean) {
-    wrong_type(*given, path(name), "true or false", doc);
-    return false;
-  }
   value = given->boolean;
   return true;
 }
 
 bool Fields::string(std::string_view name, std::string& value, std::string_view doc, Need need) {
-  const JsonValue* given = take(info_of(FieldInfo::Kind::string, name, doc, need), need);
+  const JsonValue* given = take(info_of(FieldInfo::Kind::string, name, doc, need), Kind::string, "a string");
   if (given == nullptr) return false;
-  if (given->kind != Kind::string) {
-    wrong_type(*given, path(name), "a string", doc);
-    return false;
-  }
   if (given->text.empty() && need == Need::required) {
     problems_->add(given->place, path(name) + " must not be empty" + with_doc(doc));
     return false;
@@ -316,12 +312,8 @@ bool Fields::one_of(std::string_view name, std::size_t& index, std::span<const s
   FieldInfo info = info_of(FieldInfo::Kind::string, name, doc, need);
   info.choices.assign(names.begin(), names.end());
   if (need == Need::optional && index < names.size()) info.default_json = "\"" + names[index] + "\"";
-  const JsonValue* given = take(std::move(info), need);
+  const JsonValue* given = take(std::move(info), Kind::string, "a string");
   if (given == nullptr) return false;
-  if (given->kind != Kind::string) {
-    wrong_type(*given, path(name), "a string", doc);
-    return false;
-  }
   const auto found = std::find(names.begin(), names.end(), given->text);
   if (found == names.end()) {
     problems_->add(given->place, path(name) + ": " + unknown_name("value", given->text, names));
@@ -333,26 +325,14 @@ bool Fields::one_of(std::string_view name, std::size_t& index, std::span<const s
 
 bool Fields::strings(std::string_view name, std::vector<PlacedName>& values, CountRange count, std::string_view doc,
                      Need need) {
-  FieldInfo info = info_of(FieldInfo::Kind::list, name, doc, need);
-  info.count = count;
-  info.fields.push_back(info_of(FieldInfo::Kind::string, "", "", Need::optional));
-  const JsonValue* given = take(std::move(info), need);
-  if (given == nullptr) return false;
-  if (given->kind != Kind::array) {
-    wrong_type(*given, path(name), "an array of strings", doc);
-    return false;
-  }
-  if (!(given->items.size() >= count.min && given->items.size() <= count.max)) {
-    problems_->add(given->place, path(name) + " " + count_text(given->items.size(), count) + with_doc(doc));
-    return false;
-  }
+  const JsonValue* given =
+      take(list_info(name, doc, need, count, info_of(FieldInfo::Kind::string, "", "", Need::optional)), Kind::array,
+           "an array of strings");
+  if (given == nullptr || !is_counted(*given, path(name), count, doc)) return false;
   std::vector<PlacedName> read;
   for (const JsonValue& item : given->items) {
-    if (item.kind == Kind::string) {
-      read.push_back({item.text, item.place});
-    } else {
-      wrong_type(item, path(name) + "[" + std::to_string(&item - given->items.data()) + "]", "a string", doc);
-    }
+    const std::string item_path = path(name) + "[" + std::to_string(&item - given->items.data()) + "]";
+    if (is(Kind::string, item, item_path, "a string", doc)) read.push_back({item.text, item.place});
   }
   if (read.size() != given->items.size()) return false;
   values = std::move(read);
@@ -361,56 +341,33 @@ bool Fields::strings(std::string_view name, std::vector<PlacedName>& values, Cou
 
 bool Fields::numbers(std::string_view name, std::span<double> values, NumberRange range, std::string_view doc,
                      Need need) {
-  FieldInfo info = info_of(FieldInfo::Kind::list, name, doc, need);
-  info.count = {values.size(), values.size()};
-  info.fields.push_back(number_info("", range, "", Need::optional));
+  FieldInfo info =
+      list_info(name, doc, need, {values.size(), values.size()}, number_info("", range, "", Need::optional));
   if (need == Need::optional) {
     for (const double value : values)
       info.default_json += (info.default_json.empty() ? "[" : ", ") + number_text(value);
     info.default_json += "]";
   }
-  const JsonValue* given = take(std::move(info), need);
+  const std::string wanted = in_unit("an array of " + std::to_string(values.size()) + " numbers", range);
+  const JsonValue* given = take(std::move(info), Kind::array, wanted);
   if (given == nullptr) return false;
-  const std::string wanted = "an array of " + std::to_string(values.size()) + " numbers" +
-                             (range.unit.empty() ? "" : " in " + std::string(range.unit));
-  if (given->kind != Kind::array) {
-    wrong_type(*given, path(name), wanted, doc);
-    return false;
-  }
   if (given->items.size() != values.size()) {
     problems_->add(given->place, path(name) + " must be " + wanted + ", it has " + std::to_string(given->items.size()) +
                                      with_doc(doc));
     return false;
   }
-  bool all = true;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    all = read_number(given->items[i], path(name) + "[" + std::to_string(i) + "]", range, doc, values[i]) && all;
-  }
-  return all;
+  return read_numbers(*given, path(name), range, doc, values);
 }
 
 bool Fields::number_list(std::string_view name, std::vector<double>& values, CountRange count, NumberRange range,
                          std::string_view doc, Need need) {
-  FieldInfo info = info_of(FieldInfo::Kind::list, name, doc, need);
-  info.count = count;
-  info.fields.push_back(number_info("", range, "", Need::optional));
-  const JsonValue* given = take(std::move(info), need);
-  if (given == nullptr) return false;
-  if (given->kind != Kind::array) {
-    wrong_type(*given, path(name), "an array of numbers", doc);
-    return false;
-  }
-  if (!(given->items.size() >= count.min && given->items.size() <= count.max)) {
-    problems_->add(given->place, path(name) + " " + count_text(given->items.size(), count) + with_doc(doc));
-    return false;
-  }
+  const JsonValue* given = take(list_info(name, doc, need, count, number_info("", range, "", Need::optional)),
+                                Kind::array, "an array of numbers");
+  if (given == nullptr || !is_counted(*given, path(name), count, doc)) return false;
   std::vector<double> read(given->items.size());
-  bool all = true;
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    all = read_number(given->items[i], path(name) + "[" + std::to_string(i) + "]", range, doc, read[i]) && all;
-  }
-  if (all) values = std::move(read);
-  return all;
+  if (!read_numbers(*given, path(name), range, doc, read)) return false;
+  values = std::move(read);
+  return true;
 }
 
 }  // namespace kadans

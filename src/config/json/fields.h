@@ -173,10 +173,15 @@ class Fields {
   void open_items(FieldInfo::Kind kind, const JsonValue& given, const std::string& path, CountRange count,
                   std::string_view doc, std::vector<Fields>& children);
   Fields open_child(const JsonValue& value, std::string path) const;
-  const JsonValue* take(FieldInfo info, Need need);
+  const JsonValue* take(FieldInfo info, JsonValue::Kind kind, const std::string& wanted);
+  bool describe_entries(FieldInfo each);
+  bool is(JsonValue::Kind kind, const JsonValue& value, const std::string& path, const std::string& wanted,
+          std::string_view doc) const;
+  bool is_counted(const JsonValue& list, const std::string& path, CountRange count, std::string_view doc) const;
   bool read_number(const JsonValue& value, const std::string& path, NumberRange range, std::string_view doc,
                    double& result);
-  void wrong_type(const JsonValue& value, const std::string& path, const std::string& wanted, std::string_view doc);
+  bool read_numbers(const JsonValue& list, const std::string& path, NumberRange range, std::string_view doc,
+                    std::span<double> results);
 
   template <typename Read>
   static bool each(std::vector<Fields> children, Read& read) {
