@@ -47,23 +47,4 @@ class McapRecord {
   std::size_t start_;
 };
 
-inline void put_schema(ByteWriter& to, std::uint16_t id, std::string_view name, std::string_view encoding,
-                       std::string_view text) {
-  const McapRecord record(to, McapOpcode::schema);
-  to.put(id);
-  to.put_string(name);
-  to.put_string(encoding);
-  to.put_string(text);
-}
-
-inline void put_channel(ByteWriter& to, std::uint16_t id, std::uint16_t schema, std::string_view topic,
-                        std::string_view encoding, const TextMap& metadata) {
-  const McapRecord record(to, McapOpcode::channel);
-  to.put(id);
-  to.put(schema);
-  to.put_string(topic);
-  to.put_string(encoding);
-  to.put_map(metadata);
-}
-
 }  // namespace kadans

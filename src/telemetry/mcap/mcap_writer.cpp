@@ -56,19 +56,35 @@ bool McapWriter::append() {
   return appended;
 }
 
-std::uint16_t McapWriter::add_schema(std::string name, std::string encoding, std::string text) {
-  schemas_.push_back({.name = std::move(name), .encoding = std::move(encoding), .text = std::move(text)});
-  return static_cast<std::uint16_t>(schemas_.size());
+std::uint16_t McapWriter::add_schema(std::string_view name, std::string_view encoding, std::string_view text) {
+  const std::size_t start = schema_records_.size();
+  const auto id = static_cast<std::uint16_t>(schemas_.size() + 1);
+  {
+    const McapRecord record(schema_records_, McapOpcode::schema);
+    schema_records_.put(id);
+    schema_records_.put_string(name);
+    schema_records_.put_string(encoding);
+    schema_records_.put_string(text);
+  }
+  schemas_.push_back({.start = start, .length = schema_records_.size() - start});
+  return id;
 }
 
-std::uint16_t McapWriter::add_channel(std::string topic, std::string encoding, std::uint16_t schema, TextMap metadata) {
-  Channel channel;
-  channel.topic = std::move(topic);
-  channel.encoding = std::move(encoding);
-  channel.schema = schema;
-  channel.metadata = std::move(metadata);
-  channels_.push_back(std::move(channel));
-  return static_cast<std::uint16_t>(channels_.size());
+std::uint16_t McapWriter::add_channel(std::string_view topic, std::string_view encoding, std::uint16_t schema,
+                                      const TextMap& metadata) {
+  const std::size_t start = channel_records_.size();
+  const auto id = static_cast<std::uint16_t>(channels_.size() + 1);
+  {
+    const McapRecord record(channel_records_, McapOpcode::channel);
+    channel_records_.put(id);
+    channel_records_.put(schema);
+    channel_records_.put_string(topic);
+    channel_records_.put_string(encoding);
+    channel_records_.put_map(metadata);
+  }
+  channels_.push_back(
+      {.schema = schema, .definition = {.start = start, .length = channel_records_.size() - start}, .index = {}});
+  return id;
 }
 
 bool McapWriter::chunk_is_due(std::uint64_t time_ns, std::size_t more) const noexcept {
@@ -78,14 +94,9 @@ bool McapWriter::chunk_is_due(std::uint64_t time_ns, std::size_t more) const noe
          records_.size() + more > settings_.chunk_bytes;
 }
 
-void McapWriter::put_definitions(std::uint16_t channel) {
-  Channel& of = channels_[channel - 1U];
-  if (std::exchange(of.written, true)) return;
-  if (of.schema != 0 && !std::exchange(schemas_[of.schema - 1U].written, true)) {
-    const Schema& schema = schemas_[of.schema - 1U];
-    put_schema(records_, of.schema, schema.name, schema.encoding, schema.text);
-  }
-  put_channel(records_, channel, of.schema, of.topic, of.encoding, of.metadata);
+void McapWriter::put_once(Definition& definition, const ByteWriter& among) {
+  if (!std::exchange(definition.written, true))
+    records_.put(among.bytes().subspan(definition.start, definition.length));
 }
 
 bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64_t time_ns,
@@ -96,9 +107,9 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
   const bool first = records_.size() == 0;
   chunk_start_ns_ = first ? log_time_ns : std::min(chunk_start_ns_, log_time_ns);
   chunk_end_ns_ = first ? log_time_ns : std::max(chunk_end_ns_, log_time_ns);
-  put_definitions(channel);
-
   Channel& to = channels_[channel - 1U];
+  if (to.schema != 0) put_once(schemas_[to.schema - 1U], schema_records_);
+  put_once(to.definition, channel_records_);
   to.index.push_back({log_time_ns, records_.size()});
   std::array<std::byte, message_head> head{};  // at once: there are thousands a second
   std::byte* at = head.data();
@@ -191,38 +202,128 @@ bool McapWriter::flush() {
 
 bool McapWriter::attach(const std::string& name, const std::string& media_type, std::int64_t time_ns,
                         std::span<const std::byte> data) {
-  Attachment index{.offset = file_.size(),
-                   .time_ns = static_cast<std::uint64_t>(time_ns),
-                   .data_size = data.size(),
-                   .name = name,
-                   .media_type = media_type};
+  const std::uint64_t offset = file_.size(), logged_ns = static_cast<std::uint64_t>(time_ns), size = data.size();
   {
     const McapRecord record(block_, McapOpcode::attachment);
-    block_.put(index.time_ns);
-    block_.put(index.time_ns);  // created when logged
+    block_.put(logged_ns);
+    block_.put(logged_ns);  // created when logged
     block_.put_string(name);
     block_.put_string(media_type);
-    block_.put(index.data_size);
+    block_.put(size);
     block_.put(data);
     block_.put(crc32(block_.bytes().subspan(mcap_record_head)));
   }
-  index.length = block_.size();
+  const std::uint64_t length = block_.size();
   if (!append()) return false;
-  attachments_.push_back(std::move(index));
+  const McapRecord record(attachment_indexes_, McapOpcode::attachment_index);
+  attachment_indexes_.put(offset);
+  attachment_indexes_.put(length);
+  attachment_indexes_.put(logged_ns);
+  attachment_indexes_.put(logged_ns);
+  attachment_indexes_.put(size);
+  attachment_indexes_.put_string(name);
+  attachment_indexes_.put_string(media_type);
+  ++attachments_;
   return true;
 }
 
 bool McapWriter::add_metadata(const std::string& name, const TextMap& values) {
-  Metadata index{.offset = file_.size(), .name = name};
+  const std::uint64_t offset = file_.size();
   {
     const McapRecord record(block_, McapOpcode::metadata);
     block_.put_string(name);
     block_.put_map(values);
   }
-  index.length = block_.size();
+  const std::uint64_t length = block_.size();
   if (!append()) return false;
-  metadata_.push_back(std::move(index));
+  const McapRecord record(metadata_indexes_, McapOpcode::metadata_index);
+  metadata_indexes_.put(offset);
+  metadata_indexes_.put(length);
+  metadata_indexes_.put_string(name);
+  ++metadata_;
   return true;
+}
+
+void McapWriter::keep_chunk_index(const Chunk& chunk) {
+  const McapRecord record(chunk_indexes_, McapOpcode::chunk_index);
+  chunk_indexes_.put(chunk.start_ns);
+  chunk_indexes_.put(chunk.end_ns);
+  chunk_indexes_.put(chunk.offset);
+  chunk_indexes_.put(chunk.length);
+  chunk_indexes_.put(
+      static_cast<std::uint32_t>(chunk.indexes.size() * (sizeof(std::uint16_t) + sizeof(std::uint64_t))));
+  for (const auto& [channel, offset] : chunk.indexes) {
+    chunk_indexes_.put(channel);
+    chunk_indexes_.put(offset);
+  }
+  chunk_indexes_.put(chunk.index_length);
+  chunk_indexes_.put_string(chunk.compression);
+  chunk_indexes_.put(chunk.packed);
+  chunk_indexes_.put(chunk.unpacked);
+  ++chunks_;
+}
+
+void McapWriter::keep_statistics() {
+  const McapRecord record(statistics_, McapOpcode::statistics);
+  statistics_.put(messages_);
+  statistics_.put(static_cast<std::uint16_t>(schemas_.size()));
+  statistics_.put(static_cast<std::uint32_t>(channels_.size()));
+  statistics_.put(attachments_);
+  statistics_.put(metadata_);
+  statistics_.put(chunks_);
+  statistics_.put(start_ns_);
+  statistics_.put(end_ns_);
+  statistics_.put(static_cast<std::uint32_t>(channels_.size() * (sizeof(std::uint16_t) + sizeof(std::uint64_t))));
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    statistics_.put(static_cast<std::uint16_t>(i + 1));
+    statistics_.put(channels_[i].messages);
+  }
+}
+
+bool McapWriter::close() {
+  if (!file_.is_open()) return error().empty();
+  if (flush()) {
+    {
+      const McapRecord record(block_, McapOpcode::data_end);
+      block_.put(file_.crc());
+    }
+    if (append()) {
+      put_summary();
+      (void)append();
+    }
+  }
+  return file_.close();
+}
+
+void McapWriter::put_summary() {
+  keep_statistics();
+  const std::array<std::pair<McapOpcode, const ByteWriter*>, 6> groups{
+      {{McapOpcode::schema, &schema_records_},
+       {McapOpcode::channel, &channel_records_},
+       {McapOpcode::statistics, &statistics_},
+       {McapOpcode::chunk_index, &chunk_indexes_},
+       {McapOpcode::attachment_index, &attachment_indexes_},
+       {McapOpcode::metadata_index, &metadata_indexes_}}};
+  const std::uint64_t start = file_.size();
+  ByteWriter offsets;
+  for (const auto& [opcode, records] : groups) {
+    if (records->size() == 0) continue;
+    const McapRecord record(offsets, McapOpcode::summary_offset);
+    offsets.put(static_cast<std::uint8_t>(opcode));
+    offsets.put(start + block_.size());
+    offsets.put(static_cast<std::uint64_t>(records->size()));
+    block_.put(records->bytes());
+  }
+  const std::uint64_t offsets_start = start + block_.size();
+  block_.put(offsets.bytes());
+
+  // By hand, because the CRC covers the footer's own opcode, length and first two fields.
+  block_.put(static_cast<std::uint8_t>(McapOpcode::footer));
+  block_.put(static_cast<std::uint64_t>(2 * sizeof(std::uint64_t) + sizeof(std::uint32_t)));
+  block_.put(start);
+  block_.put(offsets_start);
+  block_.put(crc32(block_.bytes()));
+  block_.put(bytes_of(mcap_magic));
 }
 
 static_assert(sizeof(off_t) == 8, "records may pass 2 GB on 32-bit machines too");

@@ -75,8 +75,9 @@ class McapWriter {
   [[nodiscard]] bool open(const std::string& path);
 
   // May be called at any time after open(). Numbers count from 1; schema 0 means a channel without schema.
-  std::uint16_t add_schema(std::string name, std::string encoding, std::string text);
-  std::uint16_t add_channel(std::string topic, std::string encoding, std::uint16_t schema, TextMap metadata = {});
+  std::uint16_t add_schema(std::string_view name, std::string_view encoding, std::string_view text);
+  std::uint16_t add_channel(std::string_view topic, std::string_view encoding, std::uint16_t schema,
+                            const TextMap& metadata = {});
 
   [[nodiscard]] bool write(std::uint16_t channel, std::uint32_t sequence, std::int64_t time_ns,
                            std::span<const std::byte> payload);
@@ -93,18 +94,16 @@ class McapWriter {
   std::uint64_t messages() const noexcept { return messages_; }  // messages written, those of the open chunk included
 
  private:
-  struct Schema {
-    std::string name, encoding, text;
-    bool written = false;
+  struct Definition {  // where it stands among those for the summary
+    std::size_t start = 0, length = 0;
+    bool written = false;  // before its first message
   };
   struct Indexed {  // as it stands in the file
     std::uint64_t time_ns = 0, offset = 0;
   };
   struct Channel {
-    std::string topic, encoding;
     std::uint16_t schema = 0;
-    TextMap metadata;
-    bool written = false;
+    Definition definition;
     std::uint64_t messages = 0;
     std::vector<Indexed> index;  // of the open chunk
   };
@@ -113,36 +112,23 @@ class McapWriter {
     std::string_view compression;
     std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes;  // channel, offset in the file
   };
-  struct Attachment {
-    std::uint64_t offset = 0, length = 0, time_ns = 0, data_size = 0;
-    std::string name, media_type;
-  };
-  struct Metadata {
-    std::uint64_t offset = 0, length = 0;
-    std::string name;
-  };
   struct ZstdDelete {
     void operator()(ZSTD_CCtx_s* context) const noexcept;
   };
 
   bool chunk_is_due(std::uint64_t time_ns, std::size_t more) const noexcept;
-  void put_definitions(std::uint16_t channel);
+  void put_once(Definition& definition, const ByteWriter& among);
   bool pack();
   void put_chunk(Chunk& chunk);
   void put_message_indexes(Chunk& chunk);
   void keep_chunk_index(const Chunk& chunk);
   [[nodiscard]] bool append();
   void put_summary();
-  void put_schemas();
-  void put_channels();
-  void put_statistics();
-  void put_chunk_indexes();
-  void put_attachment_indexes();
-  void put_metadata_indexes();
+  void keep_statistics();
 
   McapSettings settings_;
   RecordFile file_;
-  std::vector<Schema> schemas_;
+  std::vector<Definition> schemas_;
   std::vector<Channel> channels_;
   std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
 
@@ -152,10 +138,9 @@ class McapWriter {
   std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
 
   std::uint64_t messages_ = 0, start_ns_ = 0, end_ns_ = 0;
-  ByteWriter chunk_indexes_;  // already encoded for the summary: a record of some hours has tens of thousands of them
-  std::uint32_t chunks_ = 0;
-  std::vector<Attachment> attachments_;
-  std::vector<Metadata> metadata_;
+  std::uint32_t chunks_ = 0, attachments_ = 0, metadata_ = 0;
+  // The records of the summary.
+  ByteWriter schema_records_, channel_records_, statistics_, chunk_indexes_, attachment_indexes_, metadata_indexes_;
 };
 
 }  // namespace kadans
