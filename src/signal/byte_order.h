@@ -20,6 +20,11 @@ template <typename T>
 concept Number = std::integral<T> || std::floating_point<T>;
 
 using TextMap = std::map<std::string, std::string>;
+// "" when there is none of this name.
+inline std::string fact_in(const TextMap& facts, const std::string& name) {
+  const auto found = facts.find(name);
+  return found == facts.end() ? "" : found->second;
+}
 
 inline std::span<const std::byte> bytes_of(std::string_view text) noexcept {
   return std::as_bytes(std::span(text.data(), text.size()));

@@ -96,14 +96,11 @@ bool TickReader::read() {
 }
 
 bool TickReader::learn() {
-  const TextMap* const found =
-      files_.reader().metadata().contains(inputs_metadata) ? &files_.reader().metadata().at(inputs_metadata) : nullptr;
-  if (found == nullptr) return stop("it holds no inputs of its ticks");
+  const auto found = files_.reader().metadata().find(inputs_metadata);
+  if (found == files_.reader().metadata().end()) return stop("it holds no inputs of its ticks");
   const std::vector<std::string> before = std::move(names_);
-  names_.clear();
-  layout_ = InputLayout::of(*found);
-  const auto names = found->find("names");
-  if (names != found->end()) names_ = names_in(names->second);
+  layout_ = InputLayout::of(found->second);
+  names_ = names_in(fact_in(found->second, "names"));
   for (std::uint32_t i = 0; i < names_.size(); ++i) numbers_[names_[i]] = i;
   if (!before.empty() && before != names_) return stop("it is no part of the same run");
   if (!layout_) return stop("its inputs are of another version of kadans");
@@ -116,9 +113,7 @@ void TickReader::take_row(const McapMessage& message) {
   std::vector<std::uint32_t>& numbers = known->second;
   if (added) {
     const TextMap& facts = files_.reader().channels().at(message.channel).metadata;
-    const auto description = facts.find("signals");
-    if (description == facts.end()) return;
-    for (const std::string& name : names_in(description->second)) {
+    for (const std::string& name : names_in(fact_in(facts, "signals"))) {
       const auto number = numbers_.find(name);
       numbers.push_back(number == numbers_.end() ? std::numeric_limits<std::uint32_t>::max() : number->second);
     }

@@ -21,8 +21,7 @@ bool is_upkeep(const std::string& name) {
 namespace {
 
 std::uint32_t number_in(const TextMap& metadata, const char* name) {
-  const auto found = metadata.find(name);
-  return found == metadata.end() ? 1 : number_of<std::uint32_t>(found->second).value_or(1);
+  return number_of<std::uint32_t>(fact_in(metadata, name)).value_or(1);
 }
 
 }  // namespace
@@ -45,9 +44,7 @@ RecordComparison::Topic& RecordComparison::topic_of(std::uint16_t channel) {
   Topic& topic = known->second;
   if (!added) return topic;
   const McapChannel& info = record_.channels().at(channel);
-  const auto description = info.metadata.find("signals");
-  if (description == info.metadata.end()) return topic;
-  std::istringstream lines(description->second);
+  std::istringstream lines(fact_in(info.metadata, "signals"));
   for (std::string line; std::getline(lines, line);) {
     const std::string name = line.substr(0, line.find('\t'));
     const auto signal = table_.find(name);
@@ -187,14 +184,13 @@ class Rows {
 
   void learn(std::vector<std::size_t>& places) {
     const TextMap& facts = rows_.reader().channels().at(rows_.channel()).metadata;
-    const auto every = facts.find("every_ticks");
-    const auto every_ticks = every == facts.end() ? std::nullopt : number_of<std::uint32_t>(every->second);
+    const std::uint32_t every_ticks = std::max(1U, number_in(facts, "every_ticks"));
     for (const Signal& signal : rows_.topic().signals) {
       const auto known = signals_.find(signal.name);
       places.push_back(known == signals_.end() ? none : known->second);
       if (places.back() == none) continue;
       held_[places.back()].single = rows_.precision() == Precision::single;
-      held_[places.back()].every_ticks = std::max(every_ticks.value_or(1), std::uint32_t{1});
+      held_[places.back()].every_ticks = every_ticks;
     }
   }
 

@@ -54,9 +54,8 @@ RecordTopic topic_of(const McapReader& reader, std::uint16_t channel) {
   const McapChannel& info = reader.channels().at(channel);
   RecordTopic topic{.name = info.topic, .schema = "", .encoding = info.encoding, .signals = {}};
   if (info.schema != 0) topic.schema = reader.schemas().at(info.schema).name;
-  const auto description = info.metadata.find("signals");
-  if (description == info.metadata.end() || info.encoding != "cdr") return topic;
-  std::istringstream lines(description->second);
+  if (info.encoding != "cdr") return topic;
+  std::istringstream lines(fact_in(info.metadata, "signals"));
   for (std::string line; std::getline(lines, line);) topic.signals.push_back(signal_in(line));
   return topic;
 }
@@ -178,9 +177,7 @@ double TopicOutline::rate_hz() const noexcept {
 
 std::string RecordOutline::fact(const std::string& metadata_name, const std::string& key) const {
   const auto facts = metadata.find(metadata_name);
-  if (facts == metadata.end()) return "";
-  const auto fact = facts->second.find(key);
-  return fact == facts->second.end() ? "" : fact->second;
+  return facts == metadata.end() ? "" : fact_in(facts->second, key);
 }
 
 std::string RecordOutline::robot() const {
@@ -211,8 +208,7 @@ RecordOutline outline_of(const std::string& path) {
     if (added) {
       topic->second = {.topic = rows.topic(), .channel = rows.channel()};
       const TextMap& facts = rows.reader().channels().at(rows.channel()).metadata;
-      const auto every = facts.find("every_ticks");
-      topic->second.exact = every != facts.end() && every->second == "1" && rows.precision() == Precision::full;
+      topic->second.exact = fact_in(facts, "every_ticks") == "1" && rows.precision() == Precision::full;
     }
     add_message(rows, outline, topic->second);
   }

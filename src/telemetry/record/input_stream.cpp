@@ -56,8 +56,7 @@ void put_planes(std::size_t count, NumberAt number, ByteWriter& message) {
 constexpr std::size_t bytes_of_bits(std::size_t bits) noexcept { return (bits + 7) / 8; }
 
 std::optional<std::uint32_t> count_in(const TextMap& facts, const char* name, std::uint32_t max) {
-  const auto found = facts.find(name);
-  const auto number = found == facts.end() ? std::nullopt : number_of<std::uint32_t>(found->second);
+  const auto number = number_of<std::uint32_t>(fact_in(facts, name));
   return number && *number <= max ? number : std::nullopt;
 }
 
@@ -135,14 +134,13 @@ TextMap InputLayout::facts() const {
 }
 
 std::optional<InputLayout> InputLayout::of(const TextMap& facts) {
-  const auto format = facts.find("format");
   const auto joints = count_in(facts, "joints", max_joints), feet = count_in(facts, "feet", max_feet),
              channels = count_in(facts, "channels", max_channels), down = count_in(facts, "down", down_max);
   const auto seen = facts.contains("seen") ? count_in(facts, "seen", max_seen) : std::optional<std::uint32_t>(0);
   const auto state_bytes =
       facts.contains("state_bytes") ? count_in(facts, "state_bytes", state_bytes_max) : std::optional<std::uint32_t>(0);
-  const bool known = format != facts.end() && format->second == inputs_format;
-  if (!known || !joints || !feet || !channels || !down || !seen || !state_bytes) return std::nullopt;
+  if (fact_in(facts, "format") != inputs_format || !joints || !feet || !channels || !down || !seen || !state_bytes)
+    return std::nullopt;
   return InputLayout{*joints, *feet, *channels, *down, *seen, *state_bytes};
 }
 

@@ -50,11 +50,6 @@ bool right_path(const std::string& name) {
 
 }  // namespace
 
-std::string RunInputs::fact(const std::string& name) const {
-  const auto found = run.find(name);
-  return found == run.end() ? "" : found->second;
-}
-
 void RunInputs::pack() {
   for (InputFile& file : files) {
     if (file.text) file.packed = kadans::packed(*file.text);

@@ -32,8 +32,7 @@ struct RunInputs {
   std::vector<InputFile> files;  // by path
 
   bool empty() const noexcept { return files.empty(); }
-  // A fact of the run; "" when there is no fact of this name.
-  std::string fact(const std::string& name) const;
+  std::string fact(const std::string& name) const { return fact_in(run, name); }
   void pack();  // the texts
 };
 
