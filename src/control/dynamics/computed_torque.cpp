@@ -27,7 +27,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "kadans/control/control_object.h"
@@ -38,8 +37,6 @@
 #include "kadans/control/model_state.h"
 
 namespace kadans {
-
-class ModelState;
 
 class ComputedTorque final : public ControlObject {
  public:
@@ -63,7 +60,6 @@ class ComputedTorque final : public ControlObject {
 
   // Throws std::invalid_argument for a passive joint.
   explicit ComputedTorque(const ObjectSetup& setup);
-  ~ComputedTorque() override;
 
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
@@ -96,12 +92,12 @@ class ComputedTorque final : public ControlObject {
   static void aim(Part& part, const ControlInput& input) noexcept;
   static double settle(Part& part, double law_Nm, double model_Nm, bool known, double dt_s) noexcept;
 
-  std::vector<Part> parts_;            // control thread
-  std::int64_t started_ns_ = 0;        // control thread
-  double model_age_s_ = 0;             // control thread
-  std::unique_ptr<ModelState> model_;  // behavior thread
-  std::int64_t last_update_ns_ = 0;    // behavior thread
-  Handed<ModelData> draft_;            // behavior thread
+  std::vector<Part> parts_;          // control thread
+  std::int64_t started_ns_ = 0;      // control thread
+  double model_age_s_ = 0;           // control thread
+  ModelState model_;                 // behavior thread
+  std::int64_t last_update_ns_ = 0;  // behavior thread
+  Handed<ModelData> draft_;          // behavior thread
   HandDown<ModelData> data_;
 };
 
@@ -112,18 +108,16 @@ constexpr double period_max_s = 0.05;  // of the high level, for looking ahead
 }  // namespace
 
 // Until the high level has seen the robot the mass matrix is that of all joints at 0, and there is no bias.
-ComputedTorque::ComputedTorque(const ObjectSetup& setup) : model_(std::make_unique<ModelState>(setup.model)) {
+ComputedTorque::ComputedTorque(const ObjectSetup& setup) : model_(setup.model) {
   for (JointAxis& axis : joint_axes(setup)) parts_.push_back({.axis = std::move(axis)});
-  const Eigen::MatrixXd& mass = model_->dynamics().mass_matrix();
+  const Eigen::MatrixXd& mass = model_.dynamics().mass_matrix();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      draft_.mass(i, j) = model_->entry_of(mass, parts_[i].axis.joint, parts_[j].axis.joint);
+      draft_.mass(i, j) = model_.entry_of(mass, parts_[i].axis.joint, parts_[j].axis.joint);
     }
   }
   data_.publish(draft_);
 }
-
-ComputedTorque::~ComputedTorque() = default;
 
 void ComputedTorque::declare(Declaration& declaration) {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -158,13 +152,13 @@ void ComputedTorque::declare(AxisTables& t, Part& part) {
 void ComputedTorque::update(const Snapshot& snapshot) {
   const double since_s = std::clamp(1e-9 * static_cast<double>(snapshot.time_ns - last_update_ns_), 0.0, period_max_s);
   last_update_ns_ = snapshot.time_ns;
-  if (!model_->update(snapshot, 0.5 * since_s)) return;
-  const Dynamics& dynamics = model_->dynamics();
+  if (!model_.update(snapshot, 0.5 * since_s)) return;
+  const Dynamics& dynamics = model_.dynamics();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const std::size_t joint = parts_[i].axis.joint;
-    draft_.bias_Nm[i] = model_->effort_of(dynamics.bias(), joint);
+    draft_.bias_Nm[i] = model_.effort_of(dynamics.bias(), joint);
     for (std::size_t j = 0; j <= i; ++j) {
-      draft_.mass(i, j) = model_->entry_of(dynamics.mass_matrix(), joint, parts_[j].axis.joint);
+      draft_.mass(i, j) = model_.entry_of(dynamics.mass_matrix(), joint, parts_[j].axis.joint);
     }
   }
   draft_.time_ns = snapshot.time_ns;

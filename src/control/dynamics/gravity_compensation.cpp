@@ -22,7 +22,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -36,8 +35,6 @@
 
 namespace kadans {
 
-class ModelState;
-
 class GravityCompensation final : public ControlObject {
  public:
   struct Config {
@@ -50,7 +47,6 @@ class GravityCompensation final : public ControlObject {
 
   // Throws std::invalid_argument for a passive joint.
   explicit GravityCompensation(const ObjectSetup& setup);
-  ~GravityCompensation() override;
 
   void declare(Declaration& declaration) override;
   void start(const ControlInput& input) noexcept override;
@@ -75,15 +71,15 @@ class GravityCompensation final : public ControlObject {
     bool at_once = false;  // until the first G of this activation
   };
 
-  bool at_once_from_off_;              // any thread
-  std::vector<Part> parts_;            // control thread
-  Config config_;                      // control thread
-  double gain_ = 1;                    // control thread: on its way to config_.gain
-  std::int64_t started_ns_ = 0;        // control thread
-  double model_age_s_ = 0;             // control thread
-  std::unique_ptr<ModelState> model_;  // behavior thread
-  Eigen::MatrixXd slope_;              // behavior thread: of all joints
-  Handed<GravityData> draft_;          // behavior thread
+  bool at_once_from_off_;        // any thread
+  std::vector<Part> parts_;      // control thread
+  Config config_;                // control thread
+  double gain_ = 1;              // control thread: on its way to config_.gain
+  std::int64_t started_ns_ = 0;  // control thread
+  double model_age_s_ = 0;       // control thread
+  ModelState model_;             // behavior thread
+  Eigen::MatrixXd slope_;        // behavior thread: of all joints
+  Handed<GravityData> draft_;    // behavior thread
   HandDown<GravityData> data_;
 };
 
@@ -102,13 +98,11 @@ bool at_once_from_off(const ObjectOptions& options) {
 }  // namespace
 
 GravityCompensation::GravityCompensation(const ObjectSetup& setup)
-    : at_once_from_off_(at_once_from_off(setup.options)), model_(std::make_unique<ModelState>(setup.model)) {
+    : at_once_from_off_(at_once_from_off(setup.options)), model_(setup.model) {
   for (JointAxis& axis : joint_axes(setup)) parts_.push_back({.axis = std::move(axis)});
   const auto joints = static_cast<Eigen::Index>(setup.model.joints.size());
   slope_.setZero(joints, joints);
 }
-
-GravityCompensation::~GravityCompensation() = default;
 
 void GravityCompensation::declare(Declaration& declaration) {
   declaration.tunable("gain", "", 0, 1, config_.gain, "Share of gravity that is compensated.");
@@ -125,15 +119,15 @@ void GravityCompensation::declare(Declaration& declaration) {
 }
 
 void GravityCompensation::update(const Snapshot& snapshot) {
-  if (!model_->update(snapshot)) return;
-  const Dynamics& dynamics = model_->dynamics();
+  if (!model_.update(snapshot)) return;
+  const Dynamics& dynamics = model_.dynamics();
   dynamics.gravity_gradient(slope_);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const std::size_t joint = parts_[i].axis.joint;
-    draft_.position_rad[i] = model_->position_rad(joint);
-    draft_.gravity_Nm[i] = model_->effort_of(dynamics.gravity(), joint);
+    draft_.position_rad[i] = model_.position_rad(joint);
+    draft_.gravity_Nm[i] = model_.effort_of(dynamics.gravity(), joint);
     for (std::size_t j = 0; j <= i; ++j) {
-      draft_.slope_Nm_per_rad(i, j) = model_->entry_of(slope_, joint, parts_[j].axis.joint);
+      draft_.slope_Nm_per_rad(i, j) = model_.entry_of(slope_, joint, parts_[j].axis.joint);
     }
   }
   draft_.time_ns = snapshot.time_ns;
