@@ -36,14 +36,10 @@ Vec3 roll_pitch_yaw(const Quat& q) noexcept {
   return {std::atan2(y[2], z[2]), pitch_rad, std::atan2(x[1], x[0])};
 }
 
-namespace {
-
-Pose motion(const Joint& joint, double position) noexcept {
+Pose motion_of(const Joint& joint, double position) noexcept {
   if (joint.type != JointType::prismatic) return {{}, from_axis_angle(joint.axis, position)};
   return {{joint.axis[0] * position, joint.axis[1] * position, joint.axis[2] * position}, {1, 0, 0, 0}};
 }
-
-}  // namespace
 
 Kinematics::Kinematics(const RobotModel& model) : model_(&model), poses_{} {
   assert(model.joints.size() <= max_joints);
@@ -56,7 +52,7 @@ void Kinematics::update(std::span<const double> position_rad, const Pose& base) 
   poses_[0] = base;
   for (std::size_t i = 0; i < model_->joints.size(); ++i) {
     const Joint& joint = model_->joints[i];
-    poses_[i + 1] = compose(compose(poses_[joint.parent], joint.origin), motion(joint, position_rad[i]));
+    poses_[i + 1] = compose(compose(poses_[joint.parent], joint.origin), motion_of(joint, position_rad[i]));
   }
 }
 

@@ -43,6 +43,9 @@ inline Pose compose(const Pose& a, const Pose& b) noexcept {
   return {transform(a, b.position_m), multiply(a.orientation, b.orientation)};
 }
 
+// How far the joint moves its child from its origin.
+Pose motion_of(const Joint& joint, double position) noexcept;
+
 class Kinematics {
  public:
   // Keeps a reference to the model, which must outlive it.

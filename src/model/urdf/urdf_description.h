@@ -77,9 +77,6 @@ struct UrdfDescription {
 // fixed one are fixed, a root that is there to carry a floating joint is gone.
 UrdfDescription read_description(UrdfDocument& document);
 
-// How far the joint moves its child from its origin.
-Pose motion_of(const Joint& joint, double position) noexcept;
-
 // One <transmission>, in ROS's old and new form and in Drake's. Its gear and its motor's inertia go to the description.
 // Called when all joints are read.
 void read_transmission(UrdfDocument& document, const tinyxml2::XMLElement& element, UrdfDescription& robot);

@@ -127,12 +127,6 @@ void tell_motors(const RobotModel& model, UrdfDocument& document) {
 
 RobotModel merged(const UrdfDescription& robot, UrdfDocument& document) { return Merger(robot, document).run(); }
 
-Pose motion_of(const Joint& joint, double position) noexcept {
-  if (joint.type != JointType::prismatic) return {{0, 0, 0}, from_axis_angle(joint.axis, position)};
-  const Vec3& axis = joint.axis;
-  return {{axis[0] * position, axis[1] * position, axis[2] * position}, {1, 0, 0, 0}};
-}
-
 RobotModel read_urdf(const std::string& file, const UrdfOptions& options, std::vector<InputProblem>* warnings) {
   return read_urdf_text(read_input_file(file, description_max_bytes), file, options, warnings);
 }
