@@ -44,17 +44,11 @@ FaultMask ImuWatch::look(const ImuSample& sample, const SensorState& health) noe
 void ImuWatch::describe(const SensorState& health, Fault& fault) const noexcept {
   switch (fault.code) {
     case FaultCode::imu_silent:
-      fault.value = health.silent_ticks;
-      fault.limit = silent_ticks_max_ * health.period_ticks;
-      break;
+      return tell(fault, health.silent_ticks, silent_ticks_max_ * health.period_ticks);
     case FaultCode::imu_stuck:
-      fault.value = repeats_.count();
-      fault.limit = settings_.imu_stuck_ticks;
-      break;
+      return tell(fault, repeats_.count(), settings_.imu_stuck_ticks);
     case FaultCode::imu_jump:
-      fault.value = jump_;
-      fault.limit = jump_max_;
-      break;
+      return tell(fault, jump_, jump_max_);
     default:
       break;
   }
@@ -68,8 +62,7 @@ FaultMask ChannelWatch::look(const ChannelSample& sample, const SensorState& hea
 }
 
 void ChannelWatch::describe(const ChannelSample& sample, Fault& fault) const noexcept {
-  fault.value = sample.value;
-  fault.limit = sample.value < min_ ? min_ : max_;
+  tell(fault, sample.value, sample.value < min_ ? min_ : max_);
   fault.words = name_;
 }
 
@@ -93,17 +86,11 @@ FaultMask FootWatch::look(const FootSample& sample, const SensorState& health) n
 void FootWatch::describe(const SensorState& health, Fault& fault) const noexcept {
   switch (fault.code) {
     case FaultCode::foot_silent:
-      fault.value = health.silent_ticks;
-      fault.limit = silent_ticks_max_;
-      break;
+      return tell(fault, health.silent_ticks, silent_ticks_max_);
     case FaultCode::foot_stuck:
-      fault.value = repeats_.count();
-      fault.limit = stuck_ticks_;
-      break;
+      return tell(fault, repeats_.count(), stuck_ticks_);
     case FaultCode::foot_jump:
-      fault.value = worst_N_;
-      fault.limit = force_max_N_;
-      break;
+      return tell(fault, worst_N_, force_max_N_);
     default:
       break;
   }
@@ -166,22 +153,17 @@ FaultMask FallWatch::look(const BaseStatus& base, const ImuSample& sample, doubl
 void FallWatch::describe(const BaseStatus& base, Fault& fault) const noexcept {
   const double rate_rad_s = norm(base.angular_velocity_rad_s);
   if (fault.code == FaultCode::tilt) {
-    fault.value = base.tilt_rad;
-    fault.limit = tilt_max_rad_;
+    tell(fault, base.tilt_rad, tilt_max_rad_);
   } else if (fault.code == FaultCode::impact) {
-    fault.value = impact_m_s2_;
-    fault.limit = settings_.impact_max_m_s2;
+    tell(fault, impact_m_s2_, settings_.impact_max_m_s2);
   } else if (fault.code != FaultCode::fall) {
     return;
   } else if (rate_rad_s > settings_.rate_max_rad_s) {
-    fault.value = rate_rad_s;
-    fault.limit = settings_.rate_max_rad_s;
+    tell(fault, rate_rad_s, settings_.rate_max_rad_s);
   } else if (std::abs(base.roll_rad) > settings_.roll_max_rad) {
-    fault.value = base.roll_rad;
-    fault.limit = settings_.roll_max_rad;
+    tell(fault, base.roll_rad, settings_.roll_max_rad);
   } else {
-    fault.value = base.pitch_rad;
-    fault.limit = settings_.pitch_max_rad;
+    tell(fault, base.pitch_rad, settings_.pitch_max_rad);
   }
 }
 

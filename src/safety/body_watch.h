@@ -168,13 +168,8 @@ class EngineWatch {
   }
   void describe(Fault& fault) const noexcept {
     if (fault.code == FaultCode::tick_overrun) fault.value = missed_;
-    if (fault.code == FaultCode::heartbeat_lost) {
-      fault.value = heartbeat_age_s_;
-      fault.limit = heartbeat_timeout_s_;
-    } else if (fault.code == FaultCode::overruns) {
-      fault.value = in_a_row_;
-      fault.limit = in_a_row_max_;
-    }
+    if (fault.code == FaultCode::heartbeat_lost) tell(fault, heartbeat_age_s_, heartbeat_timeout_s_);
+    if (fault.code == FaultCode::overruns) tell(fault, in_a_row_, in_a_row_max_);
   }
   void clear() noexcept { in_a_row_ = 0; }
   void pass_state(auto& bytes) noexcept { bytes(heartbeat_age_s_, in_a_row_, missed_, missed_ticks_); }

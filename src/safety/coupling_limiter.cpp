@@ -63,8 +63,7 @@ FaultMask CouplingLimiter::limit(const JointStates& joints, ActuationFrame& actu
 // "drive left: 12.3, limit 11.5"
 void CouplingLimiter::describe(Fault& fault) const noexcept {
   if (fault.code != cut_.code) return;
-  fault.value = cut_.value;
-  fault.limit = cut_.limit;
+  tell(fault, cut_.value, cut_.limit);
   fault.words = names_[cut_.drive];
   char* const end = fault.words.data() + fault.words.size() - 1;
   char* at = std::find(fault.words.data(), end, '\0');

@@ -128,34 +128,23 @@ JointActuation JointLimiter::damp(const JointState& state) const noexcept {
 }
 
 void JointLimiter::describe(const Input& in, Fault& fault) const noexcept {
-  fault.value = asked_Nm_;
   switch (fault.code) {
     case FaultCode::effort_limit:
-      fault.limit = effort_max_Nm_ * in.derating;
-      break;
+      return tell(fault, asked_Nm_, effort_max_Nm_ * in.derating);
     case FaultCode::effort_rate_limit:
-      fault.value = in.change_s > 0 ? (asked_Nm_ - in.last_Nm) / in.change_s : 0;
-      fault.limit = rate_Nm_s_;
-      break;
+      return tell(fault, in.change_s > 0 ? (asked_Nm_ - in.last_Nm) / in.change_s : 0, rate_Nm_s_);
     case FaultCode::power_limit:
-      fault.value = asked_Nm_ * in.state.velocity_rad_s;
-      fault.limit = power_max_W_;
-      break;
+      return tell(fault, asked_Nm_ * in.state.velocity_rad_s, power_max_W_);
     case FaultCode::soft_stop:
-      fault.value = in.state.position_rad;
-      if ((of_set_point_ & bit(fault.code)) != 0 && given_rad_ != asked_rad_) {
-        fault.value = asked_rad_;
-        fault.limit = given_rad_;
-        break;
-      }
-      fault.limit = 2 * in.state.position_rad > lower_rad_ + upper_rad_ ? highest_free_rad_ : lowest_free_rad_;
-      break;
+      if ((of_set_point_ & bit(fault.code)) != 0 && given_rad_ != asked_rad_)
+        return tell(fault, asked_rad_, given_rad_);
+      return tell(fault, in.state.position_rad,
+                  2 * in.state.position_rad > lower_rad_ + upper_rad_ ? highest_free_rad_ : lowest_free_rad_);
     case FaultCode::soft_speed:
-      fault.value = (of_set_point_ & bit(fault.code)) != 0 ? asked_rad_s_ : in.state.velocity_rad_s;
-      fault.limit = velocity_max_rad_s_;
-      break;
+      return tell(fault, (of_set_point_ & bit(fault.code)) != 0 ? asked_rad_s_ : in.state.velocity_rad_s,
+                  velocity_max_rad_s_);
     default:
-      break;
+      fault.value = asked_Nm_;
   }
 }
 

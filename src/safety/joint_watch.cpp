@@ -55,13 +55,9 @@ void JointWatch::describe(const Input& in, Fault& fault) const noexcept {
   using enum FaultCode;
   switch (fault.code) {
     case position_limit:
-      fault.value = in.state.position_rad;
-      fault.limit = in.state.position_rad < lower_rad_ ? lower_rad_ : upper_rad_;
-      break;
+      return tell(fault, in.state.position_rad, in.state.position_rad < lower_rad_ ? lower_rad_ : upper_rad_);
     case velocity_limit:
-      fault.value = in.state.velocity_rad_s;
-      fault.limit = fastest_rad_s_;
-      break;
+      return tell(fault, in.state.velocity_rad_s, fastest_rad_s_);
     case actuation_not_finite:
       fault.value = first_not_finite(in.asked);
       break;
@@ -69,22 +65,14 @@ void JointWatch::describe(const Input& in, Fault& fault) const noexcept {
       fault.value = in.sample.position_rad;
       break;
     case sensor_silent:
-      fault.value = in.health.silent_ticks;
-      fault.limit = silent_ticks_max_ + in.health.period_ticks - 1;
-      break;
+      return tell(fault, in.health.silent_ticks, silent_ticks_max_ + in.health.period_ticks - 1);
     case sensor_stuck:
-      fault.value = same_;
-      fault.limit = stuck_ticks_;
-      break;
+      return tell(fault, same_, stuck_ticks_);
     case sensor_jump:
-      fault.value = step_rad_;
-      fault.limit = step_max_rad_;
-      break;
+      return tell(fault, step_rad_, step_max_rad_);
     case motor_warm:
     case motor_hot:
-      fault.value = thermal_.temperature_C();
-      fault.limit = fault.code == motor_warm ? warm_C_ : hot_C_;
-      break;
+      return tell(fault, thermal_.temperature_C(), fault.code == motor_warm ? warm_C_ : hot_C_);
     default:
       break;
   }
@@ -115,18 +103,13 @@ void DriveWatch::describe(const SafetySettings& settings, const Input& in, Fault
       fault.words = words_of(in.sample.code, settings.drive_words);
       break;
     case FaultCode::drive_not_enabled:
-      fault.value = idle_s_;
-      fault.limit = settings.drives.enable_s;
+      tell(fault, idle_s_, settings.drives.enable_s);
       fault.words = fault_words(name(in.sample.drive));
       break;
     case FaultCode::drive_hot:
-      fault.value = static_cast<double>(in.sample.temperature_C);
-      fault.limit = settings.drives.hot_C;
-      break;
+      return tell(fault, static_cast<double>(in.sample.temperature_C), settings.drives.hot_C);
     case FaultCode::sample_old:
-      fault.value = age_s(in);
-      fault.limit = settings.drives.sample_age_max_s;
-      break;
+      return tell(fault, age_s(in), settings.drives.sample_age_max_s);
     default:
       break;
   }
@@ -146,11 +129,9 @@ FaultMask SupplyWatch::look(const SensorFrame& sensors, double dt_s) noexcept {
 
 void SupplyWatch::describe(Fault& fault) const noexcept {
   if (fault.code == FaultCode::supply_low) {
-    fault.value = supply_V_;
-    fault.limit = settings_.lowest_V;
+    tell(fault, supply_V_, settings_.lowest_V);
   } else if (fault.code == FaultCode::supply_high) {
-    fault.value = supply_V_;
-    fault.limit = settings_.highest_V;
+    tell(fault, supply_V_, settings_.highest_V);
   } else if (fault.code == FaultCode::emergency_input) {
     fault.words = fault_words("the button");
   }

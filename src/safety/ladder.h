@@ -30,6 +30,12 @@ constexpr FaultMask bit_if(bool condition, FaultCode code) noexcept { return con
 // Of a mask that is not empty.
 constexpr FaultCode first_of(FaultMask mask) noexcept { return static_cast<FaultCode>(std::countr_zero(mask)); }
 
+// What was seen, and what was allowed.
+inline void tell(Fault& fault, double value, double limit) noexcept {
+  fault.value = value;
+  fault.limit = limit;
+}
+
 // The reaction to a fault: the rungs of the ladder that it asks for, and how they are left again. Each fault code has a
 // reaction, and each reaction is a key of the robot's configuration.
 //

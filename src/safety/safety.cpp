@@ -169,10 +169,7 @@ void Safety::judge_robot(const SafetyInput& in, FaultMask body, FaultMask others
     fall_.describe(in.base, fault);
     engine_.describe(fault);
     supply_.describe(fault);
-    if (fault.code == FaultCode::joints_lost) {
-      fault.value = lost_;
-      fault.limit = settings_.joints_lost_max;
-    }
+    if (fault.code == FaultCode::joints_lost) tell(fault, lost_, settings_.joints_lost_max);
     if (fault.code == FaultCode::emergency_stop) fault.words = stopped_by_;
     raise(fault);
   }
