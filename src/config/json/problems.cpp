@@ -61,6 +61,14 @@ void Problems::add_unknown(TextPlace place, std::string_view what, std::string_v
   if (problems_.size() < problems_max) add(place, unknown_name(what, wrong, known, where));
 }
 
+std::optional<std::size_t> Problems::known(const PlacedName& name, std::string_view what,
+                                           std::span<const std::string> known, std::string_view where) {
+  const auto found = std::ranges::find(known, name.name);
+  if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+  add_unknown(name.place, what, name.name, known, where);
+  return std::nullopt;
+}
+
 void Problems::throw_if_any() const {
   if (empty()) return;
   const auto order = [](const InputProblem& p) { return std::tie(p.line, p.column, p.message); };

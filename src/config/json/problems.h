@@ -3,6 +3,8 @@
 // parameter, a signal that is not recorded) is still reported at the place where it was written.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,6 +30,9 @@ class Problems {
   // names.
   void add_unknown(TextPlace place, std::string_view what, std::string_view wrong, std::span<const std::string> known,
                    std::string_view where = "");
+  // Which of `known` it is; when it is none, adds that.
+  std::optional<std::size_t> known(const PlacedName& name, std::string_view what, std::span<const std::string> known,
+                                   std::string_view where = "");
   void throw_if_any() const;  // throws InputError, sorted by place, without duplicates
 
   bool empty() const noexcept { return problems_.empty() && others_.empty(); }

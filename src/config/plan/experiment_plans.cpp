@@ -6,6 +6,7 @@
 
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
+#include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 
@@ -38,13 +39,7 @@ void experiment_fields(Fields& f, ExperimentConfig& experiment, Need need_scenar
 }
 
 void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, Problems& problems) {
-  if (name.name.empty()) return;
-  std::vector<std::string> names;
-  for (const MetricConfig& metric : experiment.metrics) {
-    if (metric.name == name.name) return;
-    names.push_back(metric.name);
-  }
-  problems.add_unknown(name.place, "metric", name.name, names);
+  if (!name.name.empty()) (void)problems.known(name, "metric", names_of(experiment.metrics));
 }
 
 std::vector<MetricConfig> read_metrics(const std::string& file) {

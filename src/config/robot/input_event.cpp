@@ -21,12 +21,10 @@ void input_event_fields(Fields& f, InputEvent event, const char* rise, const cha
 void button_fields(Fields& entry, std::vector<InputEvent>& all) {
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= joystick_buttons; ++i) names.push_back("button_" + std::to_string(i));
-  const auto found = std::ranges::find(names, entry.key());
-  if (entry.reading() && found == names.end())
-    entry.problems().add_unknown(entry.key_place(), "button", entry.key(), names);
+  const auto found = entry.problems().known({entry.key(), entry.key_place()}, "button", names);
   input_event_fields(entry,
                      {.of = InputEvent::Of::button,
-                      .index = static_cast<std::uint32_t>(found - names.begin()),
+                      .index = static_cast<std::uint32_t>(found.value_or(names.size())),
                       .input = "joystick." + entry.key()},
                      "press", "release", all);
 }

@@ -39,9 +39,7 @@ void safe_fields(Fields& f, RobotConfig& config) {
   f.number("time_s", config.safe.time_s, {0.01, 60, "s"}, "duration of the motion");
   if (!f.reading() || config.safe.pose.empty() || config.model.joints.empty())
     return;  // without a model no pose is read
-  const std::vector<std::string> names = names_of(config.poses);
-  if (std::find(names.begin(), names.end(), config.safe.pose) != names.end()) return;
-  f.problems().add_unknown(f.place("pose"), "pose", config.safe.pose, names);
+  (void)f.problems().known({config.safe.pose, f.place("pose")}, "pose", names_of(config.poses));
 }
 
 const std::vector<std::string> axis_names{joystick_axis_names.begin(), joystick_axis_names.end()};
@@ -145,8 +143,7 @@ RobotConfig read_robot_config_text(const std::string& text, const std::string& f
   const BasedJson json = parse_based_json(text, file);
   if (!json.bases.empty()) (void)read_robot_config(json.bases.front(), object_types, plants);
   Problems problems(file);
-  RobotReader reader(config, problems, object_types);
-  read_fields(json.value, problems, [&](Fields& f) { reader.read(f); });
+  read_fields(json.value, problems, [&](Fields& f) { RobotReader(config, problems, object_types).read(f); });
   problems.throw_if_any();
   return config;
 }
@@ -173,9 +170,7 @@ std::vector<PluginFile> read_plugin_files(const std::filesystem::path& robot) {
 
 FieldInfo describe_robot_config() {
   RobotConfig config;
-  Problems problems("");
-  RobotReader reader(config, problems, {});
-  return describe_fields([&](Fields& f) { reader.read(f); });
+  return describe_fields([&](Fields& f) { RobotReader(config, f.problems(), {}).read(f); });
 }
 
 void RobotReader::behavior(Fields& entry) {
@@ -184,10 +179,7 @@ void RobotReader::behavior(Fields& entry) {
   entry.number_entries(values, any_number, "value in the parameter's unit");
   if (!entry.reading() || config_.name.empty()) return;
   const std::vector<std::string> names = playable_names({.project_file = config_.file, .robot = config_.name});
-  if (std::ranges::find(names, entry.key()) == names.end()) {
-    problems_.add_unknown(entry.key_place(), "behavior", entry.key(), names, "in behaviors/" + config_.name);
-    return;
-  }
+  if (!problems_.known({entry.key(), entry.key_place()}, "behavior", names, "in behaviors/" + config_.name)) return;
   for (const NumberEntry& value : values) {
     config_.behavior_values.push_back({.behavior = std::string(entry.key()),
                                        .parameter = value.key,
@@ -206,11 +198,9 @@ void RobotReader::joystick(Fields& f) {
   f.number("dead_zone", settings.dead_zone, {0, 0.9},
            "zone around the middle of an axis that reads as 0, as a share of the way to an end");
   f.map("axes", "how axes are read: x, y, twist, throttle", [&](Fields& entry) {
-    const auto axis = std::ranges::find(joystick_axis_names, std::string_view(entry.key()));
     JoystickAxis scratch;
-    const bool known = axis != joystick_axis_names.end();
-    if (entry.reading() && !known) problems_.add_unknown(entry.key_place(), "axis", entry.key(), axis_names);
-    axis_fields(entry, known ? settings.axes[static_cast<std::size_t>(axis - joystick_axis_names.begin())] : scratch);
+    const auto axis = problems_.known({entry.key(), entry.key_place()}, "axis", axis_names);
+    axis_fields(entry, axis ? settings.axes[*axis] : scratch);
   });
   f.map("buttons", buttons_doc, [&](Fields& e) { button_fields(e, config_.input_events); });
 }

@@ -94,12 +94,9 @@ void RobotReader::drive_objects(Fields& f) {
             "no set and always active");
   const std::vector<std::string> names = names_of(config_.objects);
   for (const PlacedName& object : given) {
-    const auto found = std::find(names.begin(), names.end(), object.name);
-    if (found == names.end()) {
-      problems_.add_unknown(object.place, "control object", object.name, names);
-      continue;
-    }
-    const auto index = static_cast<std::uint32_t>(found - names.begin());
+    const auto found = problems_.known(object, "control object", names);
+    if (!found) continue;
+    const auto index = static_cast<std::uint32_t>(*found);
     for (const ControlSetInfo& set : config_.sets) {
       if (std::find(set.objects.begin(), set.objects.end(), index) == set.objects.end()) continue;
       problems_.add(object.place, "control object " + in_quotes(object.name) + " is in control set " +
@@ -141,12 +138,8 @@ void RobotReader::initial_sets(Fields& f) {
   }
   SetMask initial = 0;
   for (const PlacedName& name : several) {
-    const auto found = std::find(names.begin(), names.end(), name.name);
-    if (found == names.end()) {
-      problems_.add_unknown(name.place, "control set", name.name, names);
-    } else {
-      initial |= set_bit(static_cast<std::uint32_t>(found - names.begin()));
-    }
+    if (const auto found = problems_.known(name, "control set", names))
+      initial |= set_bit(static_cast<std::uint32_t>(*found));
   }
   if (initial != 0) config_.initial_sets = initial;
   Catalog layout;
@@ -181,15 +174,12 @@ void RobotReader::object(Fields& f) {
   });
   if (!f.reading()) return;
   object.type.place = f.place("type");
-  if (!object.type.name.empty() && !object_types_.empty() &&
-      std::find(object_types_.begin(), object_types_.end(), object.type.name) == object_types_.end()) {
-    problems_.add_unknown(object.type.place, "type of control object", object.type.name, object_types_);
-  }
+  if (!object.type.name.empty() && !object_types_.empty())
+    (void)problems_.known(object.type, "type of control object", object_types_);
   if (!object.name.empty() && object.name.find_first_of(".* ") != std::string::npos) {
     f.refuse("name", ": " + in_quotes(object.name) + " must not contain '.', '*' or a space");
   }
-  const std::vector<std::string> names = names_of(config_.objects);
-  if (std::find(names.begin(), names.end(), object.name) != names.end()) {
+  if (std::ranges::count(config_.objects, object.name, &ObjectConfig::name) > 0) {
     f.refuse("name", ": another control object is named " + in_quotes(object.name));
   }
   object_joints(patterns, object);
@@ -224,17 +214,15 @@ void RobotReader::control_set(Fields& entry) {
                 "objects whose actuation is mixed with it, by the parameter SET.OBJECT.weight");
   entry.strings("priority", priority, {1, max_objects}, "objects that replace it while they claim the joint");
   for (const auto* composed : {&sum, &blend, &priority}) {
-    for (const PlacedName& object : *composed) {
-      if (contains(objects, object.name)) continue;
-      problems_.add_unknown(object.place, "control object", object.name, names_of(objects), "of this set");
-    }
+    for (const PlacedName& object : *composed)
+      (void)problems_.known(object, "control object", names_of(objects), "of this set");
   }
   ControlSetInfo set;
   set.name = entry.key();
   entry.number("switch_dwell_s", set.switch_dwell_s, {0, switch_dwell_max_s, "s"},
                "least time between two switches of it, in or out; an earlier one is refused");
-  const std::vector<std::string> names = names_of(config_.objects);
-  std::vector<std::size_t> owner(joint_names_.size(), names.size());  // the object of this set that sets a joint
+  std::vector<std::size_t> owner(joint_names_.size(),
+                                 config_.objects.size());  // the object of this set that sets a joint
   for (const PlacedName& object : objects) {
     const Composition composition = contains(sum, object.name)        ? Composition::sum
                                     : contains(blend, object.name)    ? Composition::blend
@@ -247,13 +235,9 @@ void RobotReader::control_set(Fields& entry) {
 }
 
 bool RobotReader::add_to_set(const PlacedName& object, Composition composition, ControlSetInfo& set) {
-  const std::vector<std::string> names = names_of(config_.objects);
-  const auto found = std::find(names.begin(), names.end(), object.name);
-  if (found == names.end()) {
-    problems_.add_unknown(object.place, "control object", object.name, names);
-    return false;
-  }
-  const auto index = static_cast<std::uint32_t>(found - names.begin());
+  const auto found = problems_.known(object, "control object", names_of(config_.objects));
+  if (!found) return false;
+  const auto index = static_cast<std::uint32_t>(*found);
   if (std::find(set.objects.begin(), set.objects.end(), index) != set.objects.end()) {
     problems_.add(object.place, "control object " + in_quotes(object.name) + " stands twice in this set");
     return false;

@@ -254,23 +254,17 @@ void RobotReader::imu(Fields& f) {
 void RobotReader::foot(Fields& f) {
   FootSettings foot;
   f.string("link", foot.link, "the link that carries the sole", Need::required);
-  f.numbers("heel_inner_m", foot.sensors_m[0], sensor_position_m, "pressure sensor, in the link's frame",
-            Need::required);
-  f.numbers("heel_outer_m", foot.sensors_m[1], sensor_position_m, "pressure sensor, in the link's frame",
-            Need::required);
-  f.numbers("toe_inner_m", foot.sensors_m[2], sensor_position_m, "pressure sensor, in the link's frame",
-            Need::required);
-  f.numbers("toe_outer_m", foot.sensors_m[3], sensor_position_m, "pressure sensor, in the link's frame",
-            Need::required);
+  std::size_t sensor = 0;
+  for (const char* const name : {"heel_inner_m", "heel_outer_m", "toe_inner_m", "toe_outer_m"})
+    f.numbers(name, foot.sensors_m[sensor++], sensor_position_m, "pressure sensor, in the link's frame",
+              Need::required);
   f.number("noise_N", foot.noise_N, {0, 1e3, "N"}, "standard deviation of the noise of each sensor");
   std::string name;
   f.string("name", name,
            "its name in behaviors, s.feet.NAME (default: of two without names left and right, else the link's)");
   if (name.find('.') != std::string::npos) f.refuse("name", ": a foot's name has no dot");
   if (!have_model_) return;
-  if (!foot.link.empty() && !config_.model.find_link(foot.link)) {
-    problems_.add_unknown(f.place("link"), "link", foot.link, config_.model.link_names());
-  }
+  if (!foot.link.empty()) (void)problems_.known({foot.link, f.place("link")}, "link", config_.model.link_names());
   config_.estimate.feet.push_back({foot.link, foot.sensors_m, name});
   config_.plant.feet.push_back(std::move(foot));
 }
@@ -400,13 +394,9 @@ void RobotReader::start(Fields& f) {
   f.boolean("stand_on_ground", plant.stand_on_ground,
             "the height is chosen so that the robot's lowest point touches the ground");
   if (!posed || !have_model_) return;
-  const auto named = [&](const PoseInfo& pose) { return pose.name == config_.start_pose; };
-  const auto found = std::find_if(config_.poses.begin(), config_.poses.end(), named);
-  if (found == config_.poses.end()) {
-    problems_.add_unknown(f.place("pose"), "pose", config_.start_pose, names_of(config_.poses));
-    return;
-  }
-  for (const auto& [joint, position_rad] : found->position_rad) plant.position_rad[joint] = position_rad;
+  const auto found = problems_.known({config_.start_pose, f.place("pose")}, "pose", names_of(config_.poses));
+  if (!found) return;
+  for (const auto& [joint, position_rad] : config_.poses[*found].position_rad) plant.position_rad[joint] = position_rad;
 }
 
 void RobotReader::estimate(Fields& f) {

@@ -358,8 +358,7 @@ void sight_fields(Fields& f, ScenarioSight& sight, const WorldConfig& world) {
   if (!f.reading() || !f.has("ball")) return;
   std::vector<std::string> names;
   for (const WorldObject& object : world.settings.objects) names.push_back(object.name);
-  if (std::ranges::find(names, sight.ball.name) == names.end())
-    f.problems().add_unknown(sight.ball.place, "object", sight.ball.name, names);
+  (void)f.problems().known(sight.ball, "object", names);
 }
 
 // A record that is repeated says itself what its run was.
