@@ -133,6 +133,15 @@ class Fields {
   bool list(std::string_view name, CountRange count, std::string_view doc, Read&& read, Need need = Need::optional) {
     return each(open(FieldInfo::Kind::list, name, doc, count, need), read);
   }
+  // read(Fields&, T&) lists the fields of each object in the array, which becomes the last of `items`.
+  template <typename T, typename Read>
+  bool list(std::string_view name, CountRange count, std::string_view doc, std::vector<T>& items, Read&& read) {
+    return list(name, count, doc, [&](Fields& f) {
+      T item;
+      read(f, item);
+      if (f.reading()) items.push_back(std::move(item));
+    });
+  }
   // read(Fields&) lists the fields of each object in this one, whose keys the file chose: see key().
   template <typename Read>
   bool map(std::string_view name, std::string_view doc, Read&& read, Need need = Need::optional) {

@@ -232,30 +232,17 @@ void play_fields(Fields& f, ScenarioConfig& scenario) {
     const TextPlace start{list.place.line, list.place.column + 1};  // behind the quote
     std::ranges::move(read_play_items(list.name, start, folders, f.problems()), std::back_inserter(scenario.behaviors));
   }
-  f.list("events", {0, 10'000}, "changes to the list of behaviors, each at its time", [&](Fields& e) {
-    ScenarioEvent event;
-    event_fields(e, event, folders);
-    if (e.reading()) scenario.events.push_back(std::move(event));
-  });
-  f.list("pushes", {0, 1000}, "pushes on the robot", [&](Fields& e) {
-    ScenarioPush push;
-    push_fields(e, push);
-    if (e.reading()) scenario.pushes.push_back(std::move(push));
-  });
+  f.list("events", {0, 10'000}, "changes to the list of behaviors, each at its time", scenario.events,
+         [&](Fields& e, ScenarioEvent& event) { event_fields(e, event, folders); });
+  f.list("pushes", {0, 1000}, "pushes on the robot", scenario.pushes, push_fields);
   f.list("carried", {0, 1000}, "a person lifts the robot as it stands, and puts it down at rest elsewhere",
-         [&](Fields& e) {
-           ScenarioCarry carry;
+         scenario.carried, [](Fields& e, ScenarioCarry& carry) {
            e.number("at_s", carry.at_s, {0, scenario_duration_max_s, "s"}, "time", Need::required);
            e.numbers("to_m", carry.to_m, {-1000, 1000, "m"}, "x and y of the base, in the world", Need::required);
            e.number("heading_rad", carry.heading_rad, {-7, 7, "rad"}, "its heading then; 0: along x");
            carry.place = e.place("to_m");
-           if (e.reading()) scenario.carried.push_back(carry);
          });
-  f.list("faults", {0, 1000}, "faults, each at its time", [&](Fields& e) {
-    ScenarioFault fault;
-    fault_fields(e, fault);
-    if (e.reading()) scenario.faults.push_back(std::move(fault));
-  });
+  f.list("faults", {0, 1000}, "faults, each at its time", scenario.faults, fault_fields);
 }
 
 void perception_fields(Fields& f, ScenarioPerception& perception) {
@@ -295,11 +282,7 @@ void supervisor_part(Fields& f, ScenarioConfig& scenario) {
   f.object("supervisor", "what decides what is played, in place of that of the robot's configuration",
            [&](Fields& e) { supervisor_fields(e, scenario.supervisor, folders_of(scenario)); });
   f.list("perception", {0, max_seen}, "perception of entries of the world model, simulated or from a record",
-         [&](Fields& e) {
-           ScenarioPerception perception;
-           perception_fields(e, perception);
-           if (e.reading()) scenario.perception.push_back(std::move(perception));
-         });
+         scenario.perception, perception_fields);
 }
 
 // With this name a robot's signals begin, or viewers show it.
@@ -413,11 +396,8 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario) {
     check_robot_name(robot_name, f.place("robot_name"), scenario, f.problems());
     scenario.robot_name = robot_name;
   }
-  f.list("robots", {0, further_robots_max}, "further robots in the same world and time", [&](Fields& e) {
-    ScenarioConfig robot;
-    further_robot_fields(e, robot, scenario);
-    if (e.reading()) scenario.robots.push_back(std::move(robot));
-  });
+  f.list("robots", {0, further_robots_max}, "further robots in the same world and time", scenario.robots,
+         [&](Fields& e, ScenarioConfig& robot) { further_robot_fields(e, robot, scenario); });
   f.object("network", "the network between the robots", [&](Fields& e) {
     e.number("delay_s", scenario.network.delay_s, {0, 10, "s"}, "the least time that a message takes");
     e.number("jitter_s", scenario.network.jitter_s, {0, 10, "s"}, "the most that it takes longer");
@@ -429,11 +409,8 @@ void scenario_fields(Fields& f, ScenarioConfig& scenario) {
   f.object("joystick", "a joystick that is played from a recording", [&](Fields& e) { joystick_fields(e, scenario); });
   f.object("sight", "simulated perception of a ball",
            [&](Fields& e) { sight_fields(e, scenario.sight, scenario.world); });
-  f.list("checks", {0, 1000}, "checks that must hold", [&](Fields& e) {
-    ScenarioCheck check;
-    check_fields(e, check, scenario.duration_s, scenario.checks);
-    if (e.reading()) scenario.checks.push_back(std::move(check));
-  });
+  f.list("checks", {0, 1000}, "checks that must hold", scenario.checks,
+         [&](Fields& e, ScenarioCheck& check) { check_fields(e, check, scenario.duration_s, scenario.checks); });
 }
 
 }  // namespace

@@ -106,7 +106,11 @@ class EntryReader {
     if (of({box, ball}))
       f_.numbers("velocity_m_s", entry_.velocity_m_s, velocity_m_s, "velocity at the start, for a free object");
     if (of({box, ball}))
-      f_.list("carried", {0, 1000}, "a person puts a free object elsewhere, at rest", [&](Fields& e) { carry(e); });
+      f_.list("carried", {0, 1000}, "a person puts a free object elsewhere, at rest", entry_.carried,
+              [](Fields& e, ObjectCarry& carry) {
+                e.number("at_s", carry.at_s, time_s, "time", Need::required);
+                e.numbers("to_m", carry.to_m, anywhere_m, "its centre then", Need::required);
+              });
     if (of({pendulum})) {
       f_.number("distance_m", entry_.distance_m, {0, 1000, "m"}, "horizontal distance to which the bob is drawn back",
                 needed());
@@ -131,33 +135,25 @@ class EntryReader {
   void painted() {
     if (!of({ObjectKind::markings})) return;
     f_.number("line_m", entry_.markings.line_m, size_m, "width of the painted lines");
-    f_.list("lines", {0, 1000}, "straight lines on the ground", [&](Fields& e) {
-      GroundMarkings::Line line;
-      e.numbers("from_m", line.from_m, anywhere_m, "x and y of its beginning, in the ground's plane", Need::required);
-      e.numbers("to_m", line.to_m, anywhere_m, "x and y of its end", Need::required);
-      if (e.reading()) entry_.markings.lines.push_back(line);
-    });
-    f_.list("arcs", {0, 1000}, "circles on the ground, or parts of them", [&](Fields& e) {
-      GroundMarkings::Arc arc;
-      e.numbers("center_m", arc.center_m, anywhere_m, "x and y of its centre, in the ground's plane", Need::required);
-      e.number("radius_m", arc.radius_m, size_m, "to the middle of the line", Need::required);
-      e.number("from_rad", arc.from_rad, {-7, 7, "rad"}, "where it begins, from x towards y");
-      e.number("to_rad", arc.to_rad, {-7, 7, "rad"}, "where it ends (default: all around)");
-      if (!e.reading()) return;
-      if (!(arc.to_rad > arc.from_rad)) {
-        e.refuse(e.place(e.has("to_rad") ? "to_rad" : "from_rad"), e.path("to_rad") + " is " + number_text(arc.to_rad) +
-                                                                       ", must be more than from_rad, " +
-                                                                       number_text(arc.from_rad) + " rad");
-      }
-      entry_.markings.arcs.push_back(arc);
-    });
-  }
-
-  void carry(Fields& f) {
-    ObjectCarry carry;
-    f.number("at_s", carry.at_s, time_s, "time", Need::required);
-    f.numbers("to_m", carry.to_m, anywhere_m, "its centre then", Need::required);
-    if (f.reading()) entry_.carried.push_back(carry);
+    f_.list("lines", {0, 1000}, "straight lines on the ground", entry_.markings.lines,
+            [](Fields& e, GroundMarkings::Line& line) {
+              e.numbers("from_m", line.from_m, anywhere_m, "x and y of its beginning, in the ground's plane",
+                        Need::required);
+              e.numbers("to_m", line.to_m, anywhere_m, "x and y of its end", Need::required);
+            });
+    f_.list("arcs", {0, 1000}, "circles on the ground, or parts of them", entry_.markings.arcs,
+            [](Fields& e, GroundMarkings::Arc& arc) {
+              e.numbers("center_m", arc.center_m, anywhere_m, "x and y of its centre, in the ground's plane",
+                        Need::required);
+              e.number("radius_m", arc.radius_m, size_m, "to the middle of the line", Need::required);
+              e.number("from_rad", arc.from_rad, {-7, 7, "rad"}, "where it begins, from x towards y");
+              e.number("to_rad", arc.to_rad, {-7, 7, "rad"}, "where it ends (default: all around)");
+              if (e.reading() && !(arc.to_rad > arc.from_rad)) {
+                e.refuse(e.place(e.has("to_rad") ? "to_rad" : "from_rad"),
+                         e.path("to_rad") + " is " + number_text(arc.to_rad) + ", must be more than from_rad, " +
+                             number_text(arc.from_rad) + " rad");
+              }
+            });
   }
 
   void motion(Fields& f) {
