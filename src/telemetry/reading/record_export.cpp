@@ -333,7 +333,7 @@ class Cutting {
     put_facts();
     if (cut_.inputs) inputs_ = std::make_unique<CutInputs>(record_, cut_.span.to_ns, exact_signals(), file_);
     while (rows_.next()) pass();
-    if (result_.messages == 0) refuse_empty();
+    if (result_.messages == 0) throw InputError({.file = record_.file, .message = "holds nothing between these times"});
     if (inputs_) check(inputs_->finish());
     check(file_.close());
     result_.file_bytes = file_.file_bytes();
@@ -343,10 +343,6 @@ class Cutting {
  private:
   void check(bool done) const {
     if (!done) throw InputError({.message = file_.error()});
-  }
-
-  [[noreturn]] void refuse_empty() const {
-    throw InputError({.file = record_.file, .message = "holds nothing between these times"});
   }
 
   void put_facts() {
@@ -377,11 +373,9 @@ class Cutting {
   }
 
   Passage* passage() {
-    const auto known = passages_.find(rows_.channel());
-    if (known != passages_.end()) return known->second ? &*known->second : nullptr;
-    std::optional<Passage>& made = passages_[rows_.channel()];
-    made = make_passage(rows_.channel());
-    return made ? &*made : nullptr;
+    const auto [known, added] = passages_.try_emplace(rows_.channel());
+    if (added) known->second = make_passage(rows_.channel());
+    return known->second ? &*known->second : nullptr;
   }
 
   std::optional<Passage> make_passage(std::uint16_t id) {
@@ -391,16 +385,15 @@ class Cutting {
     Passage passage;
     passage.rows = !topic.signals.empty();
     passage.event = is_event(topic);
-    if (topic.signals.empty() || chosen_[id].size() == topic.signals.size()) {
-      passage.channel = file_.add_channel(channel.topic, channel.encoding, schema(channel.schema), channel.metadata);
-      return passage;
+    if (passage.rows && chosen_[id].empty()) return std::nullopt;
+    std::vector<SignalTopic> topics;
+    if (passage.rows && chosen_[id].size() != topic.signals.size()) {
+      const double zero = 0;
+      SignalTable table;
+      for (const std::size_t place : chosen_[id]) table.add(topic.signals[place], &zero);
+      topics = signal_topics(table, rows_.precision());
     }
-    if (chosen_[id].empty()) return std::nullopt;
-    const double zero = 0;
-    SignalTable table;
-    for (const std::size_t place : chosen_[id]) table.add(topic.signals[place], &zero);
-    const std::vector<SignalTopic> topics = signal_topics(table, rows_.precision());
-    if (topics.size() != 1) {  // of an older record, where these shared a topic: it is kept whole
+    if (topics.size() != 1) {  // whole; also of an older record, where these shared a topic
       passage.channel = file_.add_channel(channel.topic, channel.encoding, schema(channel.schema), channel.metadata);
       return passage;
     }
