@@ -65,27 +65,11 @@ std::string laid_out(const JsonValue& value, std::size_t indent, std::size_t bef
 
 std::string laid_out(const JsonValue& value) { return laid_out(value, 0, 0) + "\n"; }
 
-JsonValue json_string(std::string text) {
-  JsonValue value;
-  value.kind = Kind::string;
-  value.text = std::move(text);
-  return value;
-}
+JsonValue json_string(std::string text) { return {.kind = Kind::string, .text = std::move(text)}; }
 
-JsonValue json_number(double number) {
-  JsonValue value;
-  value.kind = Kind::number;
-  value.number = number;
-  value.text = number_text(number);
-  return value;
-}
+JsonValue json_number(double number) { return {.kind = Kind::number, .number = number, .text = number_text(number)}; }
 
-JsonValue json_list(std::vector<JsonValue> items) {
-  JsonValue value;
-  value.kind = Kind::array;
-  value.items = std::move(items);
-  return value;
-}
+JsonValue json_list(std::vector<JsonValue> items) { return {.kind = Kind::array, .items = std::move(items)}; }
 
 JsonValue& member_of(JsonValue& object, const std::string& name) {
   const auto found = std::ranges::find(object.members, name, &JsonMember::name);

@@ -37,18 +37,13 @@ class TextCursor {
   TextPlace place_{1, 1};
 };
 
-}  // namespace
-
-// Recursive descent over the text, at most json_depth_max deep. The tree of nlohmann-json knows no positions and its
-// messages name grammar tokens; the tests hold this parser against that one on thousands of mutated texts.
-
-namespace {
-
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 bool in_word(char c) noexcept {
   return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '.';
 }
 
+// Recursive descent over the text, at most json_depth_max deep. The tree of nlohmann-json knows no positions and its
+// messages name grammar tokens; the tests hold this parser against that one on thousands of mutated texts.
 class JsonParser {
  public:
   JsonParser(std::string_view text, const std::string& file) : at_(text), file_(file) {}
@@ -114,8 +109,7 @@ class JsonParser {
     const char c = at_.peek();
     if (c == '{') return parse_object(depth);
     if (c == '[') return parse_array(depth);
-    JsonValue value;
-    value.place = at_.place();
+    JsonValue value{.place = at_.place()};
     if (c == '"') {
       value.kind = JsonValue::Kind::string;
       value.text = parse_string();
@@ -128,9 +122,7 @@ class JsonParser {
   }
 
   JsonValue parse_object(std::size_t depth) {
-    JsonValue object;
-    object.kind = JsonValue::Kind::object;
-    object.place = at_.place();
+    JsonValue object{.kind = JsonValue::Kind::object, .place = at_.place()};
     std::unordered_map<std::string, int> lines;  // of the keys seen
     at_.next();
     skip_space();
@@ -168,9 +160,7 @@ class JsonParser {
   }
 
   JsonValue parse_array(std::size_t depth) {
-    JsonValue array;
-    array.kind = JsonValue::Kind::array;
-    array.place = at_.place();
+    JsonValue array{.kind = JsonValue::Kind::array, .place = at_.place()};
     at_.next();
     skip_space();
     while (at_.peek() != ']') {
