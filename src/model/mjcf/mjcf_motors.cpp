@@ -23,20 +23,13 @@ class MjcfMotors {
       : document_(document), defaults_(defaults), settings_(settings), robot_(robot) {}
 
   void run() {
-    each(document_.root(), "tendon", [&](const Xml& e) { tendons(e); });
-    each(document_.root(), "equality", [&](const Xml& e) { equalities(e); });
-    each(document_.root(), "actuator", [&](const Xml& e) { actuators(e); });
+    each_child(document_.root(), "tendon", [&](const Xml& e) { tendons(e); });
+    each_child(document_.root(), "equality", [&](const Xml& e) { equalities(e); });
+    each_child(document_.root(), "actuator", [&](const Xml& e) { actuators(e); });
     bound_efforts();
   }
 
  private:
-  static std::size_t at(const Xml& e) { return UrdfDocument::tag(e).at; }
-
-  template <typename Read>
-  static void each(const Xml& parent, const char* name, const Read& read) {
-    for (const Xml* e = parent.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name)) read(*e);
-  }
-
   UrdfJoint* joint_named(const std::string& name) {
     const auto found =
         std::ranges::find_if(robot_.joints, [&](const UrdfJoint& joint) { return joint.moves && joint.name == name; });
@@ -61,10 +54,10 @@ class MjcfMotors {
       const char* const name = e->Attribute("name");
       std::vector<std::pair<std::string, double>>& parts = tendons_[name == nullptr ? "" : name];
       if (std::string_view(e->Name()) != "fixed") {
-        document_.warn(at(*e), "a <" + shown(e->Name()) + "> tendon is left out", "tendon");
+        document_.warn(tag_at(*e), "a <" + shown(e->Name()) + "> tendon is left out", "tendon");
         continue;
       }
-      each(*e, "joint", [&](const Xml& part) {
+      each_child(*e, "joint", [&](const Xml& part) {
         const MjcfElement of(document_, defaults_, part, {});
         parts.emplace_back(of.text("joint"), of.number("coef", 1));
       });

@@ -30,12 +30,6 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double density_kg_m3 = 1000;  // MuJoCo's default
 constexpr std::size_t most_bodies = 1000;
 
-Inertia tensor(double mass_kg, const Vec3& moments) {
-  Inertia body;
-  body.mass_kg = mass_kg, body.xx = moments[0], body.yy = moments[1], body.zz = moments[2];
-  return body;
-}
-
 class MjcfReader {
  public:
   MjcfReader(UrdfDocument& document, const UrdfOptions& options, std::vector<MjcfPose>& poses)
@@ -44,17 +38,17 @@ class MjcfReader {
   UrdfDescription run() {
     const Xml& root = document_.root();
     if (std::string_view(root.Name()) != "mujoco")
-      document_.stop(at(root), "the first element is <" + shown(root.Name()) + ">, an MJCF's is <mujoco>");
-    each(root, "compiler", [&](const Xml& e) { compiler(e); });
-    each(root, "default", [&](const Xml& e) { defaults_.read(e); });
-    each(root, "asset", [&](const Xml& e) { assets(e); });
+      document_.stop(tag_at(root), "the first element is <" + shown(root.Name()) + ">, an MJCF's is <mujoco>");
+    each_child(root, "compiler", [&](const Xml& e) { compiler(e); });
+    each_child(root, "default", [&](const Xml& e) { defaults_.read(e); });
+    each_child(root, "asset", [&](const Xml& e) { assets(e); });
     document_.throw_if_refused();
     name_robot(root);
     world(root);
-    if (robot_.links.empty()) document_.stop(at(root), "this MJCF has no body with a joint, so it has no robot");
+    if (robot_.links.empty()) document_.stop(tag_at(root), "this MJCF has no body with a joint, so it has no robot");
     if (total_mass_kg_ > 0) scale_masses();
     read_mjcf_motors(document_, defaults_, {limits_by_range_, joint_most_}, robot_);
-    each(root, "keyframe", [&](const Xml& e) { keyframes(e); });
+    each_child(root, "keyframe", [&](const Xml& e) { keyframes(e); });
     tell_unused(root);
     return std::move(robot_);
   }
@@ -64,9 +58,6 @@ class MjcfReader {
     std::size_t link = 0;  // of the description
     Pose in_link;          // of the body's frame
     std::string of_class;
-  };
-  struct Material {
-    std::array<double, 4> rgba{0.7, 0.7, 0.7, 1};
   };
   struct Asset {
     std::string file;
@@ -81,13 +72,6 @@ class MjcfReader {
     std::size_t at = 0;
     double reference = 0;
   };
-
-  static std::size_t at(const Xml& e) { return UrdfDocument::tag(e).at; }
-
-  template <typename Read>
-  static void each(const Xml& parent, const char* name, const Read& read) {
-    for (const Xml* e = parent.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name)) read(*e);
-  }
 
   MjcfElement element(const Xml& e, const std::string& of_class = {}) { return {document_, defaults_, e, of_class}; }
 
@@ -127,7 +111,7 @@ class MjcfReader {
   }
 
   void assets(const Xml& all) {
-    each(all, "mesh", [&](const Xml& xml) {
+    each_child(all, "mesh", [&](const Xml& xml) {
       const MjcfElement e = element(xml);
       std::filesystem::path file = e.text("file");
       if (strip_) file = file.filename();
@@ -144,10 +128,10 @@ class MjcfReader {
                                .weight = weight == "exact" ? MeshWeight::exact : MeshWeight::legacy,
                                .in_its_frame = !placed && (weight == "exact" || weight == "legacy")};
     });
-    each(all, "material", [&](const Xml& xml) {
+    each_child(all, "material", [&](const Xml& xml) {
       const MjcfElement e = element(xml);
       const std::vector<double> rgba = e.numbers("rgba", 4, 4, {0.7, 0.7, 0.7, 1});
-      std::copy(rgba.begin(), rgba.end(), materials_[e.text("name")].rgba.begin());
+      std::copy(rgba.begin(), rgba.end(), materials_[e.text("name")].begin());
     });
   }
 
@@ -156,7 +140,7 @@ class MjcfReader {
                                             "default",  "custom",   "asset",    "worldbody", "tendon",
                                             "equality", "actuator", "keyframe", "sensor",    "include"};
     for (const Xml* e = root.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
-      if (!silent.contains(e->Name())) document_.warn(at(*e), "<" + shown(e->Name()) + "> is not used");
+      if (!silent.contains(e->Name())) document_.warn(tag_at(*e), "<" + shown(e->Name()) + "> is not used");
     }
   }
 
@@ -178,7 +162,7 @@ class MjcfReader {
   void world(const Xml& root) {
     std::vector<std::pair<const Xml*, Pose>> bodies;
     std::string of_class;
-    each(root, "worldbody", [&](const Xml& e) {
+    each_child(root, "worldbody", [&](const Xml& e) {
       collect(e, {}, bodies);
       if (const char* const c = e.Attribute("childclass")) of_class = c;
     });
@@ -188,7 +172,7 @@ class MjcfReader {
     const auto is_free = [&](const auto& body) { return free_motion(*body.first) != nullptr; };
     const std::size_t free = static_cast<std::size_t>(std::ranges::count_if(moved, is_free));
     if (free > 1 || (free == 1 && moved.size() > 1))
-      document_.stop(at(*moved[1].first), "several robots stand in this MJCF: give each a file of its own");
+      document_.stop(tag_at(*moved[1].first), "several robots stand in this MJCF: give each a file of its own");
     // MuJoCo numbers the positions of all joints, those of scenery too.
     const bool own_root = free == 0 && !moved.empty();  // what is bolted down hangs on a link of this name
     if (own_root) {
@@ -200,7 +184,7 @@ class MjcfReader {
         skip_positions(*body);
         has_scenery_ = true;
         if (free_motion(*body) != nullptr)
-          document_.warn(at(*body),
+          document_.warn(tag_at(*body),
                          "body " + shown_quoted(name_of(*body)) +
                              " is no part of the robot: it is left out; objects are a scenario's (world)",
                          "object");
@@ -222,9 +206,9 @@ class MjcfReader {
   void refuse_macro(const Xml& e) {
     const std::string_view name = e.Name();
     if (name == "replicate" || name == "attach" || name == "composite" || name == "flexcomp")
-      document_.refuse(at(e), "<" + shown(name) +
-                                  "> makes bodies that are not written down: let MuJoCo compile and save the model "
-                                  "(mj_saveLastXML), which writes them");
+      document_.refuse(tag_at(e), "<" + shown(name) +
+                                      "> makes bodies that are not written down: let MuJoCo compile and save the model "
+                                      "(mj_saveLastXML), which writes them");
   }
 
   // What lets a body of the world move freely: a free joint, or what older files have in its place, slides along x, y
@@ -250,7 +234,7 @@ class MjcfReader {
     const Xml* const free = free_motion(body);
     const char* const type = free == nullptr ? nullptr : free->Attribute("type");
     const bool in_parts = type != nullptr && type == std::string_view("slide");
-    each(body, "joint", [&](const Xml& e) {
+    each_child(body, "joint", [&](const Xml& e) {
       if (&e != free && !in_parts) all.push_back(&e);
     });
     return all;
@@ -258,7 +242,7 @@ class MjcfReader {
 
   void skip_positions(const Xml& body) {
     if (free_motion(body) != nullptr) positions_ += 7;
-    each(body, "body", [&](const Xml& e) { skip_positions(e); });
+    each_child(body, "body", [&](const Xml& e) { skip_positions(e); });
   }
 
   std::string name_of(const Xml& body) const {
@@ -267,7 +251,7 @@ class MjcfReader {
   }
 
   void body(const Xml& xml, const std::optional<Frame>& parent, const std::string& of_class) {
-    if (robot_.links.size() >= most_bodies) document_.stop(at(xml), "more than 1000 bodies");
+    if (robot_.links.size() >= most_bodies) document_.stop(tag_at(xml), "more than 1000 bodies");
     const MjcfElement e = element(xml, of_class);
     UrdfLink link{.name = unused_link(name_of(xml)),
                   .at = e.at(),
@@ -278,10 +262,10 @@ class MjcfReader {
     if (free != nullptr) {
       positions_ += 7;
       if (parent)
-        document_.refuse(at(*free),
+        document_.refuse(tag_at(*free),
                          "body " + shown_quoted(link.name) + " is free inside of another body: a robot is one tree");
       if (!joints.empty())
-        document_.refuse(at(*joints[0]), "body " + shown_quoted(link.name) + " is free, and has another joint");
+        document_.refuse(tag_at(*joints[0]), "body " + shown_quoted(link.name) + " is free, and has another joint");
     }
     Frame own{robot_.links.size(), {}, e.class_name()};
     if (parent) {
@@ -302,7 +286,7 @@ class MjcfReader {
   // another, the first one outermost: links without mass stand between them.
   Frame hang(const MjcfElement& body, const Frame& parent, const std::vector<const Xml*>& joints, UrdfLink&& link) {
     if (joints.size() > 1) {
-      document_.warn(at(*joints[1]),
+      document_.warn(tag_at(*joints[1]),
                      "body " + shown_quoted(link.name) + " moves on " + std::to_string(joints.size()) +
                          " joints of its own: it hangs on links without mass, one a joint, named " +
                          shown_quoted(link.name + "_JOINT"),
@@ -417,9 +401,12 @@ class MjcfReader {
   }
 
   void read_inertial(const MjcfElement& e, const Frame& own) {
-    Inertia body = tensor(e.number("mass", 0), vec3(e.numbers("diaginertia", 3, 3, {0, 0, 0})));
+    Inertia body;
+    body.mass_kg = e.number("mass", 0);
+    auto m = e.numbers("diaginertia", 3, 3, {0, 0, 0});
+    body.xx = m[0], body.yy = m[1], body.zz = m[2];
     if (e.has("fullinertia")) {
-      const auto m = e.numbers("fullinertia", 6, 6, {0, 0, 0, 0, 0, 0});
+      m = e.numbers("fullinertia", 6, 6, {0, 0, 0, 0, 0, 0});
       body.xx = m[0], body.yy = m[1], body.zz = m[2], body.xy = m[3], body.xz = m[4], body.yz = m[5];
     }
     robot_.links[own.link].inertia_at = e.at();
@@ -528,10 +515,10 @@ class MjcfReader {
     UrdfLink& link = robot_.links[own.link];
     UrdfGeometry made{
         .geometry = {.name = e.text("name"), .link = link.name, .pose = in_link}, .mesh_at = e.at(), .file_at = e.at()};
-    Material look;
+    std::array<double, 4> look{0.7, 0.7, 0.7, 1};
     if (const auto material = materials_.find(e.text("material")); material != materials_.end())
       look = material->second;
-    const auto rgba = e.numbers("rgba", 4, 4, {look.rgba.begin(), look.rgba.end()});
+    const auto rgba = e.numbers("rgba", 4, 4, {look.begin(), look.end()});
     for (std::size_t i = 0; i < 4; ++i) made.geometry.color[i] = std::clamp(rgba[i], 0.0, 1.0);
     const bool collides = e.number("contype", 1) != 0 || e.number("conaffinity", 1) != 0;
     for (const auto& [shape, along] : pieces) {
@@ -542,7 +529,7 @@ class MjcfReader {
   }
 
   void keyframes(const Xml& all) {
-    each(all, "key", [&](const Xml& xml) {
+    each_child(all, "key", [&](const Xml& xml) {
       const MjcfElement e = element(xml);
       if (!e.has("qpos")) return;
       const std::vector<double> q = e.numbers("qpos", 0, 4096, {});
@@ -572,7 +559,7 @@ class MjcfReader {
   std::string meshes_;
   MjcfAngles angles_;
   std::map<std::string, Asset> meshes_by_name_;
-  std::map<std::string, Material> materials_;
+  std::map<std::string, std::array<double, 4>> materials_;
   std::map<std::string, double> joint_most_;  // actuatorfrcrange
   std::set<std::string> link_names_, joint_names_;
   std::vector<Address> addresses_;

@@ -52,14 +52,10 @@ void MjcfDefaults::read(const tinyxml2::XMLElement& element, const std::string& 
       attributes[std::string(attribute.name)] = {child->Attribute(std::string(attribute.name).c_str()),
                                                  attribute.value_at};
   }
-  for (const auto* child = element.FirstChildElement("default"); child != nullptr;
-       child = child->NextSiblingElement("default")) {
-    if (child->Attribute("class") == nullptr) {
-      document_.refuse(UrdfDocument::tag(*child).at, "a <default> in another one needs a class");
-      continue;
-    }
-    read(*child, own);
-  }
+  each_child(element, "default", [&](const tinyxml2::XMLElement& child) {
+    if (child.Attribute("class") != nullptr) return read(child, own);
+    document_.refuse(tag_at(child), "a <default> in another one needs a class");
+  });
 }
 
 void MjcfDefaults::read(const tinyxml2::XMLElement& element) {

@@ -36,6 +36,13 @@ class MjcfDefaults {
   std::map<std::string, Class, std::less<>> classes_;
 };
 
+// read(element) of each child of this name.
+template <typename Read>
+void each_child(const tinyxml2::XMLElement& parent, const char* name, const Read& read) {
+  for (const auto* e = parent.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name)) read(*e);
+}
+inline std::size_t tag_at(const tinyxml2::XMLElement& e) { return UrdfDocument::tag(e).at; }
+
 inline Vec3 vec3(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 Vec3 unit(const Vec3& v) noexcept;  // z for what has no direction
 // The shortest turn that brings z to a direction.

@@ -20,6 +20,7 @@ namespace {
 constexpr double largest = 1e9;
 constexpr std::size_t longest_name = 128, longest_number = 64;
 using Defect = std::optional<std::string>;
+using tinyxml2::XMLElement;
 
 std::vector<std::string_view> pieces(std::string_view text) {
   constexpr std::size_t enough = 16;  // nothing in URDF has more than four
@@ -138,12 +139,6 @@ std::optional<std::string> read_value(UrdfValue kind, std::string_view text, dou
   if (numbers != nullptr) std::copy(values.begin(), values.end(), numbers);
   return std::nullopt;
 }
-
-namespace {
-
-using tinyxml2::XMLElement;
-
-}  // namespace
 
 UrdfDocument::UrdfDocument(std::string_view whole, std::string file)
     : file_(std::move(file)), source_(whole.substr(0, whole.find_last_not_of('\0') + 1)) {
