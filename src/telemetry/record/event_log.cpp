@@ -9,18 +9,6 @@
 namespace kadans {
 namespace {
 
-int foxglove_level(BehaviorLog::Severity severity) noexcept {
-  switch (severity) {
-    case BehaviorLog::Severity::info:
-      return 2;
-    case BehaviorLog::Severity::warning:
-      return 3;
-    case BehaviorLog::Severity::error:
-      return 4;
-  }
-  return 0;
-}
-
 void put_what(nlohmann::ordered_json& json, const ToldFault& fault) {
   if (!fault.joint.empty()) json["joint"] = fault.joint;
   json["value"] = fault.value;
@@ -134,7 +122,7 @@ std::string json_of(const Event& event) {
     json["behavior"] = transition.behavior;
     json["states"] = event.states;
   } else {
-    json["level"] = foxglove_level(event.severity);
+    json["level"] = 2 + static_cast<int>(event.severity);  // info 2, warning 3, error 4, as foxglove has them
     json["message"] = event.text;
     json["name"] = transition.behavior;
     json["file"] = "";
