@@ -9,6 +9,7 @@
 #include "kadans/signal/nearest_name.h"
 
 namespace kadans {
+namespace {
 
 void experiment_fields(Fields& f, ExperimentConfig& experiment, Need need_scenarios) {
   std::string schema, base;
@@ -38,9 +39,12 @@ void experiment_fields(Fields& f, ExperimentConfig& experiment, Need need_scenar
   metrics_fields(f, experiment.metrics);
 }
 
+// An empty name is allowed: no metric is wanted.
 void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, Problems& problems) {
   if (!name.name.empty()) (void)problems.known(name, "metric", names_of(experiment.metrics));
 }
+
+}  // namespace
 
 std::vector<MetricConfig> read_metrics(const std::string& file) {
   std::vector<MetricConfig> metrics;
@@ -78,7 +82,7 @@ void verify(const Fields& f, const SweepPlan& plan) {
 }
 
 void plan_fields(Fields& f, SweepPlan& plan) {
-  experiment_fields(f, plan);
+  experiment_fields(f, plan, Need::required);
   f.choice("sampling", plan.sampling, sampling_names, "how the points are chosen");
   f.integer("cases", plan.cases, {0, sweep_cases_max},
             "number of runs of all scenarios together; a grid without it runs each point once, with it uses the points "

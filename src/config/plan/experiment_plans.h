@@ -38,12 +38,6 @@ struct ExperimentConfig {
   std::vector<MetricConfig> metrics;
 };
 
-// Reads the fields and adds their mistakes to those of the file. Throws nothing.
-void experiment_fields(Fields& f, ExperimentConfig& experiment, Need scenarios = Need::required);
-
-// Adds a problem when `name` is none of the metrics. An empty name is allowed: no metric is wanted.
-void verify_metric(const PlacedName& name, const ExperimentConfig& experiment, Problems& problems);
-
 // Reads the metrics alone from the plan of a sweep or of a tuning, for `kadans sim --metrics`. Throws InputError.
 std::vector<MetricConfig> read_metrics(const std::string& file);
 
