@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,7 +15,6 @@
 
 #include "kadans/signal/input_error.h"
 #include "model/xml_scan.h"
-#include "urdf_notes.h"
 
 namespace kadans {
 
@@ -34,6 +34,30 @@ enum class UrdfValue : std::uint8_t {
 // What is wrong with the text as such a value ("is not a number, did you mean '2.5'?"). Nothing when it is right; then
 // its numbers are in `numbers`, which has room for them or is null.
 std::optional<std::string> read_value(UrdfValue kind, std::string_view text, double* numbers);
+
+// What is wrong or odd in a text, told in few lines: all notes of one kind are one line, with their number and the
+// first places.
+class UrdfNotes {
+ public:
+  // At most 25 kinds are told, more than anybody reads at once; further ones are counted.
+  static constexpr std::size_t most_kinds = 25;
+
+  // `kind` groups notes that differ in a name only; "": the message itself is the kind.
+  void add(std::size_t at, std::string message, std::string_view kind);
+  bool empty() const noexcept { return kinds_.empty(); }
+  bool full() const noexcept { return kinds_.size() >= most_kinds; }
+  // One problem a kind, sorted by place.
+  std::vector<InputProblem> told(const std::string& file, const SourceText& source) const;
+
+ private:
+  struct Kind {
+    std::string message;    // of the first place
+    std::size_t first = 0;  // of the places
+    std::vector<std::size_t> places;
+  };
+  std::map<std::string, Kind, std::less<>> kinds_;
+  std::size_t left_out_ = 0;
+};
 
 // A URDF text as XML, with the place of every element and a list of the mistakes.
 class UrdfDocument {
