@@ -3,7 +3,6 @@
 #include <span>
 #include <utility>
 
-#include "engine/tick/control_engine.h"
 #include "estimate/estimator.h"
 #include "seen_entries.h"
 #include "signal/status_fields.h"

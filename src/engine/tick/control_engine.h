@@ -23,9 +23,20 @@
 #include "kadans/signal/status.h"
 #include "record_sink.h"
 #include "safety/safety.h"
-#include "tick_inputs.h"
 
 namespace kadans {
+
+// What a control tick took from outside, beside its sensors and the commands: together they decide all that it
+// computes. The engine keeps them for whoever records the tick; nothing else reads them.
+struct alignas(8) TickInputs {
+  double dt_s = 0;
+  std::int64_t heartbeat_ns = 0;  // of the behavior engine, as it was found
+  std::uint32_t missed = 0;
+  std::uint32_t commands = 0;  // that waited in the queue, headers included
+  std::uint32_t stop = 0;      // StopHeard
+  std::uint32_t reserved = 0;
+};
+static_assert(sizeof(TickInputs) == 32, "the same on 32-bit machines");
 
 // What a rehearsal of the tick works on. Between two ticks the CPU works for others, and afterwards the tick's code and
 // memory are no longer in its caches: a tick of one microsecond takes five. Therefore, in the last part of its wait,
