@@ -49,10 +49,9 @@ class ContactWorld {
   ContactWorld& operator=(const ContactWorld&) = delete;
 
   void add(btMultiBody& body);
-  void add(btCollisionObject& collider, bool fixed);
+  void add(btCollisionObject& collider, bool fixed);  // of a multibody, or of what only drive() moves
   void add(JointRows& rows);
   void add(RollingRows& rows);
-  void add(btMultiBodyConstraint& rows);  // anything else: for Bullet's solver only
 
   // For the next step: the velocity of a driven body, which nothing stops, in its contacts. The step also moves the
   // body, unless `stays`.

@@ -24,26 +24,13 @@ bool at_limit(const JointLaw& law, btScalar impulse) { return impulse <= law.low
 }  // namespace
 
 void TreeSolver::add(btMultiBody& body) {
-  if (!TreeShape::fits(body)) {
-    covers_ = false;
-    return;
-  }
   trees_.push_back(std::make_unique<Tree>(body));
   body.setUserPointer(trees_.back().get());
   contacts_.reserve(contacts_.capacity() + contacts_per_link * static_cast<std::size_t>(body.getNumLinks() + 1));
 }
 
-void TreeSolver::add(const btCollisionObject& collider) {
-  const btRigidBody* rigid = btRigidBody::upcast(&collider);
-  if (rigid != nullptr && rigid->getInvMass() > 0) covers_ = false;
-}
-
 void TreeSolver::add(JointRows& rows) {
   Tree* const tree = tree_of(&rows.body());
-  if (tree == nullptr) {
-    covers_ = false;
-    return;
-  }
   Coordinate along = rows.coordinate();
   along.joint = tree->shape().dof(along.joint);
   if (along.carrier >= 0) along.carrier = tree->shape().dof(along.carrier);
@@ -52,24 +39,13 @@ void TreeSolver::add(JointRows& rows) {
 }
 
 void TreeSolver::add(RollingRows& rows) {
-  Tree* const tree = tree_of(&rows.body());
-  if (tree == nullptr) {
-    covers_ = false;
-    return;
-  }
-  rollings_.push_back({&rows, tree});
+  rollings_.push_back({&rows, tree_of(&rows.body())});
   joint_rows_.reserve(3 * joints_.size() + 3 * rollings_.size());
 }
 
-void TreeSolver::solveMultiBodyGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
-                                     int manifold_count, btTypedConstraint** constraints, int constraint_count,
-                                     btMultiBodyConstraint** rows, int row_count, const btContactSolverInfo& info,
-                                     btIDebugDraw* draw, btDispatcher* dispatcher) {
-  if (!covers_) {
-    btMultiBodyConstraintSolver::solveMultiBodyGroup(bodies, body_count, manifolds, manifold_count, constraints,
-                                                     constraint_count, rows, row_count, info, draw, dispatcher);
-    return;
-  }
+void TreeSolver::solveMultiBodyGroup(btCollisionObject**, int, btPersistentManifold** manifolds, int manifold_count,
+                                     btTypedConstraint**, int, btMultiBodyConstraint**, int,
+                                     const btContactSolverInfo& info, btIDebugDraw*, btDispatcher*) {
   const Group all{this, {manifolds, static_cast<std::size_t>(manifold_count)}, {}, &info};
   solve_together({&all, 1});
 }

@@ -15,10 +15,8 @@
 // foot between the ground and its joint's limit) it goes on until they do not, up to iterations_factor times as many;
 // soon with shorter steps, since what has not arrived by then goes around in a circle (contact_row.h).
 //
-// It covers what the plant's worlds consist of: any number of multibodies with joints of one degree of freedom, in
-// contact with each other, themselves and static or driven bodies. Once anything else was added - a rigid body that
-// moves freely, a joint of several degrees of freedom and the rows on it, a constraint that closes a loop - covers() is
-// false, and the stock solver is used after an articulated-body pass.
+// It covers what the plant's worlds consist of, and nothing else: any number of multibodies with joints of one degree
+// of freedom, in contact with each other, themselves and static or driven bodies.
 #pragma once
 
 #include <memory>
@@ -74,11 +72,8 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
 
   // Everything in the world must be added before the first step.
   void add(btMultiBody& body);
-  void add(const btCollisionObject& collider);
   void add(JointRows& rows);
   void add(RollingRows& rows);
-  void add(const btMultiBodyConstraint&) { covers_ = false; }
-  bool covers() const { return covers_; }
   // How much the last iteration of the last step changed a velocity, m/s or rad/s.
   btScalar residual() const { return residual_; }
   void reserve_contacts(std::size_t manifolds) { contacts_.reserve(contacts_.capacity() + 4 * manifolds); }
@@ -125,7 +120,6 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   void finish_joint(Joint& joint);
 
   Options options_;
-  bool covers_ = true;
   btScalar residual_ = 0;
   std::vector<std::unique_ptr<Tree>> trees_;
   std::vector<Joint> joints_;
