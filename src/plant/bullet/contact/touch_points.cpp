@@ -11,6 +11,11 @@
 namespace kadans::bullet {
 namespace {
 
+struct PlacedBox {
+  btTransform pose;
+  btVector3 half_m;
+};
+
 struct Nearest {
   btVector3 point, normal;  // of a surface, outwards
   double distance_m = 0;    // of what was asked about; negative inside
@@ -261,6 +266,17 @@ TouchPoints touch_edges(const PlacedBox& a, const PlacedBox& b, const Edges& edg
   return points;
 }
 
+TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b) {
+  const Face face_b = best_face(b, a), face_a = best_face(a, b);
+  if (std::max(face_a.separation_m, face_b.separation_m) > contact_distance_m) return {};
+  const Edges edges = best_edges(a, b);
+  if (edges.separation_m > contact_distance_m) return {};
+  const bool on_a = face_a.separation_m > face_b.separation_m + preference_m;
+  const double face_m = on_a ? face_a.separation_m : face_b.separation_m;
+  if (edges.separation_m > face_m + preference_m) return touch_edges(a, b, edges);
+  return on_a ? swapped(touch_face(a, face_a, b)) : touch_face(b, face_b, a);
+}
+
 // The corners over the face of least overlap.
 TouchPoints touch_corners(const btConvexHullShape& a, const btTransform& pose_a, const PlacedBox& b) {
   const btTransform to_b = b.pose.inverseTimes(pose_a);
@@ -348,23 +364,6 @@ TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, cons
   }
   if (type_a == BOX_SHAPE_PROXYTYPE) return swapped(touch_points(b, pose_b, a, pose_a));
   return touch_nearest(a, pose_a, b, pose_b);
-}
-
-TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b) {
-  const Face face_b = best_face(b, a), face_a = best_face(a, b);
-  if (std::max(face_a.separation_m, face_b.separation_m) > contact_distance_m) return {};
-  const Edges edges = best_edges(a, b);
-  if (edges.separation_m > contact_distance_m) return {};
-  const bool on_a = face_a.separation_m > face_b.separation_m + preference_m;
-  const double face_m = on_a ? face_a.separation_m : face_b.separation_m;
-  if (edges.separation_m > face_m + preference_m) return touch_edges(a, b, edges);
-  if (!on_a) return touch_face(b, face_b, a);
-  TouchPoints points = touch_face(a, face_a, b);
-  for (TouchPoint& point : points) {
-    std::swap(point.on_a, point.on_b);
-    point.normal = -point.normal;
-  }
-  return points;
 }
 
 }  // namespace kadans::bullet
