@@ -155,6 +155,19 @@ void require_names(const std::string& what, const std::vector<Named>& all) {
   }
 }
 
+void check_world(const RobotModel& model, const WorldSettings& world) {
+  if (world.objects.size() > max_world_objects) {
+    refuse("objects", static_cast<double>(world.objects.size()), "at most " + std::to_string(max_world_objects));
+  }
+  require_names("object", world.objects);
+  require_names("payload", world.payloads);
+  require_slope("slope_rad", world.slope_rad);
+  require_finite("slope_heading_rad", {&world.slope_heading_rad, 1});
+  check_motion("ground: ", world.ground_motion);
+  for (const WorldObject& object : world.objects) check_object(object);
+  for (const PayloadSettings& payload : world.payloads) check_payload(model, payload);
+}
+
 }  // namespace
 
 void check_settings(const RobotModel& model, const PlantSettings& settings) {
@@ -189,19 +202,6 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
     require_at_least_zero("friction of '" + surface.link + "'", surface.friction);
   }
   check_world(model, settings.world);
-}
-
-void check_world(const RobotModel& model, const WorldSettings& world) {
-  if (world.objects.size() > max_world_objects) {
-    refuse("objects", static_cast<double>(world.objects.size()), "at most " + std::to_string(max_world_objects));
-  }
-  require_names("object", world.objects);
-  require_names("payload", world.payloads);
-  require_slope("slope_rad", world.slope_rad);
-  require_finite("slope_heading_rad", {&world.slope_heading_rad, 1});
-  check_motion("ground: ", world.ground_motion);
-  for (const WorldObject& object : world.objects) check_object(object);
-  for (const PayloadSettings& payload : world.payloads) check_payload(model, payload);
 }
 
 }  // namespace kadans::bullet
