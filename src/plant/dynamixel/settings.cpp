@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "kadans/signal/nearest_name.h"
 #include "servo_bus.h"
+#include "signal/number_text.h"
 
 namespace kadans::dynamixel {
 namespace {
@@ -117,11 +117,7 @@ void DynamixelSettings::fields(PlantFields& f) {
   }
 }
 
-std::string milliseconds(std::int64_t ns) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f ms", 1e-6 * static_cast<double>(ns));
-  return text.data();
-}
+std::string milliseconds(std::int64_t ns) { return printed("%.2f ms", 1e-6 * static_cast<double>(ns)); }
 
 CycleNeed cycle_need(const DynamixelSettings& settings, const PortSettings& port) {
   CycleNeed need;

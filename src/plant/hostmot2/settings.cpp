@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kadans/signal/nearest_name.h"
+#include "signal/number_text.h"
 
 namespace kadans::hostmot2 {
 namespace {
@@ -40,11 +41,10 @@ void pin(PlantFields& f, std::string_view name, OptionalPin& value, const std::s
   f.string(name, text, doc + R"(: "7" is pin 7, "!7" where it is active when it is low)");
   if (!f.reading() || text.empty()) return;
   PinSettings is{.low = text.front() == '!', .place = f.place(name)};
-  const char* const begin = text.data() + (is.low ? 1 : 0);
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(begin, end, is.number);
-  if (error != std::errc() || rest != end || is.number > pins_max)
+  const auto number = number_of<std::uint32_t>(text.substr(is.low ? 1 : 0));
+  if (!number || *number > pins_max)
     return f.refuse(name, "'" + text + R"(' is no pin: a number of 0..143, such as "7", or "!7")");
+  is.number = *number;
   value = is;
 }
 
