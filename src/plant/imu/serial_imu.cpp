@@ -50,9 +50,7 @@ SerialImu::SerialImu(SerialImuSettings settings, std::unique_ptr<SerialPort> por
     : settings_(std::move(settings)), port_(std::move(port)) {}
 
 void SerialImu::fail(const std::string& why) const {
-  InputProblem problem = settings_.place;
-  problem.message = "the IMU on " + settings_.device + " " + why;
-  throw InputError(problem);
+  throw InputError(settings_.place.with("the IMU on " + settings_.device + " " + why));
 }
 
 SerialImu::Answer SerialImu::ask(Message request, Octets data, ReceivedMessage& answer) noexcept {

@@ -69,9 +69,7 @@ std::unique_ptr<SerialPort> open_port(const std::string& device, std::uint32_t b
   try {
     return std::make_unique<TerminalPort>(device, baud);
   } catch (const InputError& error) {
-    InputProblem problem = place;
-    problem.message = error.problems().front().message;
-    throw InputError(problem);
+    throw InputError(place.with(error.problems().front().message));
   }
 }
 
