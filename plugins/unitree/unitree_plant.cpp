@@ -18,12 +18,7 @@ constexpr std::size_t stack_bytes = std::size_t{256} * 1024;
 constexpr std::int64_t wait_max_ns = 20'000'000;
 constexpr double other_kind_s = 0.5;  // until then the right one may be found first
 
-struct NamedCount {
-  const char* name;
-  std::uint32_t Counts::*value;
-  const char* doc;
-};
-constexpr NamedCount named_counts[] = {
+constexpr kadans::NamedCount<Counts> named_counts[] = {
     {"states", &Counts::states, "states of the robot that were used"},
     {"corrupt", &Counts::corrupt, "states with a wrong checksum"},
     {"stale", &Counts::stale, "states that were not newer than the one before"},
@@ -172,15 +167,10 @@ void UnitreePlant::read(kadans::SensorFrame& sensors) noexcept {
   drives_to_joints(site_.transmissions, sensors);
 }
 
-std::vector<kadans::PlantCount> UnitreePlant::link_counts() const {
-  std::vector<kadans::PlantCount> counts;
-  for (const NamedCount& one : named_counts) counts.push_back({one.name, counts_.*one.value});
-  return counts;
-}
+std::vector<kadans::PlantCount> UnitreePlant::link_counts() const { return kadans::counts_of(named_counts, counts_); }
 
 void UnitreePlant::declare_signals(kadans::SignalTable& table) const {
-  for (const NamedCount& one : named_counts)
-    table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts_.*one.value));
+  kadans::declare_counts(table, named_counts, counts_);
   table.add({"plant.bus.age_ms", "ms", "age of the newest state"}, &age_ms_);
 }
 

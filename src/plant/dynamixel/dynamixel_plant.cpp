@@ -16,12 +16,7 @@ namespace {
 constexpr int port_priority = 80;  // below the control thread's
 constexpr std::size_t port_stack_bytes = std::size_t{256} * 1024;
 
-struct NamedCount {
-  const char* name;
-  std::uint32_t PortCounts::*value;
-  const char* doc;
-};
-constexpr NamedCount named_counts[] = {
+constexpr NamedCount<PortCounts> named_counts[] = {
     {"cycles", &PortCounts::cycles, "cycles of all serial ports"},
     {"answers", &PortCounts::answers, "readings of servos"},
     {"lost", &PortCounts::lost, "readings that never came"},
@@ -155,7 +150,7 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
   age_ms_ = cycle_ms_ = 0;
   for (const auto& port : ports_) {
     const auto sample = port->sample.read();
-    for (const NamedCount& one : named_counts) counts_.*one.value += sample->counts.*one.value;
+    for (const auto& one : named_counts) counts_.*one.value += sample->counts.*one.value;
     cycle_ms_ = std::max(cycle_ms_, sample->cycle_ms);
     for (std::size_t i = 0; i < port->joints.size() && i < sample->count; ++i) {
       const ServoReading& is = sample->servos[i];
@@ -174,15 +169,10 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
   drives_to_joints(site_.transmissions, sensors);
 }
 
-std::vector<PlantCount> DynamixelPlant::link_counts() const {
-  std::vector<PlantCount> counts;
-  for (const NamedCount& one : named_counts) counts.push_back({one.name, counts_.*one.value});
-  return counts;
-}
+std::vector<PlantCount> DynamixelPlant::link_counts() const { return counts_of(named_counts, counts_); }
 
 void DynamixelPlant::declare_signals(SignalTable& table) const {
-  for (const NamedCount& one : named_counts)
-    table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts_.*one.value));
+  declare_counts(table, named_counts, counts_);
   table.add({"plant.bus.cycle_ms", "ms", "time that the last cycle of the slowest port took"}, &cycle_ms_);
   table.add({"plant.bus.age_ms", "ms", "age of the oldest servo's newest reading"}, &age_ms_);
 }

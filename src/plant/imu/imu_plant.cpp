@@ -13,12 +13,7 @@ constexpr int line_priority = 80;  // below the control thread's
 constexpr std::size_t line_stack_bytes = std::size_t{256} * 1024;
 constexpr std::int64_t look_ns = 20'000'000;  // how soon the thread sees that it shall end
 
-struct NamedImuCount {
-  const char* name;
-  std::uint32_t ImuCounts::*value;
-  const char* doc;
-};
-constexpr NamedImuCount imu_counts[] = {
+constexpr NamedCount<ImuCounts> imu_counts[] = {
     {"imu_readings", &ImuCounts::readings, "readings of the IMU"},
     {"imu_lost", &ImuCounts::lost, "readings of the IMU that never came"},
     {"imu_corrupt", &ImuCounts::corrupt, "messages of the IMU with a wrong checksum or length"},
@@ -91,14 +86,13 @@ void ImuPlant::read(SensorFrame& sensors) noexcept {
 
 std::vector<PlantCount> ImuPlant::link_counts() const {
   std::vector<PlantCount> counts = bus_->link_counts();
-  for (const NamedImuCount& one : imu_counts) counts.push_back({one.name, counts_.*one.value});
+  for (const PlantCount& one : counts_of(imu_counts, counts_)) counts.push_back(one);
   return counts;
 }
 
 void ImuPlant::declare_signals(SignalTable& table) const {
   bus_->declare_signals(table);
-  for (const NamedImuCount& one : imu_counts)
-    table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts_.*one.value));
+  declare_counts(table, imu_counts, counts_);
   table.add({"plant.bus.imu_age_ms", "ms", "age of the IMU's newest reading"}, &age_ms_);
 }
 
