@@ -1,7 +1,6 @@
 #include "unitree_plant.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -13,8 +12,6 @@
 namespace unitree {
 namespace {
 
-constexpr int bus_priority = 80;  // below the control thread's
-constexpr std::size_t stack_bytes = std::size_t{256} * 1024;
 constexpr std::int64_t wait_max_ns = 20'000'000;
 constexpr double other_kind_s = 0.5;  // until then the right one may be found first
 
@@ -62,7 +59,7 @@ bool UnitreePlant::open(bool (*give_up)() noexcept) {
     link_->wait(link_->now_ns() + wait_max_ns);
   }
   sample_.publish(driver_->sample());  // the first reading is here before the loop
-  if (own_thread_) start_thread();
+  if (own_thread_) thread_.start("unitree", "the bus", [this] { loop(); });
   return true;
 }
 
@@ -87,33 +84,10 @@ void UnitreePlant::fail_without_state(const std::string& other_kind) const {
       {.file = site_.file, .message = std::string(settings_.kind->name) + " on " + settings_.place() + ": " + why});
 }
 
-void UnitreePlant::start_thread() {
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, stack_bytes);
-  stop_.store(false, std::memory_order_relaxed);
-  runs_ = pthread_create(&thread_, &attributes, enter, this) == 0;
-  pthread_attr_destroy(&attributes);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  if (!runs_) throw kadans::InputError({.message = "the system gives no thread to the bus"});
-  sched_param parameter{};
-  parameter.sched_priority = bus_priority;
-  (void)pthread_setschedparam(thread_, SCHED_FIFO, &parameter);  // without the right it is a usual thread
-  pthread_setname_np(thread_, "unitree");
-}
-
-void* UnitreePlant::enter(void* plant) {
-  static_cast<UnitreePlant*>(plant)->loop();
-  return nullptr;
-}
-
 void UnitreePlant::loop() noexcept {
   const std::int64_t period_ns = settings_.period_ns();
   std::int64_t due_ns = link_->now_ns();
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!thread_.asked_to_stop()) {
     if (driver_->take()) sample_.publish(driver_->sample());
     const std::int64_t now_ns = link_->now_ns();
     if (now_ns < due_ns) {
@@ -136,8 +110,7 @@ void UnitreePlant::run_cycle() noexcept {
 }
 
 void UnitreePlant::close() noexcept {
-  stop_.store(true, std::memory_order_relaxed);
-  if (std::exchange(runs_, false)) pthread_join(thread_, nullptr);
+  thread_.stop();
   if (driver_ != nullptr) driver_->release();
   driver_.reset();
   if (own_thread_) link_.reset();
