@@ -40,7 +40,7 @@ struct Overlap {
 // What overlaps of pairs that may collide where the settings place the robot, the links of a fixed base left out.
 std::vector<Overlap> overlaps_at(Body& body, const PlantSettings& settings, PairMask& mask) {
   body.place(settings);
-  ContactWorld world({.gravity_m_s2 = btVector3(0, 0, 0), .ground = to_bullet(ground_pose(settings.world))}, mask);
+  ContactWorld world(settings, mask);
   body.add_to(world);
   world.detect_collisions();
   std::vector<Overlap> found;

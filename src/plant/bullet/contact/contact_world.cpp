@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "plant/bullet/bullet_memory.h"
+#include "plant/bullet/convert.h"
 
 namespace kadans::bullet {
 class SteppedWorld final : public btMultiBodyDynamicsWorld {
@@ -102,34 +103,34 @@ btDefaultCollisionConstructionInfo small_pools() {
 
 }  // namespace
 
-ContactWorld::ContactWorld(const Options& options, PairMask& mask)
+ContactWorld::ContactWorld(const PlantSettings& settings, PairMask& mask, FrictionLaw friction)
     : configuration_(small_pools()),
       object_contact_(
           *configuration_.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE)),
       dispatcher_(&configuration_),
-      tree_solver_({.friction = options.friction}) {
+      tree_solver_({.friction = friction}) {
   reserve_bullet_memory();
   ground_contact_.register_with(dispatcher_);
   object_contact_.register_with(dispatcher_);
-  const bool own = options.solver != ContactSolver::stock;
+  const bool own = settings.solver != ContactSolver::stock;
   btMultiBodyConstraintSolver& solver = own ? tree_solver_ : stock_solver_;
   world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver, &configuration_);
   world_->own_solver = own;
-  world_->setGravity(options.gravity_m_s2);
+  world_->setGravity(to_bullet(settings.gravity_m_s2));
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
   world_->getDispatchInfo().m_useContinuous = false;
   btContactSolverInfo& info = world_->getSolverInfo();
   info.m_splitImpulse = false;
   info.m_solverMode |=
       SOLVER_DISABLE_IMPLICIT_CONE_FRICTION | SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_USE_ARTICULATED_WARMSTARTING;
-  info.m_numIterations = options.solver_iterations;
+  info.m_numIterations = settings.solver_iterations;
   info.m_minimumSolverBatchSize = 0;
   info.m_leastSquaresResidualThreshold = 0;
-  ground_.setWorldTransform(options.ground);
-  ground_.setFriction(options.ground_friction);
-  ground_.setRestitution(options.ground_restitution);
-  if (options.ground_stiffness_N_per_m > 0)
-    ground_.setContactStiffnessAndDamping(options.ground_stiffness_N_per_m, options.ground_damping_Ns_per_m);
+  ground_.setWorldTransform(to_bullet(ground_pose(settings.world)));
+  ground_.setFriction(settings.ground_friction);
+  ground_.setRestitution(settings.ground_restitution);
+  if (settings.ground_stiffness_N_per_m > 0)
+    ground_.setContactStiffnessAndDamping(settings.ground_stiffness_N_per_m, settings.ground_damping_Ns_per_m);
   world_->addCollisionObject(&ground_, btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);
 }
 

@@ -33,17 +33,8 @@ class SteppedWorld;
 
 class ContactWorld {
  public:
-  struct Options {
-    btVector3 gravity_m_s2;
-    int solver_iterations = 10;
-    double ground_friction = 1, ground_restitution = 0;
-    double ground_stiffness_N_per_m = 0, ground_damping_Ns_per_m = 0;  // 0 N/m: hard
-    btTransform ground = btTransform::getIdentity();                   // of the plane: z is its normal
-    ContactSolver solver = ContactSolver::tree;
-    FrictionLaw friction = FrictionLaw::cone;  // of our own solver
-  };
-
-  ContactWorld(const Options& options, PairMask& mask);  // keeps a reference to the mask
+  // Keeps a reference to the mask. `friction` is for our own solver.
+  ContactWorld(const PlantSettings& settings, PairMask& mask, FrictionLaw friction = FrictionLaw::cone);
   ~ContactWorld();
   ContactWorld(const ContactWorld&) = delete;
   ContactWorld& operator=(const ContactWorld&) = delete;
