@@ -276,20 +276,15 @@ void HostMot2Settings::move_boards(const std::string& first_address) {
 
 void HostMot2Settings::fields(PlantFields& f) {
   Reader reader(*this, f);
-  f.map(
-      "boards", [&](PlantFields& entry, const std::string& key) { reader.board(entry, key); }, "the boards, by name");
-  f.map(
-      "drives", [&](PlantFields& entry, const std::string& key) { reader.drive(entry, key); },
-      "what moves and measures each drive (named as the joints, where no transmission names others)");
-  f.map(
-      "feet", [&](PlantFields& entry, const std::string& key) { reader.foot(entry, key); },
-      "switches under the soles, by the feet's links");
-  f.map(
-      "inputs", [&](PlantFields& entry, const std::string& key) { reader.input(entry, key); },
-      "pins that are the robot's sensors, by their names");
-  f.map(
-      "emergency", [&](PlantFields& entry, const std::string& key) { reader.emergency(entry, key); },
-      "inputs of the emergency stop, by names of your own");
+  const auto with = [&](void (Reader::*read)(PlantFields&, const std::string&)) {
+    return [&reader, read](PlantFields& entry, const std::string& key) { (reader.*read)(entry, key); };
+  };
+  f.map("boards", with(&Reader::board), "the boards, by name");
+  f.map("drives", with(&Reader::drive),
+        "what moves and measures each drive (named as the joints, where no transmission names others)");
+  f.map("feet", with(&Reader::foot), "switches under the soles, by the feet's links");
+  f.map("inputs", with(&Reader::input), "pins that are the robot's sensors, by their names");
+  f.map("emergency", with(&Reader::emergency), "inputs of the emergency stop, by names of your own");
   f.number("period_s", period_s, {0, 1, "s"},
            "period of the bus, a whole multiple of the control period; 0: that period");
   f.number("watchdog_s", watchdog_s, {1e-4, 1, "s"},
