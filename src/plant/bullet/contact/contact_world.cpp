@@ -108,7 +108,7 @@ ContactWorld::ContactWorld(const PlantSettings& settings, PairMask& mask, Fricti
       object_contact_(
           *configuration_.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE)),
       dispatcher_(&configuration_),
-      tree_solver_({.friction = friction}) {
+      tree_solver_(friction) {
   reserve_bullet_memory();
   ground_contact_.register_with(dispatcher_);
   object_contact_.register_with(dispatcher_);

@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t contacts_per_link = 6;  // room from the start, so that hardly any step allocates
 constexpr int iterations_factor = 20;         // of all iterations to those that each step has
 constexpr btScalar residual_wanted_m_s = 1e-3;
+// m/s or rad/s; single precision has no less
+constexpr btScalar tolerance = sizeof(btScalar) == sizeof(double) ? 1e-7 : 5e-5F;
 constexpr btScalar shorter_step = 0.7;  // after twice the iterations that each step has
 
 Tree* tree_of(const btMultiBody* body) { return static_cast<Tree*>(body->getUserPointer()); }
@@ -80,7 +82,7 @@ void TreeSolver::iterate(std::span<const Group> groups) {
     largest = 0;
     const btScalar share = i < 2 * each_step ? 1 : shorter_step;
     for (const Group& group : groups) largest = std::max(largest, group.solver->iterate(share));
-    if (largest <= groups[0].solver->options_.tolerance) break;
+    if (largest <= tolerance) break;
   }
   for (const Group& group : groups) group.solver->residual_ = largest;
 }
@@ -149,7 +151,7 @@ void TreeSolver::add_contacts(std::span<btPersistentManifold* const> manifolds, 
 btScalar TreeSolver::iterate(btScalar share) {
   btScalar largest = 0;
   for (JointRow& row : joint_rows_) largest = std::max(largest, row.iterate());
-  for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction, share));
+  for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(friction_, share));
   return largest;
 }
 

@@ -62,13 +62,7 @@ class RollingRows;
 
 class TreeSolver final : public btMultiBodyConstraintSolver {
  public:
-  struct Options {
-    FrictionLaw friction = FrictionLaw::cone;
-    btScalar tolerance =
-        sizeof(btScalar) == sizeof(double) ? 1e-7 : 5e-5F;  // m/s or rad/s; single precision has no less
-  };
-
-  explicit TreeSolver(const Options& options) : options_(options) {}
+  explicit TreeSolver(FrictionLaw friction) : friction_(friction) {}
 
   // Everything in the world must be added before the first step.
   void add(btMultiBody& body);
@@ -119,7 +113,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   void finish();
   void finish_joint(Joint& joint);
 
-  Options options_;
+  FrictionLaw friction_;
   btScalar residual_ = 0;
   std::vector<std::unique_ptr<Tree>> trees_;
   std::vector<Joint> joints_;
