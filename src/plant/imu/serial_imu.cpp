@@ -82,7 +82,7 @@ void SerialImu::insist(Message request, Octets data, ReceivedMessage& answer) {
     why += " (error " + hex({&error_, 1}) + ", message " + hex(std::array{static_cast<std::uint8_t>(request)}) + ")";
     fail(why);
   }
-  if (scanner_.counts().messages == 0 && scanner_.counts().skipped > 0)
+  if (scanner_.counts().packets == 0 && scanner_.counts().skipped > 0)
     why = "answers garbage: is it no Xsens, or has it another baud rate than ";
   why += std::to_string(settings_.baud);
   fail(why + "?");
