@@ -21,46 +21,41 @@ namespace kadans::bullet {
 
 inline constexpr double contact_distance_m = 0.01;
 
+// A few of something, in order; what comes when it is full is left out.
+template <typename T, std::size_t most>
+class FixedList {
+ public:
+  static constexpr std::size_t capacity = most;
+
+  void add(const T& one) {
+    if (count_ < capacity) all_[count_++] = one;
+  }
+  std::size_t size() const { return count_; }
+  const T& operator[](std::size_t place) const { return all_[place]; }
+  T* begin() { return all_.data(); }
+  T* end() { return all_.data() + count_; }
+  const T* begin() const { return all_.data(); }
+  const T* end() const { return all_.data() + count_; }
+
+ private:
+  std::array<T, most> all_{};
+  std::size_t count_ = 0;
+};
+
 struct TouchPoint {
   btVector3 on_a, on_b;
   btVector3 normal;  // from b to a
   double distance_m = 0;
 };
 
-class TouchPoints {
- public:
-  static constexpr std::size_t capacity = 4;
-
-  void add(const TouchPoint& point) {
-    if (count_ < capacity) points_[count_++] = point;
-  }
-  std::size_t size() const { return count_; }
-  TouchPoint* begin() { return points_.data(); }
-  TouchPoint* end() { return points_.data() + count_; }
-  const TouchPoint* begin() const { return points_.data(); }
-  const TouchPoint* end() const { return points_.data() + count_; }
-
- private:
-  std::array<TouchPoint, capacity> points_;
-  std::size_t count_ = 0;
-};
+using TouchPoints = FixedList<TouchPoint, 4>;
 
 TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
                          const btTransform& pose_b);
 
 // Of points near a face, of which `axis` is the normal and `sign` its way outwards, those that carry: the deepest, the
 // one furthest from it, and those that span the widest to both sides. Their places, in order; of up to four points all.
-class Carrying {
- public:
-  void add(std::size_t place) { places_[count_++] = place; }
-  const std::size_t* begin() const { return places_.data(); }
-  const std::size_t* end() const { return places_.data() + count_; }
-
- private:
-  std::array<std::size_t, TouchPoints::capacity> places_{};
-  std::size_t count_ = 0;
-};
-Carrying carrying(std::span<const btVector3> points, int axis, double sign);
+FixedList<std::size_t, TouchPoints::capacity> carrying(std::span<const btVector3> points, int axis, double sign);
 
 inline constexpr std::size_t hull_corners_max = 64;  // of a link's hull; LinkShapes holds it
 
