@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "convert.h"
+#include "plant/bullet/contact/link_contact.h"
 #include "plant/bullet/contact/room.h"
 
 namespace kadans::bullet {
