@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <sstream>
 #include <stdexcept>
+
+#include "signal/number_text.h"
 
 namespace kadans::bullet {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, double value, const std::string& must) {
-  std::ostringstream text;
-  text << name << " = " << value << " must be " << must;
-  throw std::invalid_argument(text.str());
+  throw std::invalid_argument(name + " = " + printed("%g", value) + " must be " + must);
 }
 
 void require_at_least_zero(const std::string& name, double value) {
