@@ -75,17 +75,13 @@ void SerialImu::insist(Message request, Octets data, ReceivedMessage& answer) {
   Answer is = Answer::silence;
   for (int i = 0; i < tries && is == Answer::silence; ++i) is = ask(request, data, answer);
   if (is == Answer::good) return;
-  std::string why = "does not answer: is it powered, and is its baud rate ";
-  if (is == Answer::refused) {
-    why = "refuses ";
-    why += words_of(error_);
-    why += " (error " + hex({&error_, 1}) + ", message " + hex(std::array{static_cast<std::uint8_t>(request)}) + ")";
-    fail(why);
-  }
-  if (scanner_.counts().packets == 0 && scanner_.counts().skipped > 0)
-    why = "answers garbage: is it no Xsens, or has it another baud rate than ";
-  why += std::to_string(settings_.baud);
-  fail(why + "?");
+  if (is == Answer::refused)
+    fail("refuses " + std::string(words_of(error_)) + " (error " + hex({&error_, 1}) + ", message " +
+         hex(std::array{static_cast<std::uint8_t>(request)}) + ")");
+  const bool garbage = scanner_.counts().packets == 0 && scanner_.counts().skipped > 0;
+  fail((garbage ? "answers garbage: is it no Xsens, or has it another baud rate than "
+                : "does not answer: is it powered, and is its baud rate ") +
+       std::to_string(settings_.baud) + "?");
 }
 
 void SerialImu::check_id(Octets id) const {
@@ -113,15 +109,11 @@ void SerialImu::set_up_items() {
     };
     std::size_t k = 0;
     while (k + 4 <= answer.data.size() && !given(k)) k += 4;
-    std::string why = "gives ";
-    if (!given(k)) why += "no ";
-    why += at == 4 ? "accelerations" : "rates of turn";
-    if (!given(k)) fail(why);
-    const std::uint16_t its_Hz = u16_at(answer.data, k + 2);
-    if (its_Hz == rate_Hz) continue;
-    why += " at ";
-    why += std::to_string(its_Hz);
-    fail(why + " Hz: plant.serial_imu.rate_Hz is " + std::to_string(rate_Hz));
+    const std::string what = at == 4 ? "accelerations" : "rates of turn";
+    if (!given(k)) fail("gives no " + what);
+    if (const std::uint16_t its_Hz = u16_at(answer.data, k + 2); its_Hz != rate_Hz)
+      fail("gives " + what + " at " + std::to_string(its_Hz) + " Hz: plant.serial_imu.rate_Hz is " +
+           std::to_string(rate_Hz));
   }
 }
 
