@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kadans/signal/input_error.h"
+#include "signal/number_text.h"
 
 namespace kadans::imu {
 namespace {
@@ -18,12 +19,8 @@ constexpr std::uint16_t mode_calibrated = 0x0002;
 constexpr std::uint32_t settings_counted_without_magnetometer = 0x0000'0041;
 
 std::string hex(Octets bytes) {
-  constexpr std::string_view digits = "0123456789ABCDEF";
   std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += digits[byte >> 4U];
-    text += digits[byte & 15U];
-  }
+  for (const std::uint8_t byte : bytes) text += printed("%02X", unsigned{byte});
   return text;
 }
 
