@@ -1,7 +1,6 @@
 #include "unitree_plant.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -13,17 +12,10 @@
 namespace unitree {
 namespace {
 
-constexpr int bus_priority = 80;  // below the control thread's
-constexpr std::size_t stack_bytes = std::size_t{256} * 1024;
 constexpr std::int64_t wait_max_ns = 20'000'000;
 constexpr double other_kind_s = 0.5;  // until then the right one may be found first
 
-struct NamedCount {
-  const char* name;
-  std::uint32_t Counts::*value;
-  const char* doc;
-};
-constexpr NamedCount named_counts[] = {
+constexpr kadans::NamedCount<Counts> named_counts[] = {
     {"states", &Counts::states, "states of the robot that were used"},
     {"corrupt", &Counts::corrupt, "states with a wrong checksum"},
     {"stale", &Counts::stale, "states that were not newer than the one before"},
@@ -67,7 +59,7 @@ bool UnitreePlant::open(bool (*give_up)() noexcept) {
     link_->wait(link_->now_ns() + wait_max_ns);
   }
   sample_.publish(driver_->sample());  // the first reading is here before the loop
-  if (own_thread_) start_thread();
+  if (own_thread_) thread_.start("unitree", "the bus", [this] { loop(); });
   return true;
 }
 
@@ -92,33 +84,10 @@ void UnitreePlant::fail_without_state(const std::string& other_kind) const {
       {.file = site_.file, .message = std::string(settings_.kind->name) + " on " + settings_.place() + ": " + why});
 }
 
-void UnitreePlant::start_thread() {
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, stack_bytes);
-  stop_.store(false, std::memory_order_relaxed);
-  runs_ = pthread_create(&thread_, &attributes, enter, this) == 0;
-  pthread_attr_destroy(&attributes);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  if (!runs_) throw kadans::InputError({.message = "the system gives no thread to the bus"});
-  sched_param parameter{};
-  parameter.sched_priority = bus_priority;
-  (void)pthread_setschedparam(thread_, SCHED_FIFO, &parameter);  // without the right it is a usual thread
-  pthread_setname_np(thread_, "unitree");
-}
-
-void* UnitreePlant::enter(void* plant) {
-  static_cast<UnitreePlant*>(plant)->loop();
-  return nullptr;
-}
-
 void UnitreePlant::loop() noexcept {
   const std::int64_t period_ns = settings_.period_ns();
   std::int64_t due_ns = link_->now_ns();
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!thread_.asked_to_stop()) {
     if (driver_->take()) sample_.publish(driver_->sample());
     const std::int64_t now_ns = link_->now_ns();
     if (now_ns < due_ns) {
@@ -141,8 +110,7 @@ void UnitreePlant::run_cycle() noexcept {
 }
 
 void UnitreePlant::close() noexcept {
-  stop_.store(true, std::memory_order_relaxed);
-  if (std::exchange(runs_, false)) pthread_join(thread_, nullptr);
+  thread_.stop();
   if (driver_ != nullptr) driver_->release();
   driver_.reset();
   if (own_thread_) link_.reset();
@@ -172,15 +140,10 @@ void UnitreePlant::read(kadans::SensorFrame& sensors) noexcept {
   drives_to_joints(site_.transmissions, sensors);
 }
 
-std::vector<kadans::PlantCount> UnitreePlant::link_counts() const {
-  std::vector<kadans::PlantCount> counts;
-  for (const NamedCount& one : named_counts) counts.push_back({one.name, counts_.*one.value});
-  return counts;
-}
+std::vector<kadans::PlantCount> UnitreePlant::link_counts() const { return kadans::counts_of(named_counts, counts_); }
 
 void UnitreePlant::declare_signals(kadans::SignalTable& table) const {
-  for (const NamedCount& one : named_counts)
-    table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts_.*one.value));
+  kadans::declare_counts(table, named_counts, counts_);
   table.add({"plant.bus.age_ms", "ms", "age of the newest state"}, &age_ms_);
 }
 

@@ -10,12 +10,10 @@
 // falls silent is the robot's own; the emulated one damps after watchdog_s.
 #pragma once
 
-#include <atomic>
 #include <memory>
 
-#include <pthread.h>
-
 #include "kadans/exchange/latest.h"
+#include "kadans/plant/bus_thread.h"
 #include "kadans/plant/plant_type.h"
 #include "low_driver.h"
 
@@ -40,9 +38,7 @@ class UnitreePlant final : public kadans::Plant {
   void run_cycle() noexcept;
 
  private:
-  static void* enter(void* plant);
   [[noreturn]] void fail_without_state(const std::string& other_kind) const;
-  void start_thread();
   void loop() noexcept;
 
   Settings settings_;
@@ -52,14 +48,12 @@ class UnitreePlant final : public kadans::Plant {
   bool own_thread_;
   std::unique_ptr<DriverLink> link_;
   std::unique_ptr<LowDriver> driver_;
-  pthread_t thread_{};
-  bool runs_ = false;
-  std::atomic<bool> stop_{false};
   kadans::Latest<kadans::ActuationFrame> actuation_;
   kadans::Latest<LowSample> sample_;
   kadans::ActuationFrame drives_;
   Counts counts_;      // as of the last read
   double age_ms_ = 0;  // of the newest state
+  kadans::BusThread thread_;
 };
 
 }  // namespace unitree

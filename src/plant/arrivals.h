@@ -19,7 +19,10 @@ struct DatagramCounts {
   std::uint32_t refused = 0;  // garbage, another robot's, another session's, a stranger's
 };
 
-std::vector<PlantCount> counts_of(const DatagramCounts& statistics);
+inline std::vector<PlantCount> counts_of(const DatagramCounts& s) {
+  return {{"sent", s.sent},           {"unsent", s.unsent},         {"received", s.received}, {"lost", s.lost},
+          {"reordered", s.reordered}, {"duplicates", s.duplicates}, {"late", s.late},         {"refused", s.refused}};
+}
 
 // Sorts the datagrams of the other side by their sequence numbers: the newest is used, the others are counted.
 //

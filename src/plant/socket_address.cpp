@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <system_error>
 
 #include <netdb.h>
@@ -32,16 +33,6 @@ HostPort parse(const std::string& text) {
   return place;
 }
 
-struct AddressList {
-  addrinfo* first = nullptr;
-  AddressList() = default;
-  AddressList(const AddressList&) = delete;
-  AddressList& operator=(const AddressList&) = delete;
-  ~AddressList() {
-    if (first != nullptr) freeaddrinfo(first);
-  }
-};
-
 // Opens and tries `attach` (bind or connect) on each address of the place until one is taken.
 template <typename Attach>
 int open_at(const std::string& text, int flags, Attach attach) {
@@ -50,12 +41,13 @@ int open_at(const std::string& text, int flags, Attach attach) {
   wanted.ai_family = AF_UNSPEC;
   wanted.ai_socktype = SOCK_DGRAM;
   wanted.ai_flags = flags | AI_NUMERICSERV;
-  AddressList list;
+  addrinfo* first = nullptr;
   const char* host = place.host.empty() ? nullptr : place.host.c_str();
-  const int unknown = getaddrinfo(host, place.port.c_str(), &wanted, &list.first);
+  const int unknown = getaddrinfo(host, place.port.c_str(), &wanted, &first);
+  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> list(first, freeaddrinfo);
   if (unknown != 0) fail("'" + text + "': " + gai_strerror(unknown));
   int error = 0;
-  for (const addrinfo* at = list.first; at != nullptr; at = at->ai_next) {
+  for (const addrinfo* at = first; at != nullptr; at = at->ai_next) {
     const int descriptor = socket(at->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, at->ai_protocol);
     if (descriptor >= 0 && attach(descriptor, at->ai_addr, at->ai_addrlen) == 0) {
       const int urgent = IPTOS_LOWDELAY;  // a wish, nothing more

@@ -10,7 +10,7 @@
 #include "kadans/plant/ideal_world.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/testing/allocation_count.h"
-#include "plant/imu/emulator/imu_line.h"
+#include "plant/imu/emulator/imu_world.h"
 #include "plant/imu/imu_plant.h"
 #include "two_joints.h"
 

@@ -307,7 +307,7 @@ TEST_CASE("Nobody there is told so") {
                        "does the network let UDP pass?",
                        InputError);
   for (const char* wrong : {"", "host", "host:", "host:port", "host:70000", "host:-1"})
-    CHECK_THROWS_AS(DatagramSocket::connected(wrong), InputError);
+    CHECK_THROWS_AS(DatagramSocket(connected_socket(wrong)), InputError);
 }
 
 TEST_CASE("A plant that does not listen yet is waited for as long as one that does not answer") {
@@ -315,7 +315,7 @@ TEST_CASE("A plant that does not listen yet is waited for as long as one that do
   asked = 0;
   const Deaf deaf;
   const std::string place = "127.0.0.1:" + std::to_string(deaf.port);
-  UdpPlant plant({.peer = place, .connect_timeout_s = 0.2}, layout(), DatagramSocket::connected(place), 1);
+  UdpPlant plant({.peer = place, .connect_timeout_s = 0.2}, layout(), DatagramSocket(connected_socket(place)), 1);
   const auto begin = std::chrono::steady_clock::now();
   CHECK_THROWS_AS(plant.open([]() noexcept { return ++asked < 0; }), InputError);
   CHECK(std::chrono::steady_clock::now() - begin >= std::chrono::milliseconds(200));
@@ -337,14 +337,14 @@ TEST_CASE("Real sockets carry a session") {
     for (int port = 20'000 + getpid() % 20'000;; ++port) {  // the first that nobody else has
       place = "127.0.0.1:" + std::to_string(port);
       try {
-        return DatagramSocket::listening(place);
+        return DatagramSocket(listening_socket(place));
       } catch (const InputError&) {
         REQUIRE(port < 50'000);
       }
     }
   };
   PlantServer server({}, layout(), listen());
-  UdpPlant plant({}, layout(), DatagramSocket::connected(place), 1);
+  UdpPlant plant({}, layout(), DatagramSocket(connected_socket(place)), 1);
   CHECK(plant.greet());
   REQUIRE(server.await(2000));  // at most: it wakes when something came
   CHECK(server.peer().text().starts_with("127.0.0.1:"));

@@ -55,6 +55,16 @@ class Transmission {
   Pair drive_effort_Nm(const Pair& joint_Nm) const noexcept { return transposed_times(inverse_, joint_Nm); }
   Pair joint_effort_Nm(const Pair& drive_Nm) const noexcept { return transposed_times(ratio_, drive_Nm); }
 
+  // Replaces the values of two coupled joints, in a list of all joints' values, by what one of the functions above
+  // makes of them.
+  template <typename Values>
+  void map(Values& values, Pair (Transmission::*how)(const Pair&) const noexcept) const noexcept {
+    double &first = values[joints_[0]], &second = values[joints_[1]];
+    const Pair mapped = (this->*how)({first, second});
+    first = mapped[0];
+    second = mapped[1];
+  }
+
   // What is asked of the joints, as what is asked of their drives; the rest of the frame stays. Coupled drives run in
   // one mode. The safety layer lets no others pass than one mode for both joints, or effort for one and off for the
   // other; of what comes past it all the same, the joints' effort alone counts. In impedance mode a drive knows only

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "kadans/signal/frames.h"
@@ -18,6 +19,26 @@ struct PlantCount {
   const char* name;
   std::uint64_t value;
 };
+
+// One of the counts that a plant keeps in a struct of its own. A list of them is what link_counts() tells, and what is
+// recorded as the signals plant.bus.NAME.
+template <typename Counts>
+struct NamedCount {
+  const char* name;
+  std::uint32_t Counts::*value;
+  const char* doc;
+};
+template <typename Names, typename Counts>
+std::vector<PlantCount> counts_of(const Names& names, const Counts& counts) {
+  std::vector<PlantCount> all;
+  for (const auto& one : names) all.push_back({one.name, counts.*one.value});
+  return all;
+}
+// The counts must outlive the table's use.
+template <typename Names, typename Counts>
+void declare_counts(SignalTable& table, const Names& names, const Counts& counts) {
+  for (const auto& one : names) table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts.*one.value));
+}
 
 class Plant {
  public:

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kadans {
@@ -13,6 +14,7 @@ struct InputProblem {
   int column = 0;  // 1-based; 0 when unknown
   std::string message;
   std::string text() const;  // "file:line:column: message", without the parts that are 0
+  InputProblem with(std::string other) const { return {file, line, column, std::move(other)}; }  // at the same place
 };
 
 class InputError : public std::runtime_error {

@@ -40,7 +40,7 @@ struct Overlap {
 // What overlaps of pairs that may collide where the settings place the robot, the links of a fixed base left out.
 std::vector<Overlap> overlaps_at(Body& body, const PlantSettings& settings, PairMask& mask) {
   body.place(settings);
-  ContactWorld world({.gravity_m_s2 = btVector3(0, 0, 0), .ground = to_bullet(ground_pose(settings.world))}, mask);
+  ContactWorld world(settings, mask);
   body.add_to(world);
   world.detect_collisions();
   std::vector<Overlap> found;
@@ -146,43 +146,51 @@ std::vector<LinkFrame> link_frames(const RobotModel& model) {
 
 // A multibody with the model's links and joints, all joints at 0, its base at the world's origin. The payloads follow
 // as links on fixed joints, without mass as yet.
-std::unique_ptr<btMultiBody> make_multibody(const RobotModel& model, const std::vector<LinkFrame>& frames,
-                                            const PlantSettings& settings) {
-  const bool can_sleep = false;
+std::unique_ptr<btMultiBody> make_robot(const RobotModel& model, const std::vector<LinkFrame>& frames,
+                                        const PlantSettings& settings) {
   const int joints = static_cast<int>(model.joints.size()), payloads = static_cast<int>(settings.world.payloads.size());
-  auto body = std::make_unique<btMultiBody>(joints + payloads, model.links[0].inertia.mass_kg, frames[0].moments_kg_m2,
-                                            settings.fixed_base, can_sleep);
+  auto body =
+      make_multibody(joints + payloads, model.links[0].inertia.mass_kg, frames[0].moments_kg_m2, settings.fixed_base);
   for (std::size_t i = 0; i < model.joints.size(); ++i) set_up_joint(*body, model, frames, i);
   for (int i = 0; i < payloads; ++i) {
     set_up_payload(*body, model, frames, settings.world.payloads[static_cast<std::size_t>(i)], joints + i);
   }
   body->finalizeMultiDof();
-  body->setLinearDamping(0);  // 0.04 by default: not physics
-  body->setAngularDamping(0);
-  body->setMaxCoordinateVelocity(1e6);  // 100 by default, a silent clamp
   return body;
 }
 
 }  // namespace
 
+std::unique_ptr<btMultiBody> make_multibody(int links, double mass_kg, const btVector3& moments_kg_m2, bool fixed) {
+  const bool can_sleep = false;
+  auto body = std::make_unique<btMultiBody>(links, mass_kg, moments_kg_m2, fixed, can_sleep);
+  body->setLinearDamping(0);  // 0.04 by default
+  body->setAngularDamping(0);
+  body->setMaxCoordinateVelocity(1e6);  // 100 by default
+  return body;
+}
+
+std::unique_ptr<btMultiBodyLinkCollider> make_collider(btMultiBody& body, int link, btCollisionShape& shape) {
+  auto collider = std::make_unique<btMultiBodyLinkCollider>(&body, link);
+  collider->setCollisionShape(&shape);
+  collider->setActivationState(DISABLE_DEACTIVATION);
+  if (link < 0) {
+    body.setBaseCollider(collider.get());
+  } else {
+    body.getLink(link).m_collider = collider.get();
+  }
+  return collider;
+}
+
 Body::Body(const RobotModel& model, const PlantSettings& settings)
-    : frames_(link_frames(model)), multibody_(make_multibody(model, frames_, settings)) {
+    : frames_(link_frames(model)), multibody_(make_robot(model, frames_, settings)) {
   multibody_->setHasSelfCollision(settings.self_collision);
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     shapes_.push_back(std::make_unique<LinkShapes>(model.links[i], frames_[i].com_in_link));
     if (shapes_.back()->empty()) continue;
-    const int link = static_cast<int>(i) - 1;
-    auto collider = std::make_unique<btMultiBodyLinkCollider>(multibody_.get(), link);
-    collider->setCollisionShape(shapes_.back()->shape());
-    collider->setFriction(friction_of(model, settings, i));
-    collider->setRestitution(0);
-    collider->setActivationState(DISABLE_DEACTIVATION);
-    if (link < 0) {
-      multibody_->setBaseCollider(collider.get());
-    } else {
-      multibody_->getLink(link).m_collider = collider.get();
-    }
-    colliders_.push_back(std::move(collider));
+    colliders_.push_back(make_collider(*multibody_, static_cast<int>(i) - 1, *shapes_.back()->shape()));
+    colliders_.back()->setFriction(friction_of(model, settings, i));
+    colliders_.back()->setRestitution(0);
   }
 }
 

@@ -22,6 +22,11 @@ struct LinkFrame {
   btVector3 moments_kg_m2;
 };
 
+// A multibody of Bullet's without what is no physics: its damping, and its silent clamp of velocities.
+std::unique_ptr<btMultiBody> make_multibody(int links, double mass_kg, const btVector3& moments_kg_m2, bool fixed);
+// The collider of one of its links, -1 the base.
+std::unique_ptr<btMultiBodyLinkCollider> make_collider(btMultiBody& body, int link, btCollisionShape& shape);
+
 class Body {
  public:
   Body(const RobotModel& model, const PlantSettings& settings);

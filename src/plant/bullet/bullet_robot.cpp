@@ -4,25 +4,10 @@
 #include <stdexcept>
 
 #include "convert.h"
+#include "plant/bullet/contact/link_contact.h"
 #include "plant/bullet/contact/room.h"
 
 namespace kadans::bullet {
-namespace {
-
-ContactWorld::Options world_options(const PlantSettings& settings, FrictionLaw friction) {
-  return {.gravity_m_s2 = to_bullet(settings.gravity_m_s2),
-          .solver_iterations = settings.solver_iterations,
-          .ground_friction = settings.ground_friction,
-          .ground_restitution = settings.ground_restitution,
-          .ground_stiffness_N_per_m = settings.ground_stiffness_N_per_m,
-          .ground_damping_Ns_per_m = settings.ground_damping_Ns_per_m,
-          .ground = to_bullet(ground_pose(settings.world)),
-          .solver = settings.solver,
-          .friction = friction};
-}
-
-}  // namespace
-
 BulletRobot::BulletRobot(const WorldSite& site, const PlantSettings& settings, FrictionLaw friction,
                          WorldObjects& objects, bool first)
     : settings_(settings),
@@ -34,7 +19,7 @@ BulletRobot::BulletRobot(const WorldSite& site, const PlantSettings& settings, F
       electronics_(settings.drives, site.model.joints.size()),
       sensors_(site.model, settings, site.seed),
       truth_(body_, site.model.joints.size()),
-      world_(world_options(settings, friction), mask_) {
+      world_(settings, mask_, friction) {
   check_start(site.model, settings_, body_, mask_);
   body_.place(settings_);
   body_.add_to(world_);

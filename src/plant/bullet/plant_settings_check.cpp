@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <sstream>
 #include <stdexcept>
+
+#include "signal/number_text.h"
 
 namespace kadans::bullet {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, double value, const std::string& must) {
-  std::ostringstream text;
-  text << name << " = " << value << " must be " << must;
-  throw std::invalid_argument(text.str());
+  throw std::invalid_argument(name + " = " + printed("%g", value) + " must be " + must);
 }
 
 void require_at_least_zero(const std::string& name, double value) {
@@ -155,6 +154,19 @@ void require_names(const std::string& what, const std::vector<Named>& all) {
   }
 }
 
+void check_world(const RobotModel& model, const WorldSettings& world) {
+  if (world.objects.size() > max_world_objects) {
+    refuse("objects", static_cast<double>(world.objects.size()), "at most " + std::to_string(max_world_objects));
+  }
+  require_names("object", world.objects);
+  require_names("payload", world.payloads);
+  require_slope("slope_rad", world.slope_rad);
+  require_finite("slope_heading_rad", {&world.slope_heading_rad, 1});
+  check_motion("ground: ", world.ground_motion);
+  for (const WorldObject& object : world.objects) check_object(object);
+  for (const PayloadSettings& payload : world.payloads) check_payload(model, payload);
+}
+
 }  // namespace
 
 void check_settings(const RobotModel& model, const PlantSettings& settings) {
@@ -189,19 +201,6 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
     require_at_least_zero("friction of '" + surface.link + "'", surface.friction);
   }
   check_world(model, settings.world);
-}
-
-void check_world(const RobotModel& model, const WorldSettings& world) {
-  if (world.objects.size() > max_world_objects) {
-    refuse("objects", static_cast<double>(world.objects.size()), "at most " + std::to_string(max_world_objects));
-  }
-  require_names("object", world.objects);
-  require_names("payload", world.payloads);
-  require_slope("slope_rad", world.slope_rad);
-  require_finite("slope_heading_rad", {&world.slope_heading_rad, 1});
-  check_motion("ground: ", world.ground_motion);
-  for (const WorldObject& object : world.objects) check_object(object);
-  for (const PayloadSettings& payload : world.payloads) check_payload(model, payload);
 }
 
 }  // namespace kadans::bullet

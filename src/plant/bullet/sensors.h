@@ -3,7 +3,7 @@
 //
 // Joints: position at the joint and before the spring, each rounded to the encoder's resolution; motor effort.
 // IMU: rate and specific force at the IMU's point, in its axes. The acceleration is the change of velocity over the
-// whole step, so impacts are in it. Feet: see foot_pressure.
+// whole step, so impacts are in it. Feet: the load of truth.h, at the corners of the sole.
 #pragma once
 
 #include <string>
@@ -14,15 +14,6 @@
 #include "truth.h"
 
 namespace kadans::bullet {
-
-// Distributes a normal force at a point of the sole over four sensors at its corners: bilinear between heel and toe,
-// inner and outer. So the sum is the force, and the centre of pressure is kept inside the corners.
-std::array<double, sensors_per_foot> foot_pressure(const FootSettings& foot, const btVector3& point_in_link_m,
-                                                   double force_N);
-
-// Adds up the ground's contact impulses on each foot. Keeps the links in `feet` and writes everything else.
-void read_feet(const ContactWorld& world, const Body& body, const std::vector<FootSettings>& settings, double dt_s,
-               std::vector<FootLoad>& feet);
 
 class Sensors {
  public:

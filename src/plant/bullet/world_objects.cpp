@@ -28,14 +28,6 @@ std::unique_ptr<btCompoundShape> compound_of(btConvexShape& shape) {
   return compound;
 }
 
-std::unique_ptr<btMultiBody> make_multibody(int links, double mass_kg, const btVector3& moments_kg_m2, bool fixed) {
-  auto body = std::make_unique<btMultiBody>(links, mass_kg, moments_kg_m2, fixed, false);
-  body->setLinearDamping(0);
-  body->setAngularDamping(0);
-  body->setMaxCoordinateVelocity(1e6);
-  return body;
-}
-
 std::unique_ptr<btMultiBody> make_free_body(double mass_kg, const btVector3& moments_kg_m2, const Pose& pose,
                                             const Vec3& velocity_m_s) {
   auto body = make_multibody(0, mass_kg, moments_kg_m2, false);
@@ -126,17 +118,7 @@ void WorldObjects::add_part(Object& object, std::unique_ptr<btConvexShape> shape
   Part part;
   part.shape = std::move(shape);
   part.compound = compound_of(*part.shape);
-  btMultiBody& body = *object.multibody;
-  const int link = body.getNumLinks() - 1;
-  auto collider = std::make_unique<btMultiBodyLinkCollider>(&body, link);
-  collider->setCollisionShape(part.compound.get());
-  collider->setActivationState(DISABLE_DEACTIVATION);
-  if (link < 0) {
-    body.setBaseCollider(collider.get());
-  } else {
-    body.getLink(link).m_collider = collider.get();
-  }
-  part.collider = std::move(collider);
+  part.collider = make_collider(*object.multibody, object.multibody->getNumLinks() - 1, *part.compound);
   object.parts.push_back(std::move(part));
 }
 

@@ -2,26 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <ctime>
 #include <utility>
 
-#include <pthread.h>
-
-#include "kadans/signal/input_error.h"
+#include "kadans/plant/bus_thread.h"
 
 namespace kadans::dynamixel {
 namespace {
 
-constexpr int port_priority = 80;  // below the control thread's
-constexpr std::size_t port_stack_bytes = std::size_t{256} * 1024;
-
-struct NamedCount {
-  const char* name;
-  std::uint32_t PortCounts::*value;
-  const char* doc;
-};
-constexpr NamedCount named_counts[] = {
+constexpr NamedCount<PortCounts> named_counts[] = {
     {"cycles", &PortCounts::cycles, "cycles of all serial ports"},
     {"answers", &PortCounts::answers, "readings of servos"},
     {"lost", &PortCounts::lost, "readings that never came"},
@@ -40,12 +29,10 @@ struct DynamixelPlant::Port {
   SerialPort& serial;
   PortCycle cycle;
   std::int64_t period_ns;
-  pthread_t thread{};
-  bool runs = false;
-  std::atomic<bool> stop{false};
   Latest<ActuationFrame> actuation;
   Latest<PortSample> sample;
   std::vector<std::size_t> joints;  // of its servos
+  BusThread thread;
 
   void run_once() noexcept {
     {
@@ -56,7 +43,7 @@ struct DynamixelPlant::Port {
   }
   void loop() noexcept {
     std::int64_t due_ns = serial.now_ns();
-    while (!stop.load(std::memory_order_relaxed)) {
+    while (!thread.asked_to_stop()) {
       run_once();
       const std::int64_t now_ns = serial.now_ns();
       due_ns += period_ns;
@@ -102,34 +89,14 @@ bool DynamixelPlant::open(bool (*give_up)() noexcept) {
   open_ = true;
   run_cycles();  // the first reading is here before the loop
   if (threads_ == Threads::none) return true;
-  for (const auto& port : ports_) {
-    sigset_t all, before;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before);
-    pthread_attr_t attributes;
-    pthread_attr_init(&attributes);
-    pthread_attr_setstacksize(&attributes, port_stack_bytes);
-    port->runs = pthread_create(&port->thread, &attributes, enter, port.get()) == 0;
-    pthread_attr_destroy(&attributes);
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    if (!port->runs) throw InputError({.message = "the system gives no thread to a serial port"});
-    sched_param parameter{};
-    parameter.sched_priority = port_priority;
-    (void)pthread_setschedparam(port->thread, SCHED_FIFO, &parameter);  // without the right it is a usual thread
-    pthread_setname_np(port->thread, "servos");
-  }
+  for (const auto& port : ports_) port->thread.start("servos", "a serial port", [its = port.get()] { its->loop(); });
   return true;
 }
 
-void* DynamixelPlant::enter(void* port) {
-  static_cast<Port*>(port)->loop();
-  return nullptr;
-}
-
 void DynamixelPlant::close() noexcept {
-  for (const auto& port : ports_) port->stop.store(true, std::memory_order_relaxed);
+  for (const auto& port : ports_) port->thread.ask_to_stop();
   for (const auto& port : ports_) {
-    if (std::exchange(port->runs, false)) pthread_join(port->thread, nullptr);
+    port->thread.stop();
     if (open_) port->cycle.close();
   }
   open_ = false;
@@ -155,7 +122,7 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
   age_ms_ = cycle_ms_ = 0;
   for (const auto& port : ports_) {
     const auto sample = port->sample.read();
-    for (const NamedCount& one : named_counts) counts_.*one.value += sample->counts.*one.value;
+    for (const auto& one : named_counts) counts_.*one.value += sample->counts.*one.value;
     cycle_ms_ = std::max(cycle_ms_, sample->cycle_ms);
     for (std::size_t i = 0; i < port->joints.size() && i < sample->count; ++i) {
       const ServoReading& is = sample->servos[i];
@@ -174,15 +141,10 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
   drives_to_joints(site_.transmissions, sensors);
 }
 
-std::vector<PlantCount> DynamixelPlant::link_counts() const {
-  std::vector<PlantCount> counts;
-  for (const NamedCount& one : named_counts) counts.push_back({one.name, counts_.*one.value});
-  return counts;
-}
+std::vector<PlantCount> DynamixelPlant::link_counts() const { return counts_of(named_counts, counts_); }
 
 void DynamixelPlant::declare_signals(SignalTable& table) const {
-  for (const NamedCount& one : named_counts)
-    table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts_.*one.value));
+  declare_counts(table, named_counts, counts_);
   table.add({"plant.bus.cycle_ms", "ms", "time that the last cycle of the slowest port took"}, &cycle_ms_);
   table.add({"plant.bus.age_ms", "ms", "age of the oldest servo's newest reading"}, &age_ms_);
 }

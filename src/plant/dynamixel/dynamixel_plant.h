@@ -9,7 +9,6 @@
 // Safe state: the servos' own watchdogs stop them when no packet came for watchdog_s; close() takes their torque.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -44,7 +43,6 @@ class DynamixelPlant final : public Plant {
 
  private:
   struct Port;
-  static void* enter(void* port);
 
   DynamixelSettings settings_;
   PlantSite site_;

@@ -96,14 +96,9 @@ Octets PacketWriter::finish() noexcept {
   return {bytes_.data(), size_};
 }
 
-void PacketScanner::skip(std::size_t bytes) noexcept {
-  counts_.skipped += bytes;
-  bytes_.drop(bytes);
-}
-
 bool PacketScanner::next(ReceivedPacket& packet) noexcept {
   for (;;) {
-    const Octets here = bytes_.here();
+    const Octets here = this->here();
     const auto found = std::search(here.begin(), here.end(), header.begin(), header.end());
     if (found == here.end()) {  // the last bytes may begin a header
       const std::size_t keep = std::min(here.size(), header.size() - 1);
@@ -130,7 +125,7 @@ bool PacketScanner::next(ReceivedPacket& packet) noexcept {
       continue;
     }
     ++counts_.packets;
-    bytes_.drop(size);
+    drop(size);
     packet = {.id = raw[4], .instruction = raw[instruction_at], .raw = raw};
     std::size_t plain = 0;
     unsigned run = 0;

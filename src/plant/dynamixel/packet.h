@@ -75,29 +75,12 @@ struct ReceivedPacket {
 };
 
 // Finds the packets in a stream of bytes that may be anything.
-class PacketScanner {
+class PacketScanner : public ReceiveBuffer<2 * packet_bytes_max> {
  public:
-  struct Counts {
-    std::uint64_t packets = 0;
-    std::uint64_t corrupt = 0;  // began like packets, with a wrong CRC or length
-    std::uint64_t skipped = 0;  // bytes that belong to no packet
-  };
-
-  // Where to put bytes from outside; then tell how many. There is always room for some after next() returned false.
-  std::span<std::uint8_t> room() noexcept { return bytes_.room(); }
-  void filled(std::size_t bytes) noexcept { bytes_.filled(bytes); }
-  // False: no whole packet is here.
-  bool next(ReceivedPacket& packet) noexcept;
-  // Forgets what is here: a new exchange begins.
-  void clear() noexcept { bytes_.clear(); }
-  const Counts& counts() const noexcept { return counts_; }
+  bool next(ReceivedPacket& packet) noexcept;  // false: no whole packet is here
 
  private:
-  void skip(std::size_t bytes) noexcept;
-
-  ReceiveBuffer<2 * packet_bytes_max> bytes_;
   std::array<std::uint8_t, packet_bytes_max> plain_;
-  Counts counts_;
 };
 
 // The part of a fast sync read's answer that one servo wrote.

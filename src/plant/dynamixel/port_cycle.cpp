@@ -25,9 +25,7 @@ PortCycle::PortCycle(SerialPort& port, const Timing& timing, std::vector<Servo> 
 }
 
 void PortCycle::fail(const Servo& servo, const std::string& where, const std::string& why) const {
-  InputProblem problem = servo.settings().place;
-  problem.message = id_and_drive(servo) + " on " + where + " " + why;
-  throw InputError(problem);
+  throw InputError(servo.settings().place.with(id_and_drive(servo) + " on " + where + " " + why));
 }
 
 std::string PortCycle::others_that_answer(const Servo& but) {

@@ -75,45 +75,35 @@ Servo::SetUp Servo::set_up(ServoBus& bus) noexcept {
     }
     return bus.write_bytes(id(), indirect_address, {bytes.data(), 2 * slot});
   };
-  Answer answer = Answer::good;
-  switch (step_) {
-    case 0:
-      answer = bus.write(id(), torque_enable, 0);
-      break;
-    case 1:
-      answer = bus.write(id(), bus_watchdog, 0);
-      break;
-    case 2:
-      answer = bus.write(id(), status_return_level, 2);
-      break;
-    case 3:
-      answer = ensure(return_delay, 0);
-      break;
-    case 4:
-      answer = ensure(drive_mode, 0);
-      break;
-    case 5:
-      answer = write_layout();
-      break;
-    case 6:
-      answer = bus.write(id(), profile_acceleration, 0);
-      break;
-    case 7:
-      answer = bus.write(id(), profile_velocity, 0);
-      break;
-    case 8:
-      answer = read_limit(pwm_limit, pwm_most_);
-      break;
-    case 9:
-      answer = model().has_current() ? read_limit(current_limit, current_most_) : Answer::good;
-      break;
-    case 10:
-      answer = read_limit(velocity_limit, velocity_most_);
-      break;
-    default:
-      answer = bus.write(id(), bus_watchdog, watchdog_units_);
-      break;
-  }
+  const auto step = [&] {
+    switch (step_) {
+      case 0:
+        return bus.write(id(), torque_enable, 0);
+      case 1:
+        return bus.write(id(), bus_watchdog, 0);
+      case 2:
+        return bus.write(id(), status_return_level, 2);
+      case 3:
+        return ensure(return_delay, 0);
+      case 4:
+        return ensure(drive_mode, 0);
+      case 5:
+        return write_layout();
+      case 6:
+        return bus.write(id(), profile_acceleration, 0);
+      case 7:
+        return bus.write(id(), profile_velocity, 0);
+      case 8:
+        return read_limit(pwm_limit, pwm_most_);
+      case 9:
+        return model().has_current() ? read_limit(current_limit, current_most_) : Answer::good;
+      case 10:
+        return read_limit(velocity_limit, velocity_most_);
+      default:
+        return bus.write(id(), bus_watchdog, watchdog_units_);
+    }
+  };
+  const Answer answer = step();
   if (answer == Answer::good) {
     tries_ = 0;
     if (step_++ < 11) return SetUp::goes_on;

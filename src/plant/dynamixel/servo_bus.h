@@ -35,7 +35,6 @@ class ServoBus {
   // To several servos, which do not answer.
   bool write_to_all(Register to, std::uint32_t value, Octets ids) noexcept;
   std::uint8_t error() const noexcept { return error_; }
-  const PacketScanner::Counts& counts() const noexcept { return scanner_.counts(); }
 
  private:
   // `data`: how many bytes the answer carries.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 #include "kadans/signal/nearest_name.h"
 #include "servo_bus.h"
+#include "signal/number_text.h"
 
 namespace kadans::dynamixel {
 namespace {
@@ -117,11 +117,7 @@ void DynamixelSettings::fields(PlantFields& f) {
   }
 }
 
-std::string milliseconds(std::int64_t ns) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f ms", 1e-6 * static_cast<double>(ns));
-  return text.data();
-}
+std::string milliseconds(std::int64_t ns) { return printed("%.2f ms", 1e-6 * static_cast<double>(ns)); }
 
 CycleNeed cycle_need(const DynamixelSettings& settings, const PortSettings& port) {
   CycleNeed need;
@@ -147,6 +143,25 @@ std::int64_t bus_period_ns(const DynamixelSettings& settings, std::int64_t contr
   std::int64_t needed_ns = 1;
   for (const PortSettings& port : settings.ports) needed_ns = std::max(needed_ns, cycle_need(settings, port).needed_ns);
   return (needed_ns + control_period_ns - 1) / control_period_ns * control_period_ns;
+}
+
+std::vector<PlantType::Finding> examine_ports(const DynamixelSettings& settings, std::int64_t control_period_ns) {
+  std::vector<PlantType::Finding> findings;
+  const std::int64_t period_ns = bus_period_ns(settings, control_period_ns);
+  for (const PortSettings& port : settings.ports) {
+    examine_serial_port(port.name, port.device, findings);
+    const CycleNeed need = cycle_need(settings, port);
+    const std::string is = std::to_string(need.servos) + " servos: " + std::to_string(need.bytes) + " bytes at " +
+                           std::to_string(port.baud) + " baud are " + milliseconds(need.wire_ns) +
+                           ", with the adapter " + milliseconds(need.needed_ns) + "; the bus runs at " +
+                           milliseconds(period_ns) + ", the control at " + milliseconds(control_period_ns);
+    findings.push_back({.topic = "cycle " + port.name,
+                        .good = need.needed_ns <= period_ns,
+                        .is = is,
+                        .should = "a period that it can hold",
+                        .how = "a higher baud rate, a second port, or a longer plant.dynamixel.period_s"});
+  }
+  return findings;
 }
 
 }  // namespace kadans::dynamixel

@@ -53,6 +53,9 @@ struct CycleNeed {
 };
 // Throws std::invalid_argument when the port has no servos.
 CycleNeed cycle_need(const DynamixelSettings& settings, const PortSettings& port);
+// What helps or hinders the servos on this machine: the device of each port, its latency timer, and the period that its
+// cycle can hold. Nothing is opened.
+std::vector<PlantType::Finding> examine_ports(const DynamixelSettings& settings, std::int64_t control_period_ns);
 // The period of the bus for this control period.
 std::int64_t bus_period_ns(const DynamixelSettings& settings, std::int64_t control_period_ns);
 

@@ -4,7 +4,6 @@
 #include "emulator/servo_server.h"
 #include "emulator/servo_world.h"
 #include "kadans/signal/input_error.h"
-#include "port_check.h"
 
 namespace kadans {
 namespace {

@@ -25,9 +25,7 @@ Board::Board(BoardSettings settings, std::unique_ptr<BoardLink> link)
     : settings_(std::move(settings)), link_(std::move(link)) {}
 
 void Board::fail(const InputProblem& place, const std::string& why) const {
-  InputProblem problem = place;
-  problem.message = "board '" + settings_.name + "' at " + settings_.where() + " " + why;
-  throw InputError(problem);
+  throw InputError(place.with("board '" + settings_.name + "' at " + settings_.where() + " " + why));
 }
 
 void Board::check_wiring(const HostMot2Settings& all) const {

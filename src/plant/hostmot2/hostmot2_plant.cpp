@@ -8,12 +8,7 @@
 namespace kadans::hostmot2 {
 namespace {
 
-struct NamedLinkCount {
-  const char* name;
-  std::uint32_t LinkCounts::*value;
-  const char* doc;
-};
-constexpr NamedLinkCount link_count_names[] = {
+constexpr NamedCount<LinkCounts> link_count_names[] = {
     {"sent", &LinkCounts::sent, "datagrams to the boards, one a tick"},
     {"unsent", &LinkCounts::unsent, "datagrams that the system did not take"},
     {"received", &LinkCounts::received, "replies"},
@@ -120,7 +115,7 @@ void HostMot2Plant::read(SensorFrame& sensors) noexcept {
     }
     if (boards_[i].bitten() && !bitten) ++bites_;
     const LinkCounts& of = boards_[i].link().counts();
-    for (const NamedLinkCount& one : link_count_names) counts_.*one.value += of.*one.value;
+    for (const auto& one : link_count_names) counts_.*one.value += of.*one.value;
     age_ms_ = std::max(age_ms_, 1e3 * seconds_between(boards_[i].time_ns(), sensors.time_ns));
   }
   limited_ = strange_ = 0;
@@ -168,8 +163,7 @@ void HostMot2Plant::write(const ActuationFrame& actuation) noexcept {
 }
 
 std::vector<PlantCount> HostMot2Plant::link_counts() const {
-  std::vector<PlantCount> counts;
-  for (const NamedLinkCount& one : link_count_names) counts.push_back({one.name, counts_.*one.value});
+  std::vector<PlantCount> counts = counts_of(link_count_names, counts_);
   counts.push_back({"bites", bites_});
   counts.push_back({"strange", strange_});
   counts.push_back({"limited", limited_});
@@ -177,8 +171,7 @@ std::vector<PlantCount> HostMot2Plant::link_counts() const {
 }
 
 void HostMot2Plant::declare_signals(SignalTable& table) const {
-  for (const NamedLinkCount& one : link_count_names)
-    table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts_.*one.value));
+  declare_counts(table, link_count_names, counts_);
   table.add({"plant.bus.bites", "1", "how often a board's watchdog released its outputs"}, &bites_);
   table.add({"plant.bus.strange", "1", "readings that no joint can give: not used"}, &strange_);
   table.add({"plant.bus.limited", "1", "efforts beyond what an amplifier gives, cut to that"}, &limited_);

@@ -1,6 +1,7 @@
 #include "network_check.h"
 
 #include <array>
+#include <memory>
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -10,14 +11,6 @@
 
 namespace kadans::hostmot2 {
 namespace {
-
-struct CardList {
-  ifaddrs* first = nullptr;
-  CardList() { (void)getifaddrs(&first); }
-  CardList(const CardList&) = delete;
-  CardList& operator=(const CardList&) = delete;
-  ~CardList() { freeifaddrs(first); }
-};
 
 std::uint32_t ipv4(const sockaddr* address) { return reinterpret_cast<const sockaddr_in*>(address)->sin_addr.s_addr; }
 
@@ -45,8 +38,10 @@ PlantType::Finding examine_card(const BoardSettings& board) {
   in_addr wanted{};
   if (inet_pton(AF_INET, host.c_str(), &wanted) != 1)
     return found(false, "no address", "an address such as 192.168.1.121");
-  const CardList cards;
-  for (const ifaddrs* at = cards.first; at != nullptr; at = at->ifa_next) {
+  ifaddrs* first = nullptr;
+  (void)getifaddrs(&first);
+  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> cards(first, freeifaddrs);
+  for (const ifaddrs* at = first; at != nullptr; at = at->ifa_next) {
     if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET || at->ifa_netmask == nullptr) continue;
     if (((ipv4(at->ifa_addr) ^ wanted.s_addr) & ipv4(at->ifa_netmask)) != 0) continue;
     const std::string card = std::string(at->ifa_name) + " (" + text_of(ipv4(at->ifa_addr)) + ")";

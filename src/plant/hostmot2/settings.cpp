@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kadans/signal/nearest_name.h"
+#include "signal/number_text.h"
 
 namespace kadans::hostmot2 {
 namespace {
@@ -40,11 +41,10 @@ void pin(PlantFields& f, std::string_view name, OptionalPin& value, const std::s
   f.string(name, text, doc + R"(: "7" is pin 7, "!7" where it is active when it is low)");
   if (!f.reading() || text.empty()) return;
   PinSettings is{.low = text.front() == '!', .place = f.place(name)};
-  const char* const begin = text.data() + (is.low ? 1 : 0);
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(begin, end, is.number);
-  if (error != std::errc() || rest != end || is.number > pins_max)
+  const auto number = number_of<std::uint32_t>(text.substr(is.low ? 1 : 0));
+  if (!number || *number > pins_max)
     return f.refuse(name, "'" + text + R"(' is no pin: a number of 0..143, such as "7", or "!7")");
+  is.number = *number;
   value = is;
 }
 
@@ -276,20 +276,15 @@ void HostMot2Settings::move_boards(const std::string& first_address) {
 
 void HostMot2Settings::fields(PlantFields& f) {
   Reader reader(*this, f);
-  f.map(
-      "boards", [&](PlantFields& entry, const std::string& key) { reader.board(entry, key); }, "the boards, by name");
-  f.map(
-      "drives", [&](PlantFields& entry, const std::string& key) { reader.drive(entry, key); },
-      "what moves and measures each drive (named as the joints, where no transmission names others)");
-  f.map(
-      "feet", [&](PlantFields& entry, const std::string& key) { reader.foot(entry, key); },
-      "switches under the soles, by the feet's links");
-  f.map(
-      "inputs", [&](PlantFields& entry, const std::string& key) { reader.input(entry, key); },
-      "pins that are the robot's sensors, by their names");
-  f.map(
-      "emergency", [&](PlantFields& entry, const std::string& key) { reader.emergency(entry, key); },
-      "inputs of the emergency stop, by names of your own");
+  const auto with = [&](void (Reader::*read)(PlantFields&, const std::string&)) {
+    return [&reader, read](PlantFields& entry, const std::string& key) { (reader.*read)(entry, key); };
+  };
+  f.map("boards", with(&Reader::board), "the boards, by name");
+  f.map("drives", with(&Reader::drive),
+        "what moves and measures each drive (named as the joints, where no transmission names others)");
+  f.map("feet", with(&Reader::foot), "switches under the soles, by the feet's links");
+  f.map("inputs", with(&Reader::input), "pins that are the robot's sensors, by their names");
+  f.map("emergency", with(&Reader::emergency), "inputs of the emergency stop, by names of your own");
   f.number("period_s", period_s, {0, 1, "s"},
            "period of the bus, a whole multiple of the control period; 0: that period");
   f.number("watchdog_s", watchdog_s, {1e-4, 1, "s"},

@@ -17,10 +17,8 @@ UdpPort::UdpPort(BoardSettings board) : board_(std::move(board)) {
     descriptor_ = connected_socket(place);
   } catch (const InputError& error) {
     const std::string why = why_silent();
-    InputProblem problem = board_.place;
-    problem.message =
-        "board '" + board_.name + "' cannot be reached: " + (why.empty() ? error.problems().front().message : why);
-    throw InputError(problem);
+    throw InputError(board_.place.with(
+        "board '" + board_.name + "' cannot be reached: " + (why.empty() ? error.problems().front().message : why)));
   }
 }
 

@@ -107,16 +107,10 @@ void IdealWorld::move_drive(std::size_t i, double dt_s) noexcept {
 // Between the joints' coordinates and those of their drives, there and back.
 void IdealWorld::map_coupled(bool to_drives) noexcept {
   for (const Transmission& coupling : couplings_) {
-    const auto map = [&](auto& values, auto how) {
-      double &first = values[coupling.joints()[0]], &second = values[coupling.joints()[1]];
-      const Transmission::Pair mapped = (coupling.*how)({first, second});
-      first = mapped[0];
-      second = mapped[1];
-    };
     using T = Transmission;
-    map(truth_.position_rad, to_drives ? &T::drive_position_rad : &T::joint_position_rad);
-    map(truth_.velocity_rad_s, to_drives ? &T::drive_velocity_rad_s : &T::joint_velocity_rad_s);
-    if (!to_drives) map(truth_.drive_torque_Nm, &T::joint_effort_Nm);
+    coupling.map(truth_.position_rad, to_drives ? &T::drive_position_rad : &T::joint_position_rad);
+    coupling.map(truth_.velocity_rad_s, to_drives ? &T::drive_velocity_rad_s : &T::joint_velocity_rad_s);
+    if (!to_drives) coupling.map(truth_.drive_torque_Nm, &T::joint_effort_Nm);
   }
 }
 

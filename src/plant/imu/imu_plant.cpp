@@ -1,24 +1,15 @@
 #include "imu_plant.h"
 
-#include <csignal>
 #include <utility>
 
 #include "kadans/model/kinematics.h"
-#include "kadans/signal/input_error.h"
 
 namespace kadans::imu {
 namespace {
 
-constexpr int line_priority = 80;  // below the control thread's
-constexpr std::size_t line_stack_bytes = std::size_t{256} * 1024;
 constexpr std::int64_t look_ns = 20'000'000;  // how soon the thread sees that it shall end
 
-struct NamedImuCount {
-  const char* name;
-  std::uint32_t ImuCounts::*value;
-  const char* doc;
-};
-constexpr NamedImuCount imu_counts[] = {
+constexpr NamedCount<ImuCounts> imu_counts[] = {
     {"imu_readings", &ImuCounts::readings, "readings of the IMU"},
     {"imu_lost", &ImuCounts::lost, "readings of the IMU that never came"},
     {"imu_corrupt", &ImuCounts::corrupt, "messages of the IMU with a wrong checksum or length"},
@@ -43,35 +34,17 @@ bool ImuPlant::open(bool (*give_up)() noexcept) {
   if (!imu_->open(give_up) || !bus_->open(give_up)) return false;
   news_.publish(imu_->news());
   if (threads_ == Threads::none) return true;
-  sigset_t all, before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, line_stack_bytes);
-  runs_ = pthread_create(&thread_, &attributes, enter, this) == 0;
-  pthread_attr_destroy(&attributes);
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  if (!runs_) throw InputError({.message = "the system gives no thread to the IMU's serial port"});
-  sched_param parameter{};
-  parameter.sched_priority = line_priority;
-  (void)pthread_setschedparam(thread_, SCHED_FIFO, &parameter);  // without the right it is a usual thread
-  pthread_setname_np(thread_, "imu");
+  thread_.start("imu", "the IMU's serial port", [this] {
+    while (!thread_.asked_to_stop()) {
+      imu_->receive(imu_->now_ns() + look_ns);
+      news_.publish(imu_->news());
+    }
+  });
   return true;
 }
 
-void* ImuPlant::enter(void* self) {
-  ImuPlant& plant = *static_cast<ImuPlant*>(self);
-  while (!plant.stop_.load(std::memory_order_relaxed)) {
-    plant.imu_->receive(plant.imu_->now_ns() + look_ns);
-    plant.news_.publish(plant.imu_->news());
-  }
-  return nullptr;
-}
-
 void ImuPlant::close() noexcept {
-  stop_.store(true, std::memory_order_relaxed);
-  if (std::exchange(runs_, false)) pthread_join(thread_, nullptr);
+  thread_.stop();
   bus_->close();
 }
 
@@ -91,14 +64,13 @@ void ImuPlant::read(SensorFrame& sensors) noexcept {
 
 std::vector<PlantCount> ImuPlant::link_counts() const {
   std::vector<PlantCount> counts = bus_->link_counts();
-  for (const NamedImuCount& one : imu_counts) counts.push_back({one.name, counts_.*one.value});
+  for (const PlantCount& one : counts_of(imu_counts, counts_)) counts.push_back(one);
   return counts;
 }
 
 void ImuPlant::declare_signals(SignalTable& table) const {
   bus_->declare_signals(table);
-  for (const NamedImuCount& one : imu_counts)
-    table.add({std::string("plant.bus.") + one.name, "1", one.doc}, &(counts_.*one.value));
+  declare_counts(table, imu_counts, counts_);
   table.add({"plant.bus.imu_age_ms", "ms", "age of the IMU's newest reading"}, &age_ms_);
 }
 

@@ -4,12 +4,10 @@
 // line falls silent, so does the IMU in the frames, and the safety layer acts on it; the drives go on.
 #pragma once
 
-#include <atomic>
 #include <memory>
 
-#include <pthread.h>
-
 #include "kadans/exchange/latest.h"
+#include "kadans/plant/bus_thread.h"
 #include "kadans/plant/plant.h"
 #include "serial_imu.h"
 
@@ -33,20 +31,16 @@ class ImuPlant final : public Plant {
   void write(const ActuationFrame& actuation) noexcept override { bus_->write(actuation); }
 
  private:
-  static void* enter(void* self);
-
   std::unique_ptr<Plant> bus_;
   SerialImuSettings settings_;
   Quat to_base_;
   std::unique_ptr<SerialPort> port_;
   Threads threads_;
   std::unique_ptr<SerialImu> imu_;
-  pthread_t thread_{};
-  bool runs_ = false;
-  std::atomic<bool> stop_{false};
   Latest<ImuNews> news_;
   ImuCounts counts_;
   double age_ms_ = 0;
+  BusThread thread_;
 };
 
 }  // namespace kadans::imu

@@ -65,12 +65,11 @@ std::size_t write_message(Message id, Octets data, std::span<std::uint8_t> into)
 
 bool MessageScanner::next(ReceivedMessage& message) noexcept {
   for (;;) {
-    const Octets here = bytes_.here();
+    const Octets here = this->here();
     const bool begins = !here.empty() && here[0] == preamble && (here.size() < 2 || here[1] == alone);
     if (here.empty()) return false;
     if (!begins) {
-      ++counts_.skipped;
-      bytes_.drop(1);
+      skip(1);
       continue;
     }
     if (here.size() < head_bytes) return false;
@@ -79,12 +78,11 @@ bool MessageScanner::next(ReceivedMessage& message) noexcept {
     if (fits && here.size() < size) return false;
     if (!fits || sum_of(here.subspan(1, size - 1)) != 0) {
       ++counts_.corrupt;
-      ++counts_.skipped;
-      bytes_.drop(1);
+      skip(1);
       continue;
     }
-    ++counts_.messages;
-    bytes_.drop(size);
+    ++counts_.packets;
+    drop(size);
     message = {.id = here[2], .data = here.subspan(head_bytes, here[3])};
     return true;
   }

@@ -54,23 +54,9 @@ struct ReceivedMessage {
 std::size_t write_message(Message id, Octets data, std::span<std::uint8_t> into) noexcept;
 
 // Finds the messages in a stream of bytes that may be anything.
-class MessageScanner {
+class MessageScanner : public ReceiveBuffer<1024> {
  public:
-  struct Counts {
-    std::uint64_t messages = 0;
-    std::uint64_t corrupt = 0;  // began like messages, with a wrong checksum or length
-    std::uint64_t skipped = 0;  // bytes that belong to no message
-  };
-
-  // Where to put bytes from outside; then tell how many. There is always room for some after next() returned false.
-  std::span<std::uint8_t> room() noexcept { return bytes_.room(); }
-  void filled(std::size_t bytes) noexcept { bytes_.filled(bytes); }
   bool next(ReceivedMessage& message) noexcept;  // false: no whole message is here
-  const Counts& counts() const noexcept { return counts_; }
-
- private:
-  ReceiveBuffer<1024> bytes_;
-  Counts counts_;
 };
 
 struct Reading {

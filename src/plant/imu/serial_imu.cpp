@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kadans/signal/input_error.h"
+#include "signal/number_text.h"
 
 namespace kadans::imu {
 namespace {
@@ -18,12 +19,8 @@ constexpr std::uint16_t mode_calibrated = 0x0002;
 constexpr std::uint32_t settings_counted_without_magnetometer = 0x0000'0041;
 
 std::string hex(Octets bytes) {
-  constexpr std::string_view digits = "0123456789ABCDEF";
   std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += digits[byte >> 4U];
-    text += digits[byte & 15U];
-  }
+  for (const std::uint8_t byte : bytes) text += printed("%02X", unsigned{byte});
   return text;
 }
 
@@ -50,9 +47,7 @@ SerialImu::SerialImu(SerialImuSettings settings, std::unique_ptr<SerialPort> por
     : settings_(std::move(settings)), port_(std::move(port)) {}
 
 void SerialImu::fail(const std::string& why) const {
-  InputProblem problem = settings_.place;
-  problem.message = "the IMU on " + settings_.device + " " + why;
-  throw InputError(problem);
+  throw InputError(settings_.place.with("the IMU on " + settings_.device + " " + why));
 }
 
 SerialImu::Answer SerialImu::ask(Message request, Octets data, ReceivedMessage& answer) noexcept {
@@ -77,17 +72,13 @@ void SerialImu::insist(Message request, Octets data, ReceivedMessage& answer) {
   Answer is = Answer::silence;
   for (int i = 0; i < tries && is == Answer::silence; ++i) is = ask(request, data, answer);
   if (is == Answer::good) return;
-  std::string why = "does not answer: is it powered, and is its baud rate ";
-  if (is == Answer::refused) {
-    why = "refuses ";
-    why += words_of(error_);
-    why += " (error " + hex({&error_, 1}) + ", message " + hex(std::array{static_cast<std::uint8_t>(request)}) + ")";
-    fail(why);
-  }
-  if (scanner_.counts().messages == 0 && scanner_.counts().skipped > 0)
-    why = "answers garbage: is it no Xsens, or has it another baud rate than ";
-  why += std::to_string(settings_.baud);
-  fail(why + "?");
+  if (is == Answer::refused)
+    fail("refuses " + std::string(words_of(error_)) + " (error " + hex({&error_, 1}) + ", message " +
+         hex(std::array{static_cast<std::uint8_t>(request)}) + ")");
+  const bool garbage = scanner_.counts().packets == 0 && scanner_.counts().skipped > 0;
+  fail((garbage ? "answers garbage: is it no Xsens, or has it another baud rate than "
+                : "does not answer: is it powered, and is its baud rate ") +
+       std::to_string(settings_.baud) + "?");
 }
 
 void SerialImu::check_id(Octets id) const {
@@ -115,15 +106,11 @@ void SerialImu::set_up_items() {
     };
     std::size_t k = 0;
     while (k + 4 <= answer.data.size() && !given(k)) k += 4;
-    std::string why = "gives ";
-    if (!given(k)) why += "no ";
-    why += at == 4 ? "accelerations" : "rates of turn";
-    if (!given(k)) fail(why);
-    const std::uint16_t its_Hz = u16_at(answer.data, k + 2);
-    if (its_Hz == rate_Hz) continue;
-    why += " at ";
-    why += std::to_string(its_Hz);
-    fail(why + " Hz: plant.serial_imu.rate_Hz is " + std::to_string(rate_Hz));
+    const std::string what = at == 4 ? "accelerations" : "rates of turn";
+    if (!given(k)) fail("gives no " + what);
+    if (const std::uint16_t its_Hz = u16_at(answer.data, k + 2); its_Hz != rate_Hz)
+      fail("gives " + what + " at " + std::to_string(its_Hz) + " Hz: plant.serial_imu.rate_Hz is " +
+           std::to_string(rate_Hz));
   }
 }
 

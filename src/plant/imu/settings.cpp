@@ -4,7 +4,6 @@
 #include <array>
 
 #include "message.h"
-#include "plant/serial/port_check.h"
 #include "plant/serial/serial_port.h"
 
 namespace kadans::imu {
@@ -45,9 +44,9 @@ void SerialImuSettings::fields(PlantFields& f) {
                             std::to_string(baud));
 }
 
-std::vector<PlantType::Finding> examine(const SerialImuSettings& settings, const std::string& root) {
+std::vector<PlantType::Finding> examine(const SerialImuSettings& settings) {
   std::vector<PlantType::Finding> findings;
-  if (settings.given()) examine_serial_port("imu", settings.device, root, findings);
+  if (settings.given()) examine_serial_port("imu", settings.device, findings);
   return findings;
 }
 

@@ -32,6 +32,6 @@ struct SerialImuSettings {
 std::size_t reading_bytes(Protocol protocol) noexcept;
 
 // What helps or hinders it on this machine. Nothing is opened.
-std::vector<PlantType::Finding> examine(const SerialImuSettings& settings, const std::string& root = "/");
+std::vector<PlantType::Finding> examine(const SerialImuSettings& settings);
 
 }  // namespace kadans::imu

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
-#include <utility>
 
 #include <fcntl.h>
 #include <linux/input.h>
@@ -54,33 +53,15 @@ bool read_ranges(int descriptor, StickRanges& ranges) noexcept {
   return true;
 }
 
-// A descriptor that is closed unless it is released.
-class Opened {
- public:
-  explicit Opened(int descriptor) : descriptor_(descriptor) {}
-  ~Opened() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  Opened(const Opened&) = delete;
-  Opened& operator=(const Opened&) = delete;
-  int get() const noexcept { return descriptor_; }
-  int release() noexcept { return std::exchange(descriptor_, -1); }
-
- private:
-  int descriptor_;
-};
-
 Stick open_stick(const JoystickSettings& settings, int& descriptor) {
-  Opened opened(open_device(settings.device));
-  if (opened.get() < 0) throw InputError({.file = settings.device, .message = why_not(errno)});
-  StickRanges ranges{};
-  if (!read_ranges(opened.get(), ranges))
-    throw InputError({.file = settings.device, .message = "is no event device of Linux" + joysticks_here()});
+  descriptor = open_device(settings.device);
+  if (descriptor < 0) throw InputError({.file = settings.device, .message = why_not(errno)});
   try {
-    Stick stick(settings, ranges);
-    descriptor = opened.release();
-    return stick;
+    StickRanges ranges{};
+    if (!read_ranges(descriptor, ranges)) throw std::invalid_argument("is no event device of Linux" + joysticks_here());
+    return {settings, ranges};
   } catch (const std::invalid_argument& error) {
+    close(descriptor);
     throw InputError({.file = settings.device, .message = error.what()});
   }
 }

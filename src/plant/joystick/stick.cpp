@@ -1,17 +1,18 @@
 #include "stick.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <linux/input.h>
 
 #include "kadans/signal/input_error.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -37,20 +38,12 @@ class Words {
   }
   template <typename T>
   std::optional<T> integer(int base) {
-    const std::string_view word = next();
-    T value{};
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value, base);
-    if (error != std::errc() || end != word.data() + word.size() || word.empty()) return std::nullopt;
-    return value;
+    return number_of<T>(next(), base);
   }
   std::optional<std::int64_t> seconds_as_ns() {
-    const std::string_view word = next();
-    double value_s = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value_s);
-    if (error != std::errc() || end != word.data() + word.size() ||
-        !(value_s >= 0 && value_s < static_cast<double>(time_max_s)))
-      return std::nullopt;
-    return std::llround(value_s * 1e6) * 1000;  // the kernel counts microseconds
+    const std::optional<double> value_s = number_of<double>(next());
+    if (!value_s || !(*value_s >= 0 && *value_s < static_cast<double>(time_max_s))) return std::nullopt;
+    return std::llround(*value_s * 1e6) * 1000;  // the kernel counts microseconds
   }
 
  private:
@@ -205,11 +198,7 @@ void Stick::take(const StickEvent& event) noexcept {
   }
 }
 
-bool Stick::take_dropped() noexcept {
-  const bool dropped = dropped_;
-  dropped_ = false;
-  return dropped;
-}
+bool Stick::take_dropped() noexcept { return std::exchange(dropped_, false); }
 
 JoystickPlayer::JoystickPlayer(const JoystickSettings& settings, const std::filesystem::path& file,
                                std::int64_t from_ns, std::int64_t lost_ns)

@@ -8,8 +8,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
-#include "kadans/signal/input_error.h"
+#include "kadans/plant/plant_type.h"
 #include "signal/monotonic_clock.h"
 
 namespace kadans {
@@ -56,7 +57,8 @@ constexpr std::int64_t wire_ns(std::size_t bytes, std::uint32_t baud) noexcept {
   return static_cast<std::int64_t>(bytes) * 10'000'000'000 / static_cast<std::int64_t>(baud);
 }
 
-// How long a USB adapter may keep bytes back: its latency timer, from /sys below `root`; 0: the device tells none.
-int latency_timer_ms(const std::string& root, const std::string& device);
+// For `kadans doctor ROBOT`, which opens nothing: adds what helps or hinders a device on a serial port of this machine.
+// That is the port with this user's right to it ("port NAME"), and the USB adapter's latency timer ("latency NAME").
+void examine_serial_port(const std::string& name, const std::string& device, std::vector<PlantType::Finding>& findings);
 
 }  // namespace kadans

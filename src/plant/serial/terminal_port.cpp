@@ -11,6 +11,7 @@
 #include <poll.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
@@ -31,6 +32,16 @@ void ask_for_low_latency(int descriptor) {
   if (ioctl(descriptor, TIOCGSERIAL, &serial) != 0) return;
   serial.flags |= ASYNC_LOW_LATENCY;
   (void)ioctl(descriptor, TIOCSSERIAL, &serial);
+}
+
+// How long a USB adapter may keep bytes back; 0: the device tells nothing of it.
+int latency_timer_ms(const std::string& device) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(device, error);
+  if (error) return 0;
+  std::ifstream in(std::filesystem::path("/sys/bus/usb-serial/devices") / real.filename() / "latency_timer");
+  int ms = 0;
+  return in >> ms ? ms : 0;
 }
 
 }  // namespace
@@ -58,9 +69,7 @@ std::unique_ptr<SerialPort> open_port(const std::string& device, std::uint32_t b
   try {
     return std::make_unique<TerminalPort>(device, baud);
   } catch (const InputError& error) {
-    InputProblem problem = place;
-    problem.message = error.problems().front().message;
-    throw InputError(problem);
+    throw InputError(place.with(error.problems().front().message));
   }
 }
 
@@ -114,13 +123,34 @@ std::size_t TerminalPort::receive(std::span<std::uint8_t> into, std::int64_t unt
 
 void TerminalPort::discard() noexcept { (void)ioctl(descriptor_, TCFLSH, TCIFLUSH); }
 
-int latency_timer_ms(const std::string& root, const std::string& device) {
-  std::error_code error;
-  const std::filesystem::path real = std::filesystem::canonical(device, error);
-  if (error) return 0;
-  std::ifstream in(std::filesystem::path(root) / "sys/bus/usb-serial/devices" / real.filename() / "latency_timer");
-  int ms = 0;
-  return in >> ms ? ms : 0;
+void examine_serial_port(const std::string& name, const std::string& device,
+                         std::vector<PlantType::Finding>& findings) {
+  PlantType::Finding finding{.topic = "port " + name, .good = false, .is = device, .should = {}, .how = {}};
+  struct stat is {};
+  if (stat(device.c_str(), &is) != 0) {
+    finding.is += ": " + words_of(errno);
+    finding.should = "a serial port";
+    finding.how = "plug the adapter in, and name it as `ls -l /dev/serial/by-id` shows it";
+  } else if (!S_ISCHR(is.st_mode)) {
+    finding.is += " is no device";
+    finding.should = "a serial port";
+    finding.how = "name the adapter as `ls -l /dev/serial/by-id` shows it";
+  } else if (access(device.c_str(), R_OK | W_OK) != 0) {
+    finding.is += ": this user may not open it";
+    finding.should = "readable and writable";
+    finding.how = "sudo usermod -aG dialout $USER, and log in again";
+  } else {
+    finding.good = true;
+  }
+  findings.push_back(finding);
+  const int timer_ms = latency_timer_ms(device);
+  if (timer_ms <= 0) return;
+  findings.push_back({.topic = "latency " + name,
+                      .good = timer_ms <= 1,
+                      .is = "the USB adapter keeps bytes back for up to " + std::to_string(timer_ms) + " ms",
+                      .should = "1 ms",
+                      .how = "a rule for udev: ACTION==\"add\", SUBSYSTEM==\"usb-serial\", "
+                             "ATTR{latency_timer}=\"1\""});
 }
 
 }  // namespace kadans

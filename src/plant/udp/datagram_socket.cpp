@@ -18,10 +18,6 @@ struct DatagramSocket::Batch {
 
 DatagramSocket::DatagramSocket(int descriptor) : descriptor_(descriptor), batch_(std::make_unique<Batch>()) {}
 
-DatagramSocket DatagramSocket::listening(const std::string& place) { return DatagramSocket(listening_socket(place)); }
-
-DatagramSocket DatagramSocket::connected(const std::string& place) { return DatagramSocket(connected_socket(place)); }
-
 DatagramSocket::DatagramSocket(DatagramSocket&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)), batch_(std::move(other.batch_)) {}
 

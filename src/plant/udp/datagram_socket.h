@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 
 #include "plant/socket_address.h"
 #include "wire.h"
@@ -20,10 +19,6 @@ class DatagramSocket {
   static constexpr std::size_t batch_max = 16;
 
   explicit DatagramSocket(int descriptor);  // takes it over
-  // "host:port", "[::1]:7000", ":7000" for every address of this machine. Throws InputError that says what
-  // is wrong with the place, or what the system said.
-  static DatagramSocket listening(const std::string& place);
-  static DatagramSocket connected(const std::string& place);
   ~DatagramSocket();
   DatagramSocket(DatagramSocket&& other) noexcept;
   DatagramSocket& operator=(DatagramSocket&&) = delete;

@@ -135,11 +135,7 @@ bool PlantServer::beat(World& world, std::uint32_t periods) {
   const WireHead head{
       .kind = WireKind::sensors, .session = session_number_, .sequence = ++sent_, .time_ns = sensors_.time_ns};
   const SensorsOnWire more{.answered = newest_actuation_, .released = released_};
-  if (socket_.send(wire_.sensors(head, more, sensors_, out_), peer_)) {
-    ++link_.sent;
-  } else {
-    ++link_.unsent;
-  }
+  ++(socket_.send(wire_.sensors(head, more, sensors_, out_), peer_) ? link_.sent : link_.unsent);
   return true;
 }
 

@@ -36,7 +36,7 @@ class UdpType final : public PlantType {
     }
     std::random_device random;
     const std::uint64_t session = (std::uint64_t{random()} << 32U) | random();
-    return std::make_unique<UdpPlant>(settings, site.layout, DatagramSocket::connected(settings.peer), session);
+    return std::make_unique<UdpPlant>(settings, site.layout, DatagramSocket(connected_socket(settings.peer)), session);
   }
 
   bool has_imu() const noexcept override { return true; }
@@ -44,7 +44,7 @@ class UdpType final : public PlantType {
   std::unique_ptr<PlantEmulator> make_emulator(const PlantSite& site, const std::string& listen) const override {
     UdpSettings settings = settings_;
     settings.damping_Nms_per_rad = site.damping_Nms_per_rad;
-    return std::make_unique<PlantServer>(settings, site.layout, DatagramSocket::listening(listen));
+    return std::make_unique<PlantServer>(settings, site.layout, DatagramSocket(listening_socket(listen)));
   }
   bool has_wired_world() const noexcept override { return true; }
   std::unique_ptr<World> make_wired_world(std::unique_ptr<World> model, const PlantSite& site,

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "kadans/signal/input_error.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -41,10 +41,8 @@ bool UdpPlant::open(bool (*give_up)() noexcept) {
     if (welcomed()) return true;
   }
   const std::string place = "the plant at " + settings_.peer;
-  std::array<char, 32> seconds{};
-  std::snprintf(seconds.data(), seconds.size(), "%g", settings_.connect_timeout_s);
   if (busy_) fail_with(place + " is driven by somebody else");
-  fail_with(place + " does not answer within " + seconds.data() +
+  fail_with(place + " does not answer within " + printed("%g", settings_.connect_timeout_s) +
             " s: is `kadans plant` running there, and does the network let UDP pass?");
 }
 
@@ -92,13 +90,7 @@ WireHead UdpPlant::next_head(WireKind kind) noexcept {
   return {.kind = kind, .session = session_, .sequence = ++sent_, .time_ns = held_.time_ns};
 }
 
-void UdpPlant::send(Bytes datagram) noexcept {
-  if (socket_.send(datagram)) {
-    ++statistics_.sent;
-  } else {
-    ++statistics_.unsent;
-  }
-}
+void UdpPlant::send(Bytes datagram) noexcept { ++(socket_.send(datagram) ? statistics_.sent : statistics_.unsent); }
 
 bool UdpPlant::is_good(Bytes datagram, WireHead& head) noexcept {
   const bool good = wire_.check(datagram, head) == PlantWire::Check::good && head.session == session_;

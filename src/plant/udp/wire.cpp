@@ -22,22 +22,84 @@ constexpr std::size_t actuation_mode_at = 40, actuation_order_at = 41, released_
 constexpr std::size_t sample_drive_at = before_joints_bytes + 44, sample_homed_at = before_joints_bytes + 45,
                       sample_braked_at = before_joints_bytes + 46;
 
-template <typename T>
-void put(std::byte*& at, const T& value) noexcept {
-  std::memcpy(at, &value, sizeof value);
-  at += sizeof value;
-}
+// Puts values one after the other, and takes them again.
+struct Put {
+  std::byte* at;
 
-template <typename T>
-void take(const std::byte*& at, T& value) noexcept {
-  std::memcpy(&value, at, sizeof value);
-  at += sizeof value;
-}
+  template <typename T>
+  void operator()(const T& value) noexcept {
+    std::memcpy(at, &value, sizeof value);
+    at += sizeof value;
+  }
+};
+struct Take {
+  const std::byte* at;
 
-bool take_bool(const std::byte*& at) noexcept {
-  std::uint8_t value = 0;
-  take(at, value);
-  return value != 0;
+  template <typename T>
+  void operator()(T& value) noexcept {
+    std::memcpy(&value, at, sizeof value);
+    at += sizeof value;
+  }
+  void operator()(bool& value) noexcept {
+    static_assert(sizeof value == 1);
+    value = *at++ != std::byte{0};
+  }
+};
+
+// What stands in a datagram, in this order (wire.h): `each` puts it or takes it.
+void each_of_head(auto& each, auto& head) noexcept {
+  each(head.kind);
+  each(head.refusal);
+  each(head.layout);
+  each(head.session);
+  each(head.sequence);
+  each(head.time_ns);
+}
+void each_of_greeting(auto& each, auto& greeting) noexcept {
+  each(greeting.period_ns);
+  each(greeting.joints);
+  each(greeting.feet);
+  each(greeting.robot);
+}
+void each_of_actuation(auto& each, auto& joint, auto& request) noexcept {
+  each(joint.effort_Nm);
+  each(joint.position_rad);
+  each(joint.velocity_rad_s);
+  each(joint.stiffness_Nm_per_rad);
+  each(joint.damping_Nms_per_rad);
+  each(joint.mode);
+  each(request.order);
+  each(request.number);
+}
+void each_of_sensors(auto& each, auto& more, auto& frame, const WireGreeting& counts, std::uint32_t sensors) noexcept {
+  each(more.answered);
+  each(more.released);
+  each(frame.imu.angular_velocity_rad_s);
+  each(frame.imu.acceleration_m_s2);
+  each(frame.imu.sequence);
+  each(frame.supply_V);
+  each(frame.emergency);
+  for (std::size_t i = 0; i < counts.joints; ++i) {
+    auto& joint = frame.joints[i];
+    each(joint.position_rad);
+    each(joint.motor_position_rad);
+    each(joint.motor_effort_Nm);
+    each(joint.sequence);
+    each(joint.code);
+    each(joint.time_ns);
+    each(joint.temperature_C);
+    each(joint.drive);
+    each(joint.homed);
+    each(joint.braked);
+  }
+  for (std::size_t i = 0; i < counts.feet; ++i) {
+    each(frame.feet[i].force_N);
+    each(frame.feet[i].sequence);
+  }
+  for (std::size_t i = 0; i < sensors; ++i) {
+    each(frame.channels[i].value);
+    each(frame.channels[i].sequence);
+  }
 }
 
 const std::byte* payload(Bytes datagram) noexcept { return datagram.data() + wire_head_bytes; }
@@ -93,103 +155,56 @@ std::size_t PlantWire::length(WireKind kind) const noexcept {
 }
 
 std::byte* PlantWire::put_head(const WireHead& head, Datagram& into) const noexcept {
-  std::byte* at = into.data();
-  put(at, magic);
-  put(at, wire_version);
-  put(at, head.kind);
-  put(at, head.refusal);
-  put(at, layout_);
-  put(at, head.session);
-  put(at, head.sequence);
-  put(at, head.time_ns);
-  return at;
+  Put put{into.data()};
+  put(magic);
+  put(wire_version);
+  WireHead own = head;
+  own.layout = layout_;
+  each_of_head(put, own);
+  return put.at;
 }
 
 Bytes PlantWire::seal(Datagram& into, const std::byte* end) noexcept {
   const auto used = static_cast<std::size_t>(end - into.data());
-  std::byte* at = into.data() + used;
-  put(at, crc32({into.data(), used}));
+  Put{into.data() + used}(crc32({into.data(), used}));
   return {into.data(), used + sum_bytes};
 }
 
 Bytes PlantWire::greet(const WireHead& head, Datagram& into) const noexcept {
-  std::byte* at = put_head(head, into);
-  put(at, greeting_.period_ns);
-  put(at, greeting_.joints);
-  put(at, greeting_.feet);
-  put(at, greeting_.robot);
-  return seal(into, at);
+  Put put{put_head(head, into)};
+  each_of_greeting(put, greeting_);
+  return seal(into, put.at);
 }
 
 Bytes PlantWire::bye(const WireHead& head, Datagram& into) const noexcept { return seal(into, put_head(head, into)); }
 
 Bytes PlantWire::actuation(const WireHead& head, const ActuationFrame& frame, Datagram& into) const noexcept {
-  std::byte* at = put_head(head, into);
+  Put put{put_head(head, into)};
   for (std::size_t i = 0; i < greeting_.joints; ++i) {
     const JointActuation joint = i < frame.joint_count ? frame.joints[i] : JointActuation{};
-    put(at, joint.effort_Nm);
-    put(at, joint.position_rad);
-    put(at, joint.velocity_rad_s);
-    put(at, joint.stiffness_Nm_per_rad);
-    put(at, joint.damping_Nms_per_rad);
-    put(at, joint.mode);
     const DriveRequest request = i < frame.joint_count ? frame.drives[i] : DriveRequest{};
-    put(at, request.order);
-    put(at, request.number);
+    each_of_actuation(put, joint, request);
   }
-  return seal(into, at);
+  return seal(into, put.at);
 }
 
 Bytes PlantWire::sensors(const WireHead& head, const SensorsOnWire& more, const SensorFrame& frame,
                          Datagram& into) const noexcept {
-  std::byte* at = put_head(head, into);
-  put(at, more.answered);
-  put(at, static_cast<std::uint8_t>(more.released));
-  put(at, frame.imu.angular_velocity_rad_s);
-  put(at, frame.imu.acceleration_m_s2);
-  put(at, frame.imu.sequence);
-  put(at, frame.supply_V);
-  put(at, static_cast<std::uint8_t>(frame.emergency));
-  for (std::size_t i = 0; i < greeting_.joints; ++i) {
-    const JointSample& joint = frame.joints[i];
-    put(at, joint.position_rad);
-    put(at, joint.motor_position_rad);
-    put(at, joint.motor_effort_Nm);
-    put(at, joint.sequence);
-    put(at, joint.code);
-    put(at, joint.time_ns);
-    put(at, joint.temperature_C);
-    put(at, joint.drive);
-    put(at, static_cast<std::uint8_t>(joint.homed));
-    put(at, static_cast<std::uint8_t>(joint.braked));
-  }
-  for (std::size_t i = 0; i < greeting_.feet; ++i) {
-    put(at, frame.feet[i].force_N);
-    put(at, frame.feet[i].sequence);
-  }
-  for (std::size_t i = 0; i < sensors_; ++i) {
-    put(at, frame.channels[i].value);
-    put(at, frame.channels[i].sequence);
-  }
-  return seal(into, at);
+  Put put{put_head(head, into)};
+  each_of_sensors(put, more, frame, greeting_, sensors_);
+  return seal(into, put.at);
 }
 
 PlantWire::Check PlantWire::check(Bytes datagram, WireHead& head) const noexcept {
   if (datagram.size() < wire_head_bytes + sum_bytes || datagram.size() > wire_bytes_max) return Check::garbage;
-  const std::byte* at = datagram.data();
+  Take take{datagram.data()};
   std::uint32_t start = 0, sum = 0;
   std::uint16_t version = 0;
-  take(at, start);
-  take(at, version);
-  take(at, head.kind);
-  take(at, head.refusal);
-  take(at, head.layout);
-  take(at, head.session);
-  take(at, head.sequence);
-  take(at, head.time_ns);
+  take(start);
+  take(version);
+  each_of_head(take, head);
   const Bytes summed = datagram.first(datagram.size() - sum_bytes);
-  at = summed.data() + summed.size();
-  take(at, sum);
+  Take{summed.data() + summed.size()}(sum);
   if (start != magic || sum != crc32(summed)) return Check::garbage;
   if (is_greeting(head.kind) && datagram.size() != length(head.kind)) return Check::garbage;
   if (version != wire_version) return is_greeting(head.kind) ? Check::other_version : Check::garbage;
@@ -217,11 +232,8 @@ PlantWire::Check PlantWire::check(Bytes datagram, WireHead& head) const noexcept
 
 WireGreeting PlantWire::greeting_in(Bytes datagram) noexcept {
   WireGreeting greeting;
-  const std::byte* at = payload(datagram);
-  take(at, greeting.period_ns);
-  take(at, greeting.joints);
-  take(at, greeting.feet);
-  take(at, greeting.robot);
+  Take take{payload(datagram)};
+  each_of_greeting(take, greeting);
   greeting.robot.back() = 0;
   for (char& c : greeting.robot) {  // it is shown to a person
     if (c != 0 && (c < ' ' || c > '~')) c = '?';
@@ -230,55 +242,18 @@ WireGreeting PlantWire::greeting_in(Bytes datagram) noexcept {
 }
 
 void PlantWire::actuation_in(Bytes datagram, ActuationFrame& frame) const noexcept {
-  const std::byte* at = payload(datagram);
+  Take take{payload(datagram)};
   frame.joint_count = greeting_.joints;
-  for (std::size_t i = 0; i < greeting_.joints; ++i) {
-    JointActuation& joint = frame.joints[i];
-    take(at, joint.effort_Nm);
-    take(at, joint.position_rad);
-    take(at, joint.velocity_rad_s);
-    take(at, joint.stiffness_Nm_per_rad);
-    take(at, joint.damping_Nms_per_rad);
-    take(at, joint.mode);
-    take(at, frame.drives[i].order);
-    take(at, frame.drives[i].number);
-  }
+  for (std::size_t i = 0; i < greeting_.joints; ++i) each_of_actuation(take, frame.joints[i], frame.drives[i]);
 }
 
 SensorsOnWire PlantWire::sensors_in(Bytes datagram, SensorFrame& frame) const noexcept {
-  const std::byte* at = payload(datagram);
+  Take take{payload(datagram)};
   SensorsOnWire more;
-  take(at, more.answered);
-  more.released = take_bool(at);
   frame.joint_count = greeting_.joints;
   frame.foot_count = greeting_.feet;
-  take(at, frame.imu.angular_velocity_rad_s);
-  take(at, frame.imu.acceleration_m_s2);
-  take(at, frame.imu.sequence);
-  take(at, frame.supply_V);
-  frame.emergency = take_bool(at);
-  for (std::size_t i = 0; i < greeting_.joints; ++i) {
-    JointSample& joint = frame.joints[i];
-    take(at, joint.position_rad);
-    take(at, joint.motor_position_rad);
-    take(at, joint.motor_effort_Nm);
-    take(at, joint.sequence);
-    take(at, joint.code);
-    take(at, joint.time_ns);
-    take(at, joint.temperature_C);
-    take(at, joint.drive);
-    joint.homed = take_bool(at);
-    joint.braked = take_bool(at);
-  }
-  for (std::size_t i = 0; i < greeting_.feet; ++i) {
-    take(at, frame.feet[i].force_N);
-    take(at, frame.feet[i].sequence);
-  }
   frame.channel_count = sensors_;
-  for (std::size_t i = 0; i < sensors_; ++i) {
-    take(at, frame.channels[i].value);
-    take(at, frame.channels[i].sequence);
-  }
+  each_of_sensors(take, more, frame, greeting_, sensors_);
   return more;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "plant/bullet/bullet_memory.h"
+#include "plant/bullet/convert.h"
 
 namespace kadans::bullet {
 class SteppedWorld final : public btMultiBodyDynamicsWorld {
@@ -14,13 +15,10 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     saveKinematicState(dt_s);
     applyGravity();
     for (const Driven& driven : driven_) driven.body->setLinearVelocity(driven.velocity_m_s);
-    // Rigid bodies alone: the multibody world's own versions would move the robot too, a second time.
-    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
-    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::predictUnconstraintMotion(dt_s);
     getDispatchInfo().m_timeStep = dt_s;
     performDiscreteCollisionDetection();
     getSolverInfo().m_timeStep = dt_s;
-    if (!own_solver()) accelerate(dt_s);
+    if (!own_solver) accelerate(dt_s);
   }
 
   void solve() {
@@ -30,13 +28,11 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     m_multiBodyConstraintSolver->solveMultiBodyGroup(&m_collisionObjects[0], m_collisionObjects.size(), manifolds,
                                                      manifold_count, nullptr, 0, rows, m_multiBodyConstraints.size(),
                                                      getSolverInfo(), nullptr, getDispatcher());
-    if (own_solver()) return;
+    if (own_solver) return;
     for (int i = 0; i < m_multiBodies.size(); ++i) m_multiBodies[i]->processDeltaVeeMultiDof2();
   }
 
   void end(btScalar dt_s) {
-    // NOLINTNEXTLINE(bugprone-parent-virtual-call)
-    if (m_nonStaticRigidBodies.size() > 0) btDiscreteDynamicsWorld::integrateTransforms(dt_s);
     move(dt_s);
     move_driven(dt_s);
     synchronizeMotionStates();
@@ -47,16 +43,13 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     driven_.push_back({&body, velocity_m_s, stays});
   }
 
-  void use(const TreeSolver& solver) { tree_solver_ = &solver; }
-
   void update_frames() {
     for (int i = 0; i < m_multiBodies.size(); ++i) update_frames(*m_multiBodies[i]);
   }
 
- private:
-  // Which takes the free motion along with the contacts.
-  bool own_solver() const { return tree_solver_ != nullptr && tree_solver_->covers(); }
+  bool own_solver = false;  // which takes the free motion along with the contacts
 
+ private:
   void accelerate(double dt_s) {
     for (int i = 0; i < m_multiBodies.size(); ++i) {
       m_multiBodies[i]->clearConstraintForces();
@@ -95,7 +88,6 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     bool stays;
   };
 
-  const TreeSolver* tree_solver_ = nullptr;
   std::vector<Driven> driven_;  // in the next step
 };
 
@@ -111,34 +103,34 @@ btDefaultCollisionConstructionInfo small_pools() {
 
 }  // namespace
 
-ContactWorld::ContactWorld(const Options& options, PairMask& mask)
+ContactWorld::ContactWorld(const PlantSettings& settings, PairMask& mask, FrictionLaw friction)
     : configuration_(small_pools()),
       object_contact_(
           *configuration_.getCollisionAlgorithmCreateFunc(COMPOUND_SHAPE_PROXYTYPE, COMPOUND_SHAPE_PROXYTYPE)),
       dispatcher_(&configuration_),
-      tree_solver_({.friction = options.friction}) {
+      tree_solver_(friction) {
   reserve_bullet_memory();
   ground_contact_.register_with(dispatcher_);
   object_contact_.register_with(dispatcher_);
-  const bool own = options.solver != ContactSolver::stock;
+  const bool own = settings.solver != ContactSolver::stock;
   btMultiBodyConstraintSolver& solver = own ? tree_solver_ : stock_solver_;
   world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver, &configuration_);
-  if (own) world_->use(tree_solver_);
-  world_->setGravity(options.gravity_m_s2);
+  world_->own_solver = own;
+  world_->setGravity(to_bullet(settings.gravity_m_s2));
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
   world_->getDispatchInfo().m_useContinuous = false;
   btContactSolverInfo& info = world_->getSolverInfo();
   info.m_splitImpulse = false;
   info.m_solverMode |=
       SOLVER_DISABLE_IMPLICIT_CONE_FRICTION | SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_USE_ARTICULATED_WARMSTARTING;
-  info.m_numIterations = options.solver_iterations;
+  info.m_numIterations = settings.solver_iterations;
   info.m_minimumSolverBatchSize = 0;
   info.m_leastSquaresResidualThreshold = 0;
-  ground_.setWorldTransform(options.ground);
-  ground_.setFriction(options.ground_friction);
-  ground_.setRestitution(options.ground_restitution);
-  if (options.ground_stiffness_N_per_m > 0)
-    ground_.setContactStiffnessAndDamping(options.ground_stiffness_N_per_m, options.ground_damping_Ns_per_m);
+  ground_.setWorldTransform(to_bullet(ground_pose(settings.world)));
+  ground_.setFriction(settings.ground_friction);
+  ground_.setRestitution(settings.ground_restitution);
+  if (settings.ground_stiffness_N_per_m > 0)
+    ground_.setContactStiffnessAndDamping(settings.ground_stiffness_N_per_m, settings.ground_damping_Ns_per_m);
   world_->addCollisionObject(&ground_, btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);
 }
 
@@ -160,12 +152,7 @@ void ContactWorld::add(btMultiBody& body) {
 }
 
 void ContactWorld::add(btCollisionObject& collider, bool fixed) {
-  tree_solver_.add(collider);
   const int everything = btBroadphaseProxy::DefaultFilter | btBroadphaseProxy::StaticFilter;
-  if (btRigidBody* rigid = btRigidBody::upcast(&collider); rigid != nullptr && rigid->getInvMass() > 0) {
-    world_->addRigidBody(rigid, btBroadphaseProxy::DefaultFilter, everything);  // a plain collider never moves
-    return;
-  }
   world_->addCollisionObject(&collider, fixed ? btBroadphaseProxy::StaticFilter : btBroadphaseProxy::DefaultFilter,
                              fixed ? btBroadphaseProxy::DefaultFilter : everything);
 }
@@ -176,11 +163,6 @@ void ContactWorld::add(JointRows& rows) {
 }
 
 void ContactWorld::add(RollingRows& rows) {
-  world_->addMultiBodyConstraint(&rows);
-  tree_solver_.add(rows);
-}
-
-void ContactWorld::add(btMultiBodyConstraint& rows) {
   world_->addMultiBodyConstraint(&rows);
   tree_solver_.add(rows);
 }

@@ -33,26 +33,16 @@ class SteppedWorld;
 
 class ContactWorld {
  public:
-  struct Options {
-    btVector3 gravity_m_s2;
-    int solver_iterations = 10;
-    double ground_friction = 1, ground_restitution = 0;
-    double ground_stiffness_N_per_m = 0, ground_damping_Ns_per_m = 0;  // 0 N/m: hard
-    btTransform ground = btTransform::getIdentity();                   // of the plane: z is its normal
-    ContactSolver solver = ContactSolver::tree;
-    FrictionLaw friction = FrictionLaw::cone;  // of our own solver
-  };
-
-  ContactWorld(const Options& options, PairMask& mask);  // keeps a reference to the mask
+  // Keeps a reference to the mask. `friction` is for our own solver.
+  ContactWorld(const PlantSettings& settings, PairMask& mask, FrictionLaw friction = FrictionLaw::cone);
   ~ContactWorld();
   ContactWorld(const ContactWorld&) = delete;
   ContactWorld& operator=(const ContactWorld&) = delete;
 
   void add(btMultiBody& body);
-  void add(btCollisionObject& collider, bool fixed);
+  void add(btCollisionObject& collider, bool fixed);  // of a multibody, or of what only drive() moves
   void add(JointRows& rows);
   void add(RollingRows& rows);
-  void add(btMultiBodyConstraint& rows);  // anything else: for Bullet's solver only
 
   // For the next step: the velocity of a driven body, which nothing stops, in its contacts. The step also moves the
   // body, unless `stays`.

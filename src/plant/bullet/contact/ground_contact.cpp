@@ -5,7 +5,6 @@
 #include <new>
 #include <span>
 
-#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
@@ -25,30 +24,28 @@ struct Corner {
   int number = 0;  // of the shape's corners, the same in every step
 };
 
-// What the solver starts from at a corner that touched in the last step already.
-struct Impulse {
-  int corner = -1;
-  double normal = 0, lateral1 = 0, lateral2 = 0, rhs = 0;
-};
-
 class LastImpulses {
  public:
   explicit LastImpulses(const btPersistentManifold& manifold) {
     for (int i = 0; i < manifold.getNumContacts(); ++i) {
       const btManifoldPoint& point = manifold.getContactPoint(i);
-      impulses_[static_cast<std::size_t>(i)] = {point.m_index0, point.m_appliedImpulse, point.m_appliedImpulseLateral1,
-                                                point.m_appliedImpulseLateral2, point.m_prevRHS};
+      at_[static_cast<std::size_t>(i)] = {point.m_index0, LastImpulse(point)};
     }
   }
-  Impulse of(int corner) const {
-    for (const Impulse& impulse : impulses_) {
-      if (impulse.corner == corner) return impulse;
+  // Of a corner that touched in the last step already, or none.
+  LastImpulse of(int corner) const {
+    for (const AtCorner& one : at_) {
+      if (one.corner == corner) return one.impulse;
     }
     return {};
   }
 
  private:
-  std::array<Impulse, points_per_shape> impulses_;
+  struct AtCorner {
+    int corner = -1;
+    LastImpulse impulse;
+  };
+  std::array<AtCorner, points_per_shape> at_;
 };
 
 // The lowest few of the points offered, in the ground's frame, lowest first; of equals the one offered first.
@@ -137,52 +134,34 @@ double reach_m(const btCollisionShape& shape) {
   return center.length() + radius;
 }
 
-class GroundContact final : public btCollisionAlgorithm {
+class GroundContact final : public PartContact {
  public:
   GroundContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject& link,
                 const btCollisionObject& ground)
-      : btCollisionAlgorithm(info), link_(&link), ground_(&ground), surface_(link, ground) {
-    const int parts = compound().getNumChildShapes();
-    manifolds_.reserve(parts);
-    reaches_m_.reserve(parts);
-    for (int i = 0; i < parts; ++i) {
-      manifolds_.push_back(info.m_dispatcher1->getNewManifold(&link, &ground));
-      reaches_m_.push_back(reach_m(*compound().getChildShape(i)));
-    }
-  }
-  ~GroundContact() override {
-    for (int i = 0; i < manifolds_.size(); ++i) m_dispatcher->releaseManifold(manifolds_[i]);
+      : PartContact(info, link, ground), link_(&link), ground_(&ground), surface_(link, ground) {
+    reaches_m_.reserve(manifolds_.size());
+    for (int i = 0; i < manifolds_.size(); ++i) reaches_m_.push_back(reach_m(*parts_of(link).getChildShape(i)));
   }
 
   void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
                         btManifoldResult*) override {
+    const btCompoundShape& parts = parts_of(*link_);
     const btVector3 up = ground_->getWorldTransform().getBasis().getColumn(2);
     for (int i = 0; i < manifolds_.size(); ++i) {
       const LastImpulses last(*manifolds_[i]);
       manifolds_[i]->clearManifold();
-      const btVector3 center = link_->getWorldTransform() * compound().getChildTransform(i).getOrigin();
+      const btVector3 center = link_->getWorldTransform() * parts.getChildTransform(i).getOrigin();
       if (up.dot(center - ground_->getWorldTransform().getOrigin()) > reaches_m_[i] + contact_distance_m) continue;
       const btTransform part =
-          ground_->getWorldTransform().inverseTimes(link_->getWorldTransform()) * compound().getChildTransform(i);
-      for (const Corner& corner : lowest_points(*compound().getChildShape(i), part)) {
+          ground_->getWorldTransform().inverseTimes(link_->getWorldTransform()) * parts.getChildTransform(i);
+      for (const Corner& corner : lowest_points(*parts.getChildShape(i), part)) {
         add(*manifolds_[i], corner, last.of(corner.number));
       }
     }
   }
 
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
-
-  void getAllContactManifolds(btManifoldArray& all) override {
-    for (int i = 0; i < manifolds_.size(); ++i) all.push_back(manifolds_[i]);
-  }
-
  private:
-  const btCompoundShape& compound() const { return static_cast<const btCompoundShape&>(*link_->getCollisionShape()); }
-
-  void add(btPersistentManifold& manifold, const Corner& corner, const Impulse& last) const {
+  void add(btPersistentManifold& manifold, const Corner& corner, const LastImpulse& last) const {
     const double distance_m = corner.point.z();
     if (!surface_.counts(distance_m)) return;
     const btTransform& ground = ground_->getWorldTransform();
@@ -194,18 +173,14 @@ class GroundContact final : public btCollisionAlgorithm {
     contact.m_positionWorldOnB = ground * on_ground;
     surface_.give(contact);
     contact.m_index0 = corner.number;
-    contact.m_appliedImpulse = last.normal;
-    contact.m_appliedImpulseLateral1 = last.lateral1;
-    contact.m_appliedImpulseLateral2 = last.lateral2;
-    contact.m_prevRHS = last.rhs;
+    last.give(contact);
     manifold.addManifoldPoint(contact);
   }
 
   const btCollisionObject* link_;
   const btCollisionObject* ground_;
   ContactSurface surface_;
-  btManifoldArray manifolds_;                 // one a part
-  btAlignedObjectArray<btScalar> reaches_m_;  // likewise
+  btAlignedObjectArray<btScalar> reaches_m_;  // one a part
 };
 
 }  // namespace

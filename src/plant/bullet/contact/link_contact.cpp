@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "plant/bullet/convert.h"
-#include "plant/bullet/sensors.h"
 
 namespace kadans::bullet {
 namespace {
@@ -12,6 +11,28 @@ namespace {
 const btMultiBodyLinkCollider* link_collider(const Body& body, const btCollisionObject* object) {
   const auto* collider = btMultiBodyLinkCollider::upcast(object);
   return collider != nullptr && collider->m_multiBody == &body.multibody() ? collider : nullptr;
+}
+
+// A contact between a link of the robot and something that is not the robot.
+struct LinkContact {
+  std::size_t link = 0;
+  const btCollisionObject* other = nullptr;  // ground, object or another robot's link; null: no such contact
+  bool link_is_first = false;                // the contact's normals point to the first body
+};
+
+LinkContact link_contact(const Body& body, const btPersistentManifold& manifold) {
+  const auto* first = link_collider(body, manifold.getBody0());
+  const auto* second = link_collider(body, manifold.getBody1());
+  if ((first == nullptr) == (second == nullptr)) return {};
+  if (first != nullptr) return {model_link(first->m_link), manifold.getBody1(), true};
+  return {model_link(second->m_link), manifold.getBody0(), false};
+}
+
+// Of the last step, on the first body.
+btVector3 contact_impulse(const btManifoldPoint& point) {
+  return point.m_normalWorldOnB * point.m_appliedImpulse +
+         point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
+         point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2;
 }
 
 double overlap_m(const btPersistentManifold& manifold) {
@@ -52,21 +73,33 @@ void add_contact(const LinkContact& contact, const ContactWorld& world, const bt
   object.force_N = from_bullet(to_bullet(object.force_N) + force_N);
 }
 
+// Where `value` lies between two ends: 0 at the first, 1 at the second, never outside.
+double between(double value, double first, double second) {
+  return first == second ? 0.5 : std::clamp((value - first) / (second - first), 0.0, 1.0);
+}
+
+// Distributes a normal force at a point of the sole over four sensors at its corners: bilinear between heel and toe,
+// inner and outer. So the sum is the force, and the centre of pressure is kept inside the corners.
+std::array<double, sensors_per_foot> foot_pressure(const FootSettings& foot, const btVector3& point_in_link_m,
+                                                   double force_N) {
+  const auto& [heel_inner, heel_outer, toe_inner, toe_outer] = foot.sensors_m;
+  const double toe =
+      between(point_in_link_m.x(), (heel_inner[0] + heel_outer[0]) / 2, (toe_inner[0] + toe_outer[0]) / 2);
+  const double outer =
+      between(point_in_link_m.y(), (heel_inner[1] + toe_inner[1]) / 2, (heel_outer[1] + toe_outer[1]) / 2);
+  return {force_N * (1 - toe) * (1 - outer), force_N * (1 - toe) * outer, force_N * toe * (1 - outer),
+          force_N * toe * outer};
+}
+
+void add_contact(const btManifoldPoint& point, bool link_is_first, const btTransform& link_frame,
+                 const FootSettings& settings, double dt_s, FootLoad& load) {
+  load.force_N += (link_is_first ? 1 : -1) * contact_impulse(point) / dt_s;
+  const btVector3 at = link_is_first ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
+  const auto share = foot_pressure(settings, link_frame.inverse() * at, point.m_appliedImpulse / dt_s);
+  for (std::size_t i = 0; i < share.size(); ++i) load.pressure_N[i] += share[i];
+}
+
 }  // namespace
-
-LinkContact link_contact(const Body& body, const btPersistentManifold& manifold) {
-  const auto* first = link_collider(body, manifold.getBody0());
-  const auto* second = link_collider(body, manifold.getBody1());
-  if ((first == nullptr) == (second == nullptr)) return {};
-  if (first != nullptr) return {model_link(first->m_link), manifold.getBody1(), true};
-  return {model_link(second->m_link), manifold.getBody0(), false};
-}
-
-btVector3 contact_impulse(const btManifoldPoint& point) {
-  return point.m_normalWorldOnB * point.m_appliedImpulse +
-         point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
-         point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2;
-}
 
 void read_contacts(const ContactWorld& world, const Body& body, double dt_s, PlantTruth& truth) {
   forget(truth);
@@ -88,34 +121,6 @@ void read_contacts(const ContactWorld& world, const Body& body, double dt_s, Pla
     }
     if (presses) add_contact(contact, world, (contact.link_is_first ? -1 : 1) * impulse / dt_s, truth);
   }
-}
-
-namespace {
-
-// Where `value` lies between two ends: 0 at the first, 1 at the second, never outside.
-double between(double value, double first, double second) {
-  return first == second ? 0.5 : std::clamp((value - first) / (second - first), 0.0, 1.0);
-}
-
-void add_contact(const btManifoldPoint& point, bool link_is_first, const btTransform& link_frame,
-                 const FootSettings& settings, double dt_s, FootLoad& load) {
-  load.force_N += (link_is_first ? 1 : -1) * contact_impulse(point) / dt_s;
-  const btVector3 at = link_is_first ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
-  const auto share = foot_pressure(settings, link_frame.inverse() * at, point.m_appliedImpulse / dt_s);
-  for (std::size_t i = 0; i < share.size(); ++i) load.pressure_N[i] += share[i];
-}
-
-}  // namespace
-
-std::array<double, sensors_per_foot> foot_pressure(const FootSettings& foot, const btVector3& point_in_link_m,
-                                                   double force_N) {
-  const auto& [heel_inner, heel_outer, toe_inner, toe_outer] = foot.sensors_m;
-  const double toe =
-      between(point_in_link_m.x(), (heel_inner[0] + heel_outer[0]) / 2, (toe_inner[0] + toe_outer[0]) / 2);
-  const double outer =
-      between(point_in_link_m.y(), (heel_inner[1] + toe_inner[1]) / 2, (heel_outer[1] + toe_outer[1]) / 2);
-  return {force_N * (1 - toe) * (1 - outer), force_N * (1 - toe) * outer, force_N * toe * (1 - outer),
-          force_N * toe * outer};
 }
 
 void read_feet(const ContactWorld& world, const Body& body, const std::vector<FootSettings>& settings, double dt_s,

@@ -3,11 +3,9 @@
 #include <array>
 #include <new>
 
-#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include "touch_points.h"
 
@@ -18,7 +16,7 @@ constexpr double same_point_m = 0.005;
 
 struct Remembered {
   btVector3 on_a;  // in a's frame
-  double impulse = 0, lateral1 = 0, lateral2 = 0, rhs = 0;
+  LastImpulse impulse;
 };
 
 // What the solver starts from at points that touched in the last step already; each serves once.
@@ -27,11 +25,10 @@ class LastPoints {
   explicit LastPoints(const btPersistentManifold& manifold) {
     for (int i = 0; i < manifold.getNumContacts(); ++i) {
       const btManifoldPoint& point = manifold.getContactPoint(i);
-      points_[count_++] = {point.m_localPointA, point.m_appliedImpulse, point.m_appliedImpulseLateral1,
-                           point.m_appliedImpulseLateral2, point.m_prevRHS};
+      points_[count_++] = {point.m_localPointA, LastImpulse(point)};
     }
   }
-  Remembered take(const btVector3& on_a) {
+  LastImpulse take(const btVector3& on_a) {
     std::size_t best = count_;
     double nearest = same_point_m * same_point_m;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -39,7 +36,7 @@ class LastPoints {
       if (distance < nearest) nearest = distance, best = i;
     }
     if (best == count_) return {};
-    const Remembered found = points_[best];
+    const LastImpulse found = points_[best].impulse;
     points_[best] = points_[--count_];
     return found;
   }
@@ -49,46 +46,14 @@ class LastPoints {
   std::size_t count_ = 0;
 };
 
-const btConvexShape& part(const btCollisionObject& object, int index) {
-  const auto& compound = static_cast<const btCompoundShape&>(*object.getCollisionShape());
-  return static_cast<const btConvexShape&>(*compound.getChildShape(index));
-}
-
-btTransform part_pose(const btCollisionObject& object, int index) {
-  return object.getWorldTransform() *
-         static_cast<const btCompoundShape&>(*object.getCollisionShape()).getChildTransform(index);
-}
-
-class ObjectContact final : public btCollisionAlgorithm {
+class ObjectContact final : public PartContact {
  public:
-  // `b` has one part.
-  ObjectContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject& a,
-                const btCollisionObject& b)
-      : btCollisionAlgorithm(info) {
-    const int parts = static_cast<const btCompoundShape&>(*a.getCollisionShape()).getNumChildShapes();
-    manifolds_.reserve(parts);
-    for (int i = 0; i < parts; ++i) manifolds_.push_back(info.m_dispatcher1->getNewManifold(&a, &b));
-  }
-  ~ObjectContact() override {
-    for (int i = 0; i < manifolds_.size(); ++i) m_dispatcher->releaseManifold(manifolds_[i]);
-  }
+  using PartContact::PartContact;  // the second body has one part
 
   void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*, const btDispatcherInfo&,
                         btManifoldResult*) override {
     for (int i = 0; i < manifolds_.size(); ++i) renew_contact(*manifolds_[i], i, 0);
   }
-
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
-
-  void getAllContactManifolds(btManifoldArray& all) override {
-    for (int i = 0; i < manifolds_.size(); ++i) all.push_back(manifolds_[i]);
-  }
-
- private:
-  btManifoldArray manifolds_;  // one a part of a
 };
 static_assert(sizeof(ObjectContact) <= sizeof(btConvexConvexAlgorithm), "fits the dispatcher's pool");
 
@@ -105,8 +70,7 @@ bool apart(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
 bool keeps_nothing(const btBroadphasePair& pair, const btCollisionObject& a) {
   if (pair.m_algorithm == nullptr) return false;
   const auto& parts = static_cast<const btCompoundCollisionAlgorithm&>(*pair.m_algorithm);
-  const int count = static_cast<const btCompoundShape&>(*a.getCollisionShape()).getNumChildShapes();
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < parts_of(a).getNumChildShapes(); ++i) {
     if (parts.getChildAlgorithm(i) != nullptr) return false;
   }
   return true;
@@ -127,19 +91,14 @@ void renew_contact(btPersistentManifold& manifold, int part_a, int part_b) {
   const ContactSurface surface(a, b);
   LastPoints last(manifold);
   manifold.clearManifold();
-  for (const TouchPoint& point :
-       touch_points(part(a, part_a), part_pose(a, part_a), part(b, part_b), part_pose(b, part_b))) {
+  for (const TouchPoint& point : touch_points(a, part_a, b, part_b)) {
     if (!surface.counts(point.distance_m)) continue;
     const btVector3 on_a = a.getWorldTransform().invXform(point.on_a);
     btManifoldPoint contact(on_a, b.getWorldTransform().invXform(point.on_b), point.normal, point.distance_m);
     contact.m_positionWorldOnA = point.on_a;
     contact.m_positionWorldOnB = point.on_b;
     surface.give(contact);
-    const Remembered before = last.take(on_a);
-    contact.m_appliedImpulse = before.impulse;
-    contact.m_appliedImpulseLateral1 = before.lateral1;
-    contact.m_appliedImpulseLateral2 = before.lateral2;
-    contact.m_prevRHS = before.rhs;
+    last.take(on_a).give(contact);
     manifold.addManifoldPoint(contact);
   }
 }

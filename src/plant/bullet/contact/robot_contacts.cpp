@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <utility>
 
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <LinearMath/btAabbUtil2.h>
+
+#include "touch_points.h"
 
 namespace kadans::bullet {
 namespace {
 
 constexpr std::size_t meetings_per_world = 64;  // room from the start, so that hardly any step allocates
-
-int part_count(const btCollisionObject& collider) {
-  return static_cast<const btCompoundShape&>(*collider.getCollisionShape()).getNumChildShapes();
-}
 
 bool moves(const btCollisionObject& collider) { return btMultiBodyLinkCollider::upcast(&collider) != nullptr; }
 
@@ -64,8 +61,8 @@ void RobotContacts::meet(std::size_t first, std::size_t second) {
 void RobotContacts::touch(std::size_t first, std::size_t second, const btCollisionObject& a,
                           const btCollisionObject& b) {
   if (in_world(a)) return touch(second, first, b, a);
-  for (int i = 0; i < part_count(a); ++i) {
-    for (int j = 0; j < part_count(b); ++j) {
+  for (int i = 0; i < parts_of(a).getNumChildShapes(); ++i) {
+    for (int j = 0; j < parts_of(b).getNumChildShapes(); ++j) {
       Meeting meeting = take(a, b, {i, j});
       renew_contact(*meeting.manifold, i, j);
       if (meeting.manifold->getNumContacts() == 0) {

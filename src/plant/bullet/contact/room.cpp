@@ -19,7 +19,7 @@ struct Bounds {
 
 // Of each convex part, less what may lie in another without harm.
 void add_boxes(const btCollisionObject& collider, std::vector<Bounds>& boxes) {
-  const auto& shape = static_cast<const btCompoundShape&>(*collider.getCollisionShape());
+  const btCompoundShape& shape = parts_of(collider);
   const btVector3 harmless(start_depth_max_m / 2, start_depth_max_m / 2, start_depth_max_m / 2);
   for (int i = 0; i < shape.getNumChildShapes(); ++i) {
     Bounds box;
@@ -39,16 +39,10 @@ bool boxes_meet(const btCollisionObject& a, const btCollisionObject& b) {
 
 double depth_between_m(const btCollisionObject& a, const btCollisionObject& b) {
   if (!boxes_meet(a, b)) return 0;
-  const auto& shape_a = static_cast<const btCompoundShape&>(*a.getCollisionShape());
-  const auto& shape_b = static_cast<const btCompoundShape&>(*b.getCollisionShape());
   double depth_m = 0;
-  for (int i = 0; i < shape_a.getNumChildShapes(); ++i) {
-    for (int j = 0; j < shape_b.getNumChildShapes(); ++j) {
-      const TouchPoints points = touch_points(static_cast<const btConvexShape&>(*shape_a.getChildShape(i)),
-                                              a.getWorldTransform() * shape_a.getChildTransform(i),
-                                              static_cast<const btConvexShape&>(*shape_b.getChildShape(j)),
-                                              b.getWorldTransform() * shape_b.getChildTransform(j));
-      for (const TouchPoint& point : points) depth_m = std::max(depth_m, -point.distance_m);
+  for (int i = 0; i < parts_of(a).getNumChildShapes(); ++i) {
+    for (int j = 0; j < parts_of(b).getNumChildShapes(); ++j) {
+      for (const TouchPoint& point : touch_points(a, i, b, j)) depth_m = std::max(depth_m, -point.distance_m);
     }
   }
   return depth_m;

@@ -11,6 +11,11 @@
 namespace kadans::bullet {
 namespace {
 
+struct PlacedBox {
+  btTransform pose;
+  btVector3 half_m;
+};
+
 struct Nearest {
   btVector3 point, normal;  // of a surface, outwards
   double distance_m = 0;    // of what was asked about; negative inside
@@ -130,17 +135,9 @@ PlacedBox placed(const btConvexShape& box, const btTransform& pose) {
 
 constexpr double preference_m = 1e-3;  // another axis must be so much better than a face of the second box
 constexpr double outline_m = 2e-4;     // faces are cut that much inside their outline: what only grazes a side is free
-constexpr std::size_t corners_max = 8;
 
 // The corners of a face in the other box's frame while they are cut, in order around it.
-struct Polygon {
-  std::array<btVector3, corners_max> corners;
-  std::size_t count = 0;
-
-  void add(const btVector3& corner) {
-    if (count < corners_max) corners[count++] = corner;
-  }
-};
+using Polygon = FixedList<btVector3, 8>;
 
 struct Face {
   int axis = 0;
@@ -192,8 +189,8 @@ Edges best_edges(const PlacedBox& a, const PlacedBox& b) {
 // Keeps what lies at or below `limit` along sign * axis.
 Polygon cut(const Polygon& polygon, int axis, double sign, double limit) {
   Polygon kept;
-  for (std::size_t i = 0; i < polygon.count; ++i) {
-    const btVector3 &from = polygon.corners[i], &to = polygon.corners[(i + 1) % polygon.count];
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const btVector3 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
     const double over_from = sign * from[axis] - limit, over_to = sign * to[axis] - limit;
     if (over_from <= 0) kept.add(from);
     if ((over_from <= 0) != (over_to <= 0)) kept.add(from + (to - from) * (over_from / (over_from - over_to)));
@@ -229,9 +226,9 @@ TouchPoints touch_face(const PlacedBox& reference, const Face& face, const Place
   }
   polygon = cut(polygon, face.axis, face.sign, reference.half_m[face.axis] + contact_distance_m);
   TouchPoints points;
-  for (const std::size_t i : carrying(std::span(polygon.corners).first(polygon.count), face.axis, face.sign)) {
-    const double distance = face.sign * polygon.corners[i][face.axis] - reference.half_m[face.axis];
-    const btVector3 at = reference.pose * polygon.corners[i];
+  for (const std::size_t i : carrying(polygon, face.axis, face.sign)) {
+    const double distance = face.sign * polygon[i][face.axis] - reference.half_m[face.axis];
+    const btVector3 at = reference.pose * polygon[i];
     points.add({at, at - distance * normal, normal, distance});
   }
   return points;
@@ -259,6 +256,17 @@ TouchPoints touch_edges(const PlacedBox& a, const PlacedBox& b, const Edges& edg
   if (std::abs(t_a) > a.half_m[edges.axis_a] || std::abs(t_b) > b.half_m[edges.axis_b]) return points;
   points.add({from_a + t_a * along_a, from_b + t_b * along_b, edges.normal, edges.separation_m});
   return points;
+}
+
+TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b) {
+  const Face face_b = best_face(b, a), face_a = best_face(a, b);
+  if (std::max(face_a.separation_m, face_b.separation_m) > contact_distance_m) return {};
+  const Edges edges = best_edges(a, b);
+  if (edges.separation_m > contact_distance_m) return {};
+  const bool on_a = face_a.separation_m > face_b.separation_m + preference_m;
+  const double face_m = on_a ? face_a.separation_m : face_b.separation_m;
+  if (edges.separation_m > face_m + preference_m) return touch_edges(a, b, edges);
+  return on_a ? swapped(touch_face(a, face_a, b)) : touch_face(b, face_b, a);
 }
 
 // The corners over the face of least overlap.
@@ -300,8 +308,8 @@ bool is_hull(const btConvexShape& shape) { return shape.getShapeType() == CONVEX
 
 }  // namespace
 
-Carrying carrying(std::span<const btVector3> points, int axis, double sign) {
-  Carrying kept;
+FixedList<std::size_t, TouchPoints::capacity> carrying(std::span<const btVector3> points, int axis, double sign) {
+  FixedList<std::size_t, TouchPoints::capacity> kept;
   std::size_t deepest = 0, furthest = 0, left = 0, right = 0;
   const auto height = [&](std::size_t i) { return sign * points[i][axis]; };
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -348,23 +356,6 @@ TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, cons
   }
   if (type_a == BOX_SHAPE_PROXYTYPE) return swapped(touch_points(b, pose_b, a, pose_a));
   return touch_nearest(a, pose_a, b, pose_b);
-}
-
-TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b) {
-  const Face face_b = best_face(b, a), face_a = best_face(a, b);
-  if (std::max(face_a.separation_m, face_b.separation_m) > contact_distance_m) return {};
-  const Edges edges = best_edges(a, b);
-  if (edges.separation_m > contact_distance_m) return {};
-  const bool on_a = face_a.separation_m > face_b.separation_m + preference_m;
-  const double face_m = on_a ? face_a.separation_m : face_b.separation_m;
-  if (edges.separation_m > face_m + preference_m) return touch_edges(a, b, edges);
-  if (!on_a) return touch_face(b, face_b, a);
-  TouchPoints points = touch_face(a, face_a, b);
-  for (TouchPoint& point : points) {
-    std::swap(point.on_a, point.on_b);
-    point.normal = -point.normal;
-  }
-  return points;
 }
 
 }  // namespace kadans::bullet

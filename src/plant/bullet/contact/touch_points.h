@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <span>
 
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <btBulletCollisionCommon.h>
 
@@ -20,54 +21,57 @@ namespace kadans::bullet {
 
 inline constexpr double contact_distance_m = 0.01;
 
+// A few of something, in order; what comes when it is full is left out.
+template <typename T, std::size_t most>
+class FixedList {
+ public:
+  static constexpr std::size_t capacity = most;
+
+  void add(const T& one) {
+    if (count_ < capacity) all_[count_++] = one;
+  }
+  std::size_t size() const { return count_; }
+  const T& operator[](std::size_t place) const { return all_[place]; }
+  T* begin() { return all_.data(); }
+  T* end() { return all_.data() + count_; }
+  const T* begin() const { return all_.data(); }
+  const T* end() const { return all_.data() + count_; }
+
+ private:
+  std::array<T, most> all_{};
+  std::size_t count_ = 0;
+};
+
 struct TouchPoint {
   btVector3 on_a, on_b;
   btVector3 normal;  // from b to a
   double distance_m = 0;
 };
 
-class TouchPoints {
- public:
-  static constexpr std::size_t capacity = 4;
-
-  void add(const TouchPoint& point) {
-    if (count_ < capacity) points_[count_++] = point;
-  }
-  std::size_t size() const { return count_; }
-  TouchPoint* begin() { return points_.data(); }
-  TouchPoint* end() { return points_.data() + count_; }
-  const TouchPoint* begin() const { return points_.data(); }
-  const TouchPoint* end() const { return points_.data() + count_; }
-
- private:
-  std::array<TouchPoint, capacity> points_;
-  std::size_t count_ = 0;
-};
+using TouchPoints = FixedList<TouchPoint, 4>;
 
 TouchPoints touch_points(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
                          const btTransform& pose_b);
 
 // Of points near a face, of which `axis` is the normal and `sign` its way outwards, those that carry: the deepest, the
 // one furthest from it, and those that span the widest to both sides. Their places, in order; of up to four points all.
-class Carrying {
- public:
-  void add(std::size_t place) { places_[count_++] = place; }
-  const std::size_t* begin() const { return places_.data(); }
-  const std::size_t* end() const { return places_.data() + count_; }
-
- private:
-  std::array<std::size_t, TouchPoints::capacity> places_{};
-  std::size_t count_ = 0;
-};
-Carrying carrying(std::span<const btVector3> points, int axis, double sign);
+FixedList<std::size_t, TouchPoints::capacity> carrying(std::span<const btVector3> points, int axis, double sign);
 
 inline constexpr std::size_t hull_corners_max = 64;  // of a link's hull; LinkShapes holds it
 
-struct PlacedBox {
-  btTransform pose;
-  btVector3 half_m;
-};
-TouchPoints touch_boxes(const PlacedBox& a, const PlacedBox& b);
+// The convex parts of a body.
+inline const btCompoundShape& parts_of(const btCollisionObject& body) {
+  return static_cast<const btCompoundShape&>(*body.getCollisionShape());
+}
+inline TouchPoints touch_points(const btCollisionObject& a, int part_a, const btCollisionObject& b, int part_b) {
+  const auto part = [](const btCollisionObject& body, int index) -> const btConvexShape& {
+    return static_cast<const btConvexShape&>(*parts_of(body).getChildShape(index));
+  };
+  const auto pose = [](const btCollisionObject& body, int index) {
+    return body.getWorldTransform() * parts_of(body).getChildTransform(index);
+  };
+  return touch_points(part(a, part_a), pose(a, part_a), part(b, part_b), pose(b, part_b));
+}
 
 // The combined properties of two surfaces: friction is the product, restitution the greater of both, softness that of
 // the one that is soft. A body that bounces has a contact only when it touches: if the solver held it back before, it
@@ -104,6 +108,48 @@ class ContactSurface {
   static constexpr double bounce_distance_m = 1e-5, bounce_erp = 0.005;
   double friction_, restitution_;
   double stiffness_N_per_m_ = 0, damping_Ns_per_m_ = 0;  // 0 N/m: hard
+};
+
+// What the solver made of a point of contact, and starts from in the next step.
+struct LastImpulse {
+  double normal = 0, lateral1 = 0, lateral2 = 0, rhs = 0;
+
+  LastImpulse() = default;
+  explicit LastImpulse(const btManifoldPoint& point)
+      : normal(point.m_appliedImpulse),
+        lateral1(point.m_appliedImpulseLateral1),
+        lateral2(point.m_appliedImpulseLateral2),
+        rhs(point.m_prevRHS) {}
+  void give(btManifoldPoint& point) const {
+    point.m_appliedImpulse = normal;
+    point.m_appliedImpulseLateral1 = lateral1;
+    point.m_appliedImpulseLateral2 = lateral2;
+    point.m_prevRHS = rhs;
+  }
+};
+
+// A contact of two bodies with a manifold for each part of the first one.
+class PartContact : public btCollisionAlgorithm {
+ public:
+  PartContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObject& a, const btCollisionObject& b)
+      : btCollisionAlgorithm(info) {
+    const int parts = parts_of(a).getNumChildShapes();
+    manifolds_.reserve(parts);
+    for (int i = 0; i < parts; ++i) manifolds_.push_back(info.m_dispatcher1->getNewManifold(&a, &b));
+  }
+  ~PartContact() override {
+    for (int i = 0; i < manifolds_.size(); ++i) m_dispatcher->releaseManifold(manifolds_[i]);
+  }
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) final {
+    return 1;
+  }
+  void getAllContactManifolds(btManifoldArray& all) final {
+    for (int i = 0; i < manifolds_.size(); ++i) all.push_back(manifolds_[i]);
+  }
+
+ protected:
+  btManifoldArray manifolds_;
 };
 
 }  // namespace kadans::bullet

@@ -6,19 +6,6 @@
 #include "plant/bullet/contact/contact_world.h"
 
 namespace kadans::bullet {
-namespace {
-
-// Replaces the two values of coupled joints by what `map` makes of them.
-template <typename Values, typename Map>
-void map_pair(const Transmission& transmission, Values& values, Map&& map) {
-  double &first = values[transmission.joints()[0]], &second = values[transmission.joints()[1]];
-  const Transmission::Pair mapped = map(Transmission::Pair{first, second});
-  first = mapped[0];
-  second = mapped[1];
-}
-
-}  // namespace
-
 Drives::Drives(const RobotModel& model, const PlantSettings& settings, btMultiBody& body) : body_(&body) {
   const std::size_t joints = model.joints.size();
   for (std::vector<double>* each : {&position_rad_, &velocity_rad_s_, &torque_Nm_, &joint_torque_Nm_})
@@ -87,9 +74,8 @@ void Drives::read_motion() {
     velocity_rad_s_[i] = body_->getJointVel(static_cast<int>(i));
   }
   for (const Coupling& coupling : couplings_) {
-    const Transmission& t = coupling.transmission;
-    map_pair(t, position_rad_, [&](const auto& joints) { return t.drive_position_rad(joints); });
-    map_pair(t, velocity_rad_s_, [&](const auto& joints) { return t.drive_velocity_rad_s(joints); });
+    coupling.transmission.map(position_rad_, &Transmission::drive_position_rad);
+    coupling.transmission.map(velocity_rad_s_, &Transmission::drive_velocity_rad_s);
   }
 }
 
@@ -102,7 +88,7 @@ void Drives::begin_step(const ModelledDrives& electronics, double dt_s) {
   }
   for (Coupling& coupling : couplings_) {
     const Transmission& t = coupling.transmission;
-    map_pair(t, torque_Nm_, [&](const auto& drives) { return t.joint_effort_Nm(drives); });
+    t.map(torque_Nm_, &Transmission::joint_effort_Nm);
     for (std::size_t i = 0; i < 2; ++i) {
       const int joint = static_cast<int>(t.joints()[i]);
       coupling.own[i].begin_step(body_->getJointPos(joint), body_->getJointVel(joint), dt_s);
@@ -123,7 +109,7 @@ void Drives::end_step(double dt_s) {
   }
   for (Coupling& coupling : couplings_) {
     const Transmission& t = coupling.transmission;
-    map_pair(t, joint_torque_Nm_, [&](const auto& drives) { return t.joint_effort_Nm(drives); });
+    t.map(joint_torque_Nm_, &Transmission::joint_effort_Nm);
     for (std::size_t i = 0; i < 2; ++i) {
       const int joint = static_cast<int>(t.joints()[i]);
       coupling.own[i].end_step(body_->getJointPos(joint), body_->getJointVel(joint), dt_s);

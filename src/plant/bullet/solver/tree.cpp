@@ -233,13 +233,6 @@ void TreeFactor::second_half(btScalar* x) const {
   }
 }
 
-bool TreeShape::fits(const btMultiBody& body) {
-  for (int i = 0; i < body.getNumLinks(); ++i) {
-    if (body.getLink(i).m_dofCount > 1) return false;
-  }
-  return true;
-}
-
 TreeShape::TreeShape(const btMultiBody& body) {
   for (int dof = 0; dof < base_dofs; ++dof) add_row(dof - 1);
   links_.emplace_back();

@@ -106,8 +106,6 @@ struct Path {
 
 class TreeShape {
  public:
-  // False for a body with a joint of several degrees of freedom.
-  static bool fits(const btMultiBody& body);
   explicit TreeShape(const btMultiBody& body);
 
   int dof_count() const { return static_cast<int>(rows_.size()); }

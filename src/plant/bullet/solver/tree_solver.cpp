@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t contacts_per_link = 6;  // room from the start, so that hardly any step allocates
 constexpr int iterations_factor = 20;         // of all iterations to those that each step has
 constexpr btScalar residual_wanted_m_s = 1e-3;
+// m/s or rad/s; single precision has no less
+constexpr btScalar tolerance = sizeof(btScalar) == sizeof(double) ? 1e-7 : 5e-5F;
 constexpr btScalar shorter_step = 0.7;  // after twice the iterations that each step has
 
 Tree* tree_of(const btMultiBody* body) { return static_cast<Tree*>(body->getUserPointer()); }
@@ -24,26 +26,13 @@ bool at_limit(const JointLaw& law, btScalar impulse) { return impulse <= law.low
 }  // namespace
 
 void TreeSolver::add(btMultiBody& body) {
-  if (!TreeShape::fits(body)) {
-    covers_ = false;
-    return;
-  }
   trees_.push_back(std::make_unique<Tree>(body));
   body.setUserPointer(trees_.back().get());
   contacts_.reserve(contacts_.capacity() + contacts_per_link * static_cast<std::size_t>(body.getNumLinks() + 1));
 }
 
-void TreeSolver::add(const btCollisionObject& collider) {
-  const btRigidBody* rigid = btRigidBody::upcast(&collider);
-  if (rigid != nullptr && rigid->getInvMass() > 0) covers_ = false;
-}
-
 void TreeSolver::add(JointRows& rows) {
   Tree* const tree = tree_of(&rows.body());
-  if (tree == nullptr) {
-    covers_ = false;
-    return;
-  }
   Coordinate along = rows.coordinate();
   along.joint = tree->shape().dof(along.joint);
   if (along.carrier >= 0) along.carrier = tree->shape().dof(along.carrier);
@@ -52,24 +41,13 @@ void TreeSolver::add(JointRows& rows) {
 }
 
 void TreeSolver::add(RollingRows& rows) {
-  Tree* const tree = tree_of(&rows.body());
-  if (tree == nullptr) {
-    covers_ = false;
-    return;
-  }
-  rollings_.push_back({&rows, tree});
+  rollings_.push_back({&rows, tree_of(&rows.body())});
   joint_rows_.reserve(3 * joints_.size() + 3 * rollings_.size());
 }
 
-void TreeSolver::solveMultiBodyGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
-                                     int manifold_count, btTypedConstraint** constraints, int constraint_count,
-                                     btMultiBodyConstraint** rows, int row_count, const btContactSolverInfo& info,
-                                     btIDebugDraw* draw, btDispatcher* dispatcher) {
-  if (!covers_) {
-    btMultiBodyConstraintSolver::solveMultiBodyGroup(bodies, body_count, manifolds, manifold_count, constraints,
-                                                     constraint_count, rows, row_count, info, draw, dispatcher);
-    return;
-  }
+void TreeSolver::solveMultiBodyGroup(btCollisionObject**, int, btPersistentManifold** manifolds, int manifold_count,
+                                     btTypedConstraint**, int, btMultiBodyConstraint**, int,
+                                     const btContactSolverInfo& info, btIDebugDraw*, btDispatcher*) {
   const Group all{this, {manifolds, static_cast<std::size_t>(manifold_count)}, {}, &info};
   solve_together({&all, 1});
 }
@@ -104,7 +82,7 @@ void TreeSolver::iterate(std::span<const Group> groups) {
     largest = 0;
     const btScalar share = i < 2 * each_step ? 1 : shorter_step;
     for (const Group& group : groups) largest = std::max(largest, group.solver->iterate(share));
-    if (largest <= groups[0].solver->options_.tolerance) break;
+    if (largest <= tolerance) break;
   }
   for (const Group& group : groups) group.solver->residual_ = largest;
 }
@@ -173,7 +151,7 @@ void TreeSolver::add_contacts(std::span<btPersistentManifold* const> manifolds, 
 btScalar TreeSolver::iterate(btScalar share) {
   btScalar largest = 0;
   for (JointRow& row : joint_rows_) largest = std::max(largest, row.iterate());
-  for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(options_.friction, share));
+  for (ContactRow& contact : contacts_) largest = std::max(largest, contact.iterate(friction_, share));
   return largest;
 }
 

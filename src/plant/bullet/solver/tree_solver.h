@@ -15,10 +15,8 @@
 // foot between the ground and its joint's limit) it goes on until they do not, up to iterations_factor times as many;
 // soon with shorter steps, since what has not arrived by then goes around in a circle (contact_row.h).
 //
-// It covers what the plant's worlds consist of: any number of multibodies with joints of one degree of freedom, in
-// contact with each other, themselves and static or driven bodies. Once anything else was added - a rigid body that
-// moves freely, a joint of several degrees of freedom and the rows on it, a constraint that closes a loop - covers() is
-// false, and the stock solver is used after an articulated-body pass.
+// It covers what the plant's worlds consist of, and nothing else: any number of multibodies with joints of one degree
+// of freedom, in contact with each other, themselves and static or driven bodies.
 #pragma once
 
 #include <memory>
@@ -64,21 +62,12 @@ class RollingRows;
 
 class TreeSolver final : public btMultiBodyConstraintSolver {
  public:
-  struct Options {
-    FrictionLaw friction = FrictionLaw::cone;
-    btScalar tolerance =
-        sizeof(btScalar) == sizeof(double) ? 1e-7 : 5e-5F;  // m/s or rad/s; single precision has no less
-  };
-
-  explicit TreeSolver(const Options& options) : options_(options) {}
+  explicit TreeSolver(FrictionLaw friction) : friction_(friction) {}
 
   // Everything in the world must be added before the first step.
   void add(btMultiBody& body);
-  void add(const btCollisionObject& collider);
   void add(JointRows& rows);
   void add(RollingRows& rows);
-  void add(const btMultiBodyConstraint&) { covers_ = false; }
-  bool covers() const { return covers_; }
   // How much the last iteration of the last step changed a velocity, m/s or rad/s.
   btScalar residual() const { return residual_; }
   void reserve_contacts(std::size_t manifolds) { contacts_.reserve(contacts_.capacity() + 4 * manifolds); }
@@ -124,8 +113,7 @@ class TreeSolver final : public btMultiBodyConstraintSolver {
   void finish();
   void finish_joint(Joint& joint);
 
-  Options options_;
-  bool covers_ = true;
+  FrictionLaw friction_;
   btScalar residual_ = 0;
   std::vector<std::unique_ptr<Tree>> trees_;
   std::vector<Joint> joints_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace kadans::dynamixel {
 namespace {
@@ -32,12 +31,6 @@ unsigned word(const std::vector<std::uint8_t>& body, std::size_t at) {
 }
 
 }  // namespace
-
-bool EmulatedBus::disturbed(std::uint8_t& byte) {
-  if (faults.lost > 0 && random_.uniform() < faults.lost) return true;
-  if (faults.corrupt > 0 && random_.uniform() < faults.corrupt) byte = static_cast<std::uint8_t>(random_.next());
-  return false;
-}
 
 void EmulatedBus::receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns, std::uint32_t baud) {
   if (baud == 0) return;
@@ -226,28 +219,9 @@ EmulatedBus::Message EmulatedBus::status(const EmulatedServo& servo, std::uint8_
 }
 
 void EmulatedBus::answer(const Message& bytes, double delay_s) {
-  const double byte_ns = 1e10 / baud_;
   const std::int64_t begin_ns = std::max(free_ns_, asked_ns_) + std::llround(1e9 * delay_s);
-  std::size_t sent = 0;
-  for (std::uint8_t byte : bytes) {
-    ++sent;
-    if (disturbed(byte)) continue;
-    answers_.push_back({begin_ns + std::llround(byte_ns * static_cast<double>(bytes.size())) + usb_latency_ns_, byte});
-  }
-  free_ns_ = begin_ns + std::llround(byte_ns * static_cast<double>(sent));
-}
-
-std::int64_t EmulatedBus::due_ns() const noexcept {
-  return answers_.empty() ? std::numeric_limits<std::int64_t>::max() : answers_.front().due_ns;
-}
-
-std::size_t EmulatedBus::take(std::span<std::uint8_t> into, std::int64_t now_ns) {
-  std::size_t count = 0;
-  while (count < into.size() && !answers_.empty() && answers_.front().due_ns <= now_ns) {
-    into[count++] = answers_.front().byte;
-    answers_.pop_front();
-  }
-  return count;
+  free_ns_ = begin_ns + std::llround(1e10 / baud_ * static_cast<double>(bytes.size()));
+  send(bytes, free_ns_ + usb_latency_ns_);
 }
 
 }  // namespace kadans::dynamixel

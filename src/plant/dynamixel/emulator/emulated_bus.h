@@ -7,35 +7,24 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
 #include "emulated_servo.h"
-#include "kadans/signal/random.h"
+#include "plant/serial/emulated_line.h"
 
 namespace kadans::dynamixel {
 
-struct BusFaults {  // shares of the bytes, in both directions
-  double corrupt = 0, lost = 0;
-};
-
-class EmulatedBus {
+// Faults befall bytes in both directions.
+class EmulatedBus : public EmulatedLine {
  public:
   EmulatedBus(std::int64_t usb_latency_ns, std::uint64_t seed)
-      : usb_latency_ns_(usb_latency_ns), random_(seed, "bus") {}
+      : EmulatedLine(seed, "bus"), usb_latency_ns_(usb_latency_ns) {}
 
   std::vector<EmulatedServo> servos;
-  BusFaults faults;
 
   // The host begins to send these bytes now, at this baud rate.
   void receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns, std::uint32_t baud);
-  // When the host has the next byte of an answer; INT64_MAX: none is on the way.
-  std::int64_t due_ns() const noexcept;
-  // Takes the bytes that the host has now.
-  std::size_t take(std::span<std::uint8_t> into, std::int64_t now_ns);
-  void drop_answers() noexcept { answers_.clear(); }
-
   void set_usb_latency(std::int64_t latency_ns) noexcept { usb_latency_ns_ = latency_ns; }
   std::uint64_t instructions() const noexcept { return instructions_; }
   std::uint64_t sync_reads() const noexcept { return sync_reads_; }  // fast ones, too
@@ -43,10 +32,6 @@ class EmulatedBus {
 
  private:
   using Message = std::vector<std::uint8_t>;
-  struct Arrival {
-    std::int64_t due_ns;
-    std::uint8_t byte;
-  };
 
   bool parse();
   void carry_out(std::uint8_t id, const Message& body, bool crc_good);
@@ -57,15 +42,12 @@ class EmulatedBus {
   void sync_write(const Message& body);
   void answer(const Message& bytes, double delay_s);
   EmulatedServo* find(std::uint8_t id);
-  bool disturbed(std::uint8_t& byte);
 
   std::int64_t usb_latency_ns_;
-  RandomStream random_;
   Message heard_;
   std::uint32_t baud_ = 0;
   std::int64_t free_ns_ = INT64_MIN / 2;   // when the wire is free again
   std::int64_t asked_ns_ = INT64_MIN / 2;  // when the instruction that is answered was over
-  std::deque<Arrival> answers_;
   std::uint64_t instructions_ = 0, sync_reads_ = 0, not_understood_ = 0;
 };
 

@@ -4,13 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "emulated_machine.h"
 #include "kadans/plant/wired_world.h"
 #include "plant/hostmot2/hostmot2_plant.h"
 #include "plant/hostmot2/lbp_link.h"
-#include "register_file.h"
 
 namespace kadans::hostmot2 {
 
@@ -35,6 +35,25 @@ class VirtualCable final : public DatagramPort {
   std::size_t answered_ = 0;
   std::int64_t now_ = -1'000'000'000'000;
   WireHash passed_;
+};
+
+// An emulated board's registers as a mapped file, as a PCI card's are. What the host wrote there is seen at the next
+// take(), register by register in the order of their addresses; show() puts there what it reads. The host may write
+// meanwhile.
+class RegisterFile {
+ public:
+  RegisterFile(EmulatedBoard& board, const std::string& path);  // makes the file; throws InputError
+  ~RegisterFile();
+  RegisterFile(const RegisterFile&) = delete;
+  RegisterFile& operator=(const RegisterFile&) = delete;
+
+  void take() noexcept;
+  void show() noexcept;
+
+ private:
+  EmulatedBoard& board_;
+  volatile std::uint32_t* registers_ = nullptr;
+  std::vector<std::uint32_t> shown_;
 };
 
 class BoardWorld final : public WiredWorld {

@@ -34,11 +34,7 @@ EmulatedMachine::EmulatedMachine(const HostMot2Settings& settings, const PlantSi
       emergency_{.board = settings.board_number(settings.emergency_board), .is = {.pin = settings.emergency}} {
   for (const BoardSettings& board : settings.boards) {
     names_.push_back(board.name);
-    const auto refuse = [&](const std::string& why) {
-      InputProblem problem = board.place;
-      problem.message = why;
-      throw InputError(problem);
-    };
+    const auto refuse = [&](const std::string& why) { throw InputError(board.place.with(why)); };
     const auto* const kind = std::ranges::find(kinds, board.card, &Kind::name);
     if (kind == std::end(kinds))
       refuse("there is no emulator of a '" + board.card + "'; there are 7I96, 7I92, 7I76E-16, 5I20 and 4I65");

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -120,12 +119,7 @@ void EmulatedImu::say(unsigned message, const Bytes& data, std::int64_t begin_ns
   for (std::size_t i = 1; i < bytes.size(); ++i) sum += bytes[i];
   bytes.push_back(static_cast<std::uint8_t>(256 - sum % 256));
   free_ns_ = std::max(free_ns_, begin_ns) + std::llround(1e10 / baud_ * static_cast<double>(bytes.size()));
-  if (silent) return;
-  for (std::uint8_t byte : bytes) {
-    if (faults.lost > 0 && random_.uniform() < faults.lost) continue;
-    if (faults.corrupt > 0 && random_.uniform() < faults.corrupt) byte = static_cast<std::uint8_t>(random_.next());
-    line_.push_back({free_ns_, byte});
-  }
+  if (!silent) send(bytes, free_ns_);
 }
 
 void EmulatedImu::measure(std::int64_t now_ns) {
@@ -161,17 +155,7 @@ void EmulatedImu::pass(std::int64_t now_ns) {
 }
 
 std::int64_t EmulatedImu::due_ns() const noexcept {
-  const std::int64_t never = std::numeric_limits<std::int64_t>::max();
-  return std::min(line_.empty() ? never : line_.front().due_ns, measures_ ? next_ns_ : never);
-}
-
-std::size_t EmulatedImu::take(std::span<std::uint8_t> into, std::int64_t now_ns) {
-  std::size_t count = 0;
-  while (count < into.size() && !line_.empty() && line_.front().due_ns <= now_ns) {
-    into[count++] = line_.front().byte;
-    line_.pop_front();
-  }
-  return count;
+  return measures_ ? std::min(EmulatedLine::due_ns(), next_ns_) : EmulatedLine::due_ns();
 }
 
 EmulatedImu::Settings device_of(const SerialImuSettings& settings) {

@@ -7,17 +7,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
 #include "kadans/signal/frames.h"
-#include "kadans/signal/random.h"
 #include "plant/imu/settings.h"
+#include "plant/serial/emulated_line.h"
 
 namespace kadans::imu {
 
-class EmulatedImu {
+// Faults befall the bytes that it sends.
+class EmulatedImu : public EmulatedLine {
  public:
   struct Settings {
     bool old = false;  // an MTi or MTx before the MTi 10
@@ -25,13 +25,9 @@ class EmulatedImu {
     std::int64_t delay_ns = 2'000'000;  // from the measurement until its message begins
     std::uint32_t rate_max_Hz = 400;
   };
-  struct Faults {  // shares of the bytes that it sends
-    double corrupt = 0, lost = 0;
-  };
 
-  EmulatedImu(const Settings& settings, std::uint64_t seed) : settings_(settings), random_(seed, "imu") {}
+  EmulatedImu(const Settings& settings, std::uint64_t seed) : EmulatedLine(seed, "imu"), settings_(settings) {}
 
-  Faults faults;
   bool silent = false;  // its cable is out
 
   // What it would measure now, in its own frame.
@@ -41,7 +37,6 @@ class EmulatedImu {
   void pass(std::int64_t now_ns);
   // When pass() or take() has something to do; INT64_MAX: nothing.
   std::int64_t due_ns() const noexcept;
-  std::size_t take(std::span<std::uint8_t> into, std::int64_t now_ns);
   bool measures() const noexcept { return measures_; }
   std::uint64_t understood() const noexcept { return understood_; }
 
@@ -56,13 +51,7 @@ class EmulatedImu {
   void measure(std::int64_t now_ns);
 
   Settings settings_;
-  RandomStream random_;
   Bytes heard_;
-  struct Arrival {
-    std::int64_t due_ns;
-    std::uint8_t byte;
-  };
-  std::deque<Arrival> line_;
   std::int64_t free_ns_ = INT64_MIN / 2, next_ns_ = 0;
   std::uint32_t baud_ = 115'200;
   bool measures_ = true;  // as it comes from its box
