@@ -4,8 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "behavior_tables.h"
 #include "config/json/problems.h"
 #include "config/scenario/event_text.h"
+#include "signal/byte_order.h"
 
 namespace kadans {
 

@@ -10,9 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scenario/play_item.h"
 #include "script/behavior/behavior.h"
-#include "signal/byte_order.h"
 
 namespace kadans {
 
@@ -70,14 +68,5 @@ class PlayList {
   std::vector<Entry> entries_;
   PlayStatus status_;
 };
-
-// Writes orders and items of the play list as bytes for another process, and reads them back. A missing value is read
-// as zero or empty, and then the reader is not ok().
-void put_item(const PlayItem& item, ByteWriter& bytes);
-PlayItem take_item(ByteReader& bytes);
-void put_event(const PlayedEvent& event, ByteWriter& bytes);
-PlayedEvent take_event(ByteReader& bytes);
-void put_order(const PlayOrder& order, ByteWriter& bytes);
-PlayOrder take_order(ByteReader& bytes);
 
 }  // namespace kadans

@@ -6,7 +6,6 @@
 
 #include "behavior_link.h"
 #include "kadans/signal/input_error.h"
-#include "script/host/play_list.h"
 
 namespace kadans {
 

@@ -8,7 +8,6 @@
 
 #include "behavior_link.h"
 #include "kadans/signal/state_hash.h"
-#include "script/host/play_list.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
