@@ -129,7 +129,7 @@ void BehaviorSide::ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& f
   auto question = std::make_unique<DecisionQuestion>();
   question->number = ++decision_questions_;
   question->question.kind = why ? BehaviorQuestion::Kind::why : BehaviorQuestion::Kind::reload;
-  if (p_.decisions->ask(std::move(question))) {
+  if (p_.decisions->asked.try_push(std::move(question))) {
     asked_decisions_.push_back({std::move(order), &from, time_ns, decision_questions_});
     return;
   }
@@ -140,7 +140,7 @@ void BehaviorSide::ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& f
 
 void BehaviorSide::settle_decisions(std::int64_t time_ns) {
   if (p_.decisions == nullptr) return;
-  while (const auto replied = p_.decisions->reply()) {
+  while (const auto replied = p_.decisions->answered.try_pop()) {
     for (AskedDecisions& asked : asked_decisions_) {
       if (asked.number != replied->number) continue;
       Answer& answer = asked.order->answer;

@@ -200,7 +200,7 @@ bool Supervisor::decide() {
   tell(BehaviorInputs::Asked::plays, std::as_bytes(std::span(&report_, 1)));
   reload_saved();
   if (message_channel_ != nullptr) take_messages(snapshot_.time_ns);
-  while (auto asked = link_.questions.take()) {
+  while (auto asked = link_.questions.asked.try_pop()) {
     tell_bytes(BehaviorInputs::Asked::question, [&](ByteWriter& bytes) { put_question(asked->question, bytes); });
     decider_->ask(std::move(asked), snapshot_);
   }
@@ -210,7 +210,7 @@ bool Supervisor::decide() {
   if (inputs_ != nullptr) inputs_->tick_ends();
   for (const Decider::Heard& heard : decider_->decided().heard) tell_heard(heard);
   decider_->decided().heard.clear();
-  for (auto& replied : decider_->decided().replies) link_.questions.answer(std::move(replied));
+  for (auto& replied : decider_->decided().replies) (void)link_.questions.answered.try_push(std::move(replied));
   decider_->decided().replies.clear();
   send_orders();
   send_messages();
@@ -220,7 +220,7 @@ bool Supervisor::decide() {
 void Supervisor::send_orders() {
   for (PlayOrder& order : decider_->decided().orders) {
     status_.orders.fetch_add(1, std::memory_order_relaxed);
-    if (link_.give(std::move(order))) continue;
+    if (link_.orders.try_push(std::make_unique<PlayOrder>(std::move(order)))) continue;
     ++lost_;
     lost_now_ = true;
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::warning, "supervisor",
