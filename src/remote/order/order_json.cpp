@@ -370,4 +370,14 @@ std::vector<PresetOverride> save_changes(Instance& instance, InstancePort& port,
   return overridden;
 }
 
+Answer saved(Instance& instance, InstancePort& port, const Answer& answer, const std::string& who,
+             const std::string& preset) {
+  try {
+    const std::vector<PresetOverride> overridden = save_changes(instance, port, answer, who, preset);
+    return {.done = true, .text = instance.configuration().told(answer.changes.size(), overridden)};
+  } catch (const std::exception& error) {
+    return {.done = false, .text = error.what()};
+  }
+}
+
 }  // namespace kadans

@@ -212,14 +212,6 @@ void LiveClient::answer_service(std::uint32_t service_call, bool done, const std
   put({true, service_response(service_call, json_text(Json{{"done", done}, {"text", text}}))});
 }
 
-void LiveClient::save(const Call& call, const Answer& answer) {
-  try {
-    answer_service(call.service_call, true, hub_.save(answer, who_, call.preset));
-  } catch (const std::exception& error) {
-    answer_service(call.service_call, false, error.what());
-  }
-}
-
 void LiveClient::take(std::uint32_t number, const Answer& answer) noexcept {
   const auto found = calls_.find(number);
   if (found == calls_.end()) return;
@@ -231,7 +223,10 @@ void LiveClient::take(std::uint32_t number, const Answer& answer) noexcept {
 }
 
 void LiveClient::answer_call(const Call& call, const Answer& answer) {
-  if (call.save) return save(call, answer);
+  if (call.save) {
+    const Answer saved = hub_.save(answer, who_, call.preset);
+    return answer_service(call.service_call, saved.done, saved.text);
+  }
   if (call.service && !answer.reasons.empty()) {
     const Json told{{"done", true}, {"text", answer.text}, {"reasons", reasons_json(answer)}};
     return put({true, service_response(call.service_call, json_text(told))});
@@ -275,15 +270,10 @@ bool LiveClient::next(Outgoing& out) {
     const LiveMessage* message = hub_.channels().all()[subscription.channel].next(subscription.seen);
     if (message == nullptr) continue;
     last_served_ = at->first;
-    put_message(at->first, *message, out);
+    out = {true, message_data(at->first, message->time_ns, message->payload)};
     return true;
   }
   return false;
-}
-
-void LiveClient::put_message(std::uint32_t subscription, const LiveMessage& message, Outgoing& out) const {
-  out.binary = true;
-  out.bytes = message_data(subscription, message.time_ns, message.payload);
 }
 
 }  // namespace kadans

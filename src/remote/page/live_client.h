@@ -86,9 +86,7 @@ class LiveClient {
   void answer_call(const Call& call, const Answer& answer);
   void call_service(std::span<const std::byte> bytes);
   void command(std::uint32_t service_call, const OrderRequest& request);
-  void save(const Call& call, const Answer& answer);
   void answer_service(std::uint32_t service_call, bool done, const std::string& text);
-  void put_message(std::uint32_t subscription, const LiveMessage& message, Outgoing& out) const;
 
   LiveHub& hub_;
   std::uint64_t id_;

@@ -208,9 +208,8 @@ void LiveHub::take_parameters() {
   for (const LiveParameter& p : behaviors_now_) note(p.name, p.value);
 }
 
-std::string LiveHub::save(const Answer& answer, const std::string& who, const std::string& preset) {
-  const auto overridden = save_changes(p_.instance, p_.port, answer, who, preset);
-  return p_.instance.configuration().told(answer.changes.size(), overridden);
+Answer LiveHub::save(const Answer& answer, const std::string& who, const std::string& preset) {
+  return saved(p_.instance, p_.port, answer, who, preset);
 }
 
 void LiveHub::act(const OrderRequest& request, const std::string& who) {
