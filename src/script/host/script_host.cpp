@@ -189,13 +189,10 @@ WrongData ScriptHost::wrong_event(const PlayedEvent& event) const {
 
 void ScriptHost::declare_signals(SignalTable& signals) {
   list_.status().declare(signals);
-  const auto declare = [&](const PlayList::Entry& entry) {
-    const BehaviorStatus& status = entry.behavior->status();
-    const std::string name = status.declare_numbered(signals, entry.behavior->name());
-    add_signal_states(entry.behavior->chart(), name, signals, signal_states_);
-  };
-  std::ranges::for_each(list_.entries(), declare);
-  for (const Due& due : events_) std::ranges::for_each(due.loaded, declare);
+  for (const Behavior* behavior : loaded()) {
+    const std::string name = behavior->status().declare_numbered(signals, behavior->name());
+    add_signal_states(behavior->chart(), name, signals, signal_states_);
+  }
 }
 
 std::vector<std::filesystem::path> ScriptHost::files() const {
@@ -231,11 +228,7 @@ bool ScriptHost::repeat_question(std::span<const std::byte> bytes, const Snapsho
 }
 
 void ScriptHost::order(const PlayOrder& order) {
-  if (inputs_ != nullptr) {
-    ByteWriter bytes;
-    put_order(order, bytes);
-    inputs_->asked(BehaviorInputs::Asked::order, bytes.bytes());
-  }
+  tell_asked(inputs_, BehaviorInputs::Asked::order, [&](ByteWriter& bytes) { put_order(order, bytes); });
   std::vector<InputProblem> problems;
   Due due{0, order, load(order.list, false, problems)};
   if (!problems.empty()) throw InputError(problems);
@@ -325,11 +318,7 @@ void ScriptHost::reload(const PlayOrder& order, const Snapshot& snapshot, Comman
 
 void ScriptHost::reload_saved(const Snapshot& snapshot, CommandSender& commands) noexcept {
   if (watch_ == nullptr || !watch_->poll()) return;
-  for (PlayList::Entry& entry : list_.entries()) {
-    if (entry.over) continue;
-    entry.behavior->hold_clock(pause_.held_ns());
-    (void)entry.behavior->reload(snapshot, commands, {}, PlayList::sets_beside(entry.lane, list_.entries()));
-  }
+  reload({}, snapshot, commands);
   watch_folders();  // of modules that are new
 }
 
@@ -348,11 +337,8 @@ void ScriptHost::watch_folders() {
 BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot, Describe describe) {
   const bool tells =
       question.kind == BehaviorQuestion::Kind::report || question.kind == BehaviorQuestion::Kind::describe;
-  if (inputs_ != nullptr && !tells) {
-    ByteWriter bytes;
-    put_question(question, bytes);
-    inputs_->asked(BehaviorInputs::Asked::question, bytes.bytes());
-  }
+  if (!tells)
+    tell_asked(inputs_, BehaviorInputs::Asked::question, [&](ByteWriter& bytes) { put_question(question, bytes); });
   switch (question.kind) {
     case BehaviorQuestion::Kind::report:
       return {.paused = paused(), .behaviors = reports()};

@@ -143,11 +143,7 @@ void DecisionProcess::ask(std::unique_ptr<DecisionQuestion> question, const Snap
 
 void ServedDecisions::order(const PlayOrder& order) {
   if (order.kind != PlayOrder::Kind::emit) throw InputError({.message = "decisions take events alone"});
-  if (inputs_ != nullptr) {
-    event_.clear();
-    put_event(order.event, event_);
-    inputs_->asked(BehaviorInputs::Asked::heard, event_.bytes());
-  }
+  tell_asked(inputs_, BehaviorInputs::Asked::heard, [&](ByteWriter& bytes) { put_event(order.event, bytes); });
   if (const std::string why = decisions_.refusal(order.event); !why.empty()) throw InputError({.message = why});
 }
 
@@ -174,11 +170,7 @@ void ServedDecisions::tick(const Snapshot& snapshot, const PlayReport& plays, Co
 }
 
 BehaviorReply ServedDecisions::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
-  if (inputs_ != nullptr) {
-    event_.clear();
-    put_question(question, event_);
-    inputs_->asked(BehaviorInputs::Asked::question, event_.bytes());
-  }
+  tell_asked(inputs_, BehaviorInputs::Asked::question, [&](ByteWriter& bytes) { put_question(question, bytes); });
   return decisions_.reply(question, snapshot);
 }
 

@@ -103,7 +103,7 @@ class ServedDecisions final : public ServedHost {
   std::span<const std::byte> kept_;
   BehaviorInputs* inputs_;
   PlayStatus status_;
-  ByteWriter bytes_, told_, event_;
+  ByteWriter bytes_, told_;
   std::string lost_;
 };
 
