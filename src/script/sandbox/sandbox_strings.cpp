@@ -278,21 +278,17 @@ int gsub(lua_State* state) {
 }  // namespace
 
 void open_strings(lua_State* state) {
-  open_patterns(state);
+  const int strings = lua_gettop(state);
+  set_function(state, strings, "find", find);
+  set_function(state, strings, "match", match);
+  set_function(state, strings, "gmatch", gmatch);
+  set_function(state, strings, "gsub", gsub);
   wrap(state, "rep", rep);
   for (const char* name : {"lower", "reverse", "upper"}) wrap(state, name, whole);
   wrap(state, "sub", piece);
   wrap(state, "byte", byte);
   wrap(state, "char", character);
   wrap(state, "format", format_text);
-}
-
-void open_patterns(lua_State* state) {
-  const int strings = lua_gettop(state);
-  set_function(state, strings, "find", find);
-  set_function(state, strings, "match", match);
-  set_function(state, strings, "gmatch", gmatch);
-  set_function(state, strings, "gsub", gsub);
 }
 
 }  // namespace kadans
