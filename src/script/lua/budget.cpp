@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -11,6 +10,7 @@
 #include "line_watch.h"
 #include "lua_core.h"
 #include "lua_state.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans {
 namespace {
@@ -21,11 +21,6 @@ constexpr double scanned_bytes_per_instruction = 32;
 
 std::atomic<bool> interruption{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
-
-std::int64_t wall_now_ns() noexcept {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 const char breach_marker = 0;
 
@@ -71,7 +66,7 @@ void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wa
   charged_ = 0;
   interval_ = wall_ns > 0 ? timed_interval : interval;
   wall_ns_ = wall_ns;
-  look_ns_ = wall_ns > 0 ? wall_now_ns() + wall_ns / 4 : 0;
+  look_ns_ = wall_ns > 0 ? monotonic_ns() + wall_ns / 4 : 0;
   thread_end_ns_ = 0;
   interrupted_ns_ = 0;
   error_.set = false;
@@ -114,7 +109,7 @@ void Budget::look(lua_State* state) {
 // The thread's clock costs a system call, so it is looked at only when a quarter of the time has passed on the wall
 // clock, and then again each time the script could have used up what is left.
 bool Budget::out_of_time() noexcept {
-  const std::int64_t now_ns = wall_now_ns();
+  const std::int64_t now_ns = monotonic_ns();
   if (now_ns < look_ns_) return false;
   const std::int64_t thread_ns = thread_now_ns();
   if (thread_end_ns_ == 0) thread_end_ns_ = thread_ns + wall_ns_ - wall_ns_ / 4;
@@ -129,7 +124,7 @@ bool Budget::time_is_over() noexcept {
 }
 
 bool Budget::interrupted() noexcept {
-  const std::int64_t now_ns = wall_now_ns();
+  const std::int64_t now_ns = monotonic_ns();
   if (interrupted_ns_ == 0) interrupted_ns_ = now_ns;
   return now_ns - interrupted_ns_ >= interrupted_grace_ns;
 }

@@ -89,8 +89,8 @@ struct BehaviorLink {
   };
   struct Answer {
     Turn<> number;                                // number of the request
-    PlayNumbers play{};                           // the numbers of PlayStatus, in its order
-    std::array<Numbers, behaviors_max> status{};  // the numbers of BehaviorStatus, in its order
+    PlayNumbers play{};                           // play_numbers()
+    std::array<Numbers, behaviors_max> status{};  // behavior_numbers()
     OfRegions<std::uint32_t> regions{};           // the active state of each region
     std::uint32_t kept_changed = 0;
     KeptState kept;
@@ -112,6 +112,15 @@ struct BehaviorLink {
   Ring<std::byte, std::size_t{1} << 18U> lines;  // log lines of the behaviors: a u32 size, then that many bytes
 };
 static_assert(std::is_trivially_copyable_v<BehaviorLink>);
+
+// Where the numbers of an answer are from, and where they go: pointers to them, in the answer's order.
+auto play_numbers(auto& play) {
+  return std::array{&play.phase,    &play.playing, &play.waiting,       &play.done,
+                    &play.not_done, &play.events,  &play.events_refused};
+}
+auto behavior_numbers(auto& of) {
+  return std::array{&of.heap_bytes, &of.instructions, &of.gc_pause_ns, &of.state, &of.reloads};
+}
 
 // The first byte of a line that is a transition, tells active states (their number, then their paths), or is an event
 // from outside. Other lines have a severity of BehaviorLog there.

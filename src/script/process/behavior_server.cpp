@@ -166,15 +166,13 @@ void BehaviorServer::put(std::uint32_t number, const BehaviorReply& reply) {
 }
 
 void BehaviorServer::tell_status() {
-  const auto number = [](const std::atomic<std::uint32_t>& of) { return of.load(std::memory_order_relaxed); };
-  const PlayStatus& play = host_.status();
-  link_.answer.play = {number(play.phase),    number(play.playing), number(play.waiting),       number(play.done),
-                       number(play.not_done), number(play.events),  number(play.events_refused)};
+  const auto number = [](const std::atomic<std::uint32_t>* of) { return of->load(std::memory_order_relaxed); };
+  std::ranges::transform(play_numbers(host_.status()), link_.answer.play.begin(), number);
   for (std::size_t i = 0; i < std::min<std::size_t>(host_.size(), link_.ready.count); ++i) {
     const BehaviorStatus& status = host_.behavior(i).status();
-    link_.answer.status[i] = {number(status.heap_bytes), number(status.instructions), number(status.gc_pause_ns),
-                              number(status.state), number(status.reloads)};
-    for (std::size_t r = 0; r < status.region_paths.size(); ++r) link_.answer.regions[i][r] = number(status.regions[r]);
+    std::ranges::transform(behavior_numbers(status), link_.answer.status[i].begin(), number);
+    for (std::size_t r = 0; r < status.region_paths.size(); ++r)
+      link_.answer.regions[i][r] = number(&status.regions[r]);
   }
 }
 

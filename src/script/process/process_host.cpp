@@ -206,26 +206,14 @@ bool ChildAnswer::take_replies(BehaviorLink& link, std::map<std::uint32_t, Behav
 }
 
 void ChildAnswer::take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept {
-  const auto store = [](std::atomic<std::uint32_t>& to, std::uint32_t& from) {
-    to.store(once(from), std::memory_order_relaxed);
+  const auto store = [](const auto& to, auto& from) {
+    for (std::size_t n = 0; n < to.size(); ++n) to[n]->store(once(from[n]), std::memory_order_relaxed);
   };
-  BehaviorLink::PlayNumbers& list = link.answer.play;
-  store(play.phase, list[0]);
-  store(play.playing, list[1]);
-  store(play.waiting, list[2]);
-  store(play.done, list[3]);
-  store(play.not_done, list[4]);
-  store(play.events, list[5]);
-  store(play.events_refused, list[6]);
+  store(play_numbers(play), link.answer.play);
   for (std::size_t i = 0; i < behaviors.size() && i < BehaviorLink::behaviors_max; ++i) {
-    BehaviorLink::Numbers& numbers = link.answer.status[i];
-    store(behaviors[i].heap_bytes, numbers[0]);
-    store(behaviors[i].instructions, numbers[1]);
-    store(behaviors[i].gc_pause_ns, numbers[2]);
-    store(behaviors[i].state, numbers[3]);
-    store(behaviors[i].reloads, numbers[4]);
+    store(behavior_numbers(behaviors[i]), link.answer.status[i]);
     for (std::size_t r = 0; r < behaviors[i].region_paths.size(); ++r)
-      store(behaviors[i].regions[r], link.answer.regions[i][r]);
+      behaviors[i].regions[r].store(once(link.answer.regions[i][r]), std::memory_order_relaxed);
   }
 }
 
