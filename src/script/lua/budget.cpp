@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 
 #include "engine/behavior_inputs.h"
 #include "line_watch.h"
@@ -50,12 +49,6 @@ void note_place(lua_State* state, ScriptError& error) noexcept {
   if (lua_getinfo(state, ">S", &function) != 0 && function.source[0] == '@') {
     error.set_place(function.source + 1, function.linedefined);
   }
-}
-
-std::int64_t thread_now_ns() noexcept {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
 void interrupt_scripts(bool yes) noexcept { interruption.store(yes, std::memory_order_relaxed); }
@@ -111,7 +104,7 @@ void Budget::look(lua_State* state) {
 bool Budget::out_of_time() noexcept {
   const std::int64_t now_ns = monotonic_ns();
   if (now_ns < look_ns_) return false;
-  const std::int64_t thread_ns = thread_now_ns();
+  const std::int64_t thread_ns = thread_cpu_ns();
   if (thread_end_ns_ == 0) thread_end_ns_ = thread_ns + wall_ns_ - wall_ns_ / 4;
   look_ns_ = now_ns + (thread_end_ns_ - thread_ns);
   return thread_ns >= thread_end_ns_;

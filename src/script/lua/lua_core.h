@@ -45,9 +45,6 @@ inline LuaCore& core_of(lua_State* state) noexcept {
   return *static_cast<LuaCore*>(core);
 }
 
-// The CPU time of this thread, without the time of other threads. It asks the kernel, which costs about 0.7 us.
-std::int64_t thread_now_ns() noexcept;
-
 // Notes the innermost script line in `error`. When there is none (a tail call leaves no trace), it notes the line where
 // the function that was called last begins. Never allocates.
 void note_place(lua_State* state, ScriptError& error) noexcept;
