@@ -69,20 +69,18 @@ Json chart_of(const Behavior& behavior) {
   return {{"states", states}, {"transitions", transitions}};
 }
 
+// Of a behavior or of the table. An infinite range has no JSON number: null.
+Json parameter_of(const auto& p, double value) {
+  return {{"name", p.name},       {"unit", p.unit}, {"min", p.min}, {"max", p.max},
+          {"initial", p.initial}, {"value", value}, {"doc", p.doc}};
+}
+
 Json behaviors_of(const ScriptHost* host) {
   Json behaviors = Json::array();
   for (std::size_t i = 0; host != nullptr && i < host->size(); ++i) {
     const Behavior& behavior = host->behavior(i);
     Json parameters = Json::array();
-    for (const ScriptParameter& p : behavior.parameters()) {
-      parameters.push_back({{"name", p.name},
-                            {"unit", p.unit},
-                            {"min", p.min},
-                            {"max", p.max},
-                            {"initial", p.initial},
-                            {"value", p.value},
-                            {"doc", p.doc}});
-    }
+    for (const ScriptParameter& p : behavior.parameters()) parameters.push_back(parameter_of(p, p.value));
     Json events = Json::array();
     for (const ScriptEvent& event : behavior.events()) events.push_back(event_json(event));
     behaviors.push_back(
@@ -140,19 +138,10 @@ Json objects_of(const RobotConfig& robot, const Catalog& catalog) {
   return objects;
 }
 
-// An infinite range has no JSON number: null.
 Json parameters_of(const Catalog& catalog) {
   Json parameters = Json::array();
-  for (ParameterId id = 0; id < catalog.parameters.size(); ++id) {
-    const Parameter& p = catalog.parameters.info(id);
-    parameters.push_back({{"name", p.name},
-                          {"unit", p.unit},
-                          {"min", p.min},
-                          {"max", p.max},
-                          {"initial", p.initial},
-                          {"value", catalog.parameters.get(id)},
-                          {"doc", p.doc}});
-  }
+  for (ParameterId id = 0; id < catalog.parameters.size(); ++id)
+    parameters.push_back(parameter_of(catalog.parameters.info(id), catalog.parameters.get(id)));
   return parameters;
 }
 
