@@ -15,7 +15,6 @@
 #include "config/scenario/event_text.h"
 #include "engine/refusal_text.h"
 #include "kadans/signal/nearest_name.h"
-#include "run_description.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -392,7 +391,7 @@ bool BehaviorSide::ask(Pending& pending, const BehaviorQuestion& question) {
     return false;
   }
   const auto snapshot = p_.exchange.snapshot.read(0);
-  take(pending, p_.host->reply(question, *snapshot, behaviors_description));
+  take(pending, p_.host->reply(question, *snapshot));
   return true;
 }
 

@@ -7,7 +7,6 @@
 #include "config/scenario/event_text.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/state_hash.h"
-#include "play_list.h"
 #include "script/bindings/machine_sets.h"
 #include "signal/byte_order.h"
 #include "signal/number_text.h"
@@ -221,7 +220,7 @@ bool ScriptHost::repeat_question(std::span<const std::byte> bytes, const Snapsho
   BehaviorQuestion question;
   if (!take_question(reader, question)) return false;
   try {
-    (void)reply(question, snapshot, [](const ScriptHost*) { return std::string(); });
+    (void)reply(question, snapshot);
   } catch (const InputError&) {  // refused, as it was then
   }
   return true;
@@ -334,7 +333,7 @@ void ScriptHost::watch_folders() {
   }
 }
 
-BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot, Describe describe) {
+BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
   const bool tells =
       question.kind == BehaviorQuestion::Kind::report || question.kind == BehaviorQuestion::Kind::describe;
   if (!tells)
@@ -345,7 +344,7 @@ BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot
     case BehaviorQuestion::Kind::why:
       return {.reasons = why(question.text, snapshot)};
     case BehaviorQuestion::Kind::describe:
-      return {.text = describe(this)};
+      return {.text = settings_.describe != nullptr ? settings_.describe(this) : ""};
     case BehaviorQuestion::Kind::reload:
       throw InputError({.message = "behaviors are reloaded by an order"});
     case BehaviorQuestion::Kind::set_parameter:

@@ -92,10 +92,10 @@ bool BehaviorServer::answer() {
   commands_.follow(link_.request.last_sequence, link_.request.room);
   take_parameters();
   replies_.clear();
-  host_.begin_tick(snapshot_);
+  host_.before_tick(snapshot_);
   take_orders();
-  plays_ = link_.request.plays;
-  host_.tick(snapshot_, plays_, commands_);
+  host_.show(link_.request.plays);
+  host_.tick(snapshot_, commands_);
   if (!host_.lost().empty()) {
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", "cannot go on: " + host_.lost());
     return false;

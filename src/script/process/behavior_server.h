@@ -9,7 +9,7 @@
 #include "engine/transaction.h"
 #include "kadans/control/control_sets.h"
 #include "realtime/machine/shared_memory.h"
-#include "served_host.h"
+#include "script/host/served_host.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -64,7 +64,6 @@ class BehaviorServer {
   ControlSets& sets_;
   CommandSender commands_;
   Snapshot snapshot_;
-  PlayReport plays_;
   ByteWriter kept_, replies_;
   std::vector<std::byte> kept_last_;
   std::string unkept_;  // the last logged reason why the state cannot be kept

@@ -7,6 +7,7 @@
 #include "config/robot/supervisor_config.h"
 #include "config/scenario/event_text.h"
 #include "kadans/signal/input_error.h"
+#include "script/host/script_host.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -147,17 +148,17 @@ void ServedDecisions::order(const PlayOrder& order) {
   if (const std::string why = decisions_.refusal(order.event); !why.empty()) throw InputError({.message = why});
 }
 
-void ServedDecisions::begin_tick(const Snapshot& snapshot) noexcept {
+void ServedDecisions::before_tick(const Snapshot& snapshot) noexcept {
   if (kept_.empty()) return;
   ByteReader bytes(kept_);
   lost_ = decisions_.go_on(bytes, snapshot);
   kept_ = {};
 }
 
-void ServedDecisions::tick(const Snapshot& snapshot, const PlayReport& plays, CommandSender& /*commands*/) noexcept {
+void ServedDecisions::tick(const Snapshot& snapshot, CommandSender& /*commands*/) noexcept {
   if (!lost_.empty()) return;
-  if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::plays, std::as_bytes(std::span(&plays, 1)));
-  (void)decisions_.tick(snapshot, plays);
+  if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::plays, std::as_bytes(std::span(&plays_, 1)));
+  (void)decisions_.tick(snapshot, plays_);
   bytes_.clear();
   put_decided(decisions_.failed(), decisions_.decided(), bytes_);
   if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::decided, bytes_.bytes());
