@@ -122,10 +122,6 @@ auto behavior_numbers(auto& of) {
   return std::array{&of.heap_bytes, &of.instructions, &of.gc_pause_ns, &of.state, &of.reloads};
 }
 
-// The first byte of a line that is a transition, tells active states (their number, then their paths), or is an event
-// from outside. Other lines have a severity of BehaviorLog there.
-inline constexpr std::uint8_t transition_line = 16, active_line = 17, emitted_line = 18;
-
 // A fingerprint by which two processes check that they use the same numbers for parameters, set-points, control sets
 // and objects. Each process reads the robot's files itself, and the files may have changed in between. Ranges and poses
 // are part of it, values of parameters are not.

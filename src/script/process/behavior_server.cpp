@@ -9,31 +9,10 @@
 
 namespace kadans {
 
-bool SpokenLines::push(const Line& line) {
-  const Transition* t = line.transition;
-  begin(t != nullptr ? transition_line : static_cast<std::uint8_t>(line.severity), line.behavior);
-  if (t != nullptr) {
-    for (const std::string* text : {&t->from, &t->to, &t->why}) line_.put_string(*text);
-  } else {
-    line_.put_string(line.text);
-  }
-  return push();
-}
-
-void SpokenLines::tell_active(const ActiveStates& active) {
-  begin(active_line, active.behavior);
-  put_states(active, line_);
-  dropped_ += push() ? 0 : 1;
-}
-
-void SpokenLines::begin(std::uint8_t kind, std::string_view behavior) {
+bool SpokenLines::push(const auto& told) {
   line_.clear();
   line_.put(std::uint32_t{0});
-  line_.put(kind);
-  line_.put_string(behavior);
-}
-
-bool SpokenLines::push() {
+  put_told(told, line_);
   line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
   return link_.lines.try_push(line_.bytes());
 }
@@ -47,14 +26,11 @@ void SpokenLines::tell(const Line& line) {
 void SpokenLines::tell_dropped(std::int64_t time_ns) {
   if (dropped_ == 0) return;
   const std::string text = std::to_string(dropped_) + " lines found no place";
-  if (push({time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
+  if (push(Line{time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
 }
 
-void SpokenLines::tell_emitted(const EmittedEvent& event) {
-  begin(emitted_line, "");
-  put_event(event, line_);
-  dropped_ += push() ? 0 : 1;
-}
+void SpokenLines::tell_active(const ActiveStates& active) { dropped_ += push(active) ? 0 : 1; }
+void SpokenLines::tell_emitted(const EmittedEvent& event) { dropped_ += push(event) ? 0 : 1; }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ServedHost& host, BehaviorLog& log,
                                SpokenLines& lines, Catalog& catalog, ControlSets& sets)

@@ -26,9 +26,7 @@ class SpokenLines final : public LineSink {
   void tell_emitted(const EmittedEvent& event) override;
 
  private:
-  void begin(std::uint8_t kind, std::string_view behavior);
-  bool push(const Line& line);
-  bool push();  // line_, with its size
+  bool push(const auto& told);
 
   BehaviorLink& link_;
   ByteWriter line_;

@@ -30,7 +30,7 @@ T copy_of(const T& shared) noexcept {
 
 // Whether a line of the process is a message, and neither a transition nor another event of the run.
 bool is_said(std::span<const std::byte> line) noexcept {
-  return !line.empty() && std::to_integer<std::uint8_t>(line.front()) < transition_line;
+  return !line.empty() && line.front() == std::byte(Event::Kind::message);
 }
 
 bool is_name(std::string_view name) noexcept {
@@ -132,30 +132,10 @@ bool ChildAnswer::tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t 
 }
 
 bool ChildAnswer::tell_line(std::span<const std::byte> line, BehaviorLog& log, std::int64_t time_ns) {
-  ByteReader fields(line);
-  const auto kind = fields.take<std::uint8_t>();
-  const std::string behavior = fields.take_string();
-  if (kind == transition_line) {
-    const Transition transition{time_ns, behavior, fields.take_string(), fields.take_string(), fields.take_string()};
-    if (fields.ok()) log.transition(transition);
-  } else if (kind == emitted_line) {
-    const EmittedEvent event = take_event(fields, time_ns);
-    if (fields.ok()) log.emitted(event);
-  } else if (kind == active_line) {
-    std::array<std::string_view, ActiveStates::told_max> states;
-    const auto count = fields.take<std::uint32_t>();
-    if (count > states.size()) return false;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const auto path = fields.take_bytes(fields.take<std::uint32_t>());
-      states[i] = {reinterpret_cast<const char*>(path.data()), path.size()};
-    }
-    if (fields.ok()) log.active({time_ns, behavior, std::span(states).first(count)});
-  } else {
-    const std::string text = fields.take_string();
-    if (kind > static_cast<std::uint8_t>(BehaviorLog::Severity::error)) return false;
-    if (fields.ok()) log.message(time_ns, static_cast<BehaviorLog::Severity>(kind), behavior, text);
-  }
-  return fields.ok() && fields.left() == 0;
+  ByteReader told(line);
+  if (!take_told(told, time_ns, event_)) return false;
+  event_.say_to(log);
+  return true;
 }
 
 void ChildAnswer::copy(std::span<const std::byte> shared) {
