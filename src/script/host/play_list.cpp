@@ -2,6 +2,8 @@
 
 #include <iterator>
 
+#include "signal/byte_order.h"
+
 namespace kadans {
 
 void PlayStatus::declare(SignalTable& signals) const {
@@ -46,14 +48,14 @@ void PlayList::end_all() noexcept {
   for (Entry& entry : entries_) entry.over = true;
 }
 
-void PlayList::count(std::uint32_t done, std::uint32_t not_done) noexcept {
-  status_.done.store(done, std::memory_order_relaxed);
-  status_.not_done.store(not_done, std::memory_order_relaxed);
+void PlayList::keep_counts(ByteWriter& bytes) const {
+  for (const auto* count : {&status_.done, &status_.not_done, &status_.events, &status_.events_refused})
+    bytes.put(count->load(std::memory_order_relaxed));
 }
 
-void PlayList::count_events(std::uint32_t taken, std::uint32_t refused) noexcept {
-  status_.events.store(taken, std::memory_order_relaxed);
-  status_.events_refused.store(refused, std::memory_order_relaxed);
+void PlayList::restore_counts(ByteReader& bytes) noexcept {
+  for (auto* count : {&status_.done, &status_.not_done, &status_.events, &status_.events_refused})
+    count->store(bytes.take<std::uint32_t>(), std::memory_order_relaxed);
 }
 
 void PlayList::publish(bool paused) noexcept {

@@ -49,11 +49,12 @@ class PlayList {
   void end(Entry& entry) noexcept;
   void end_all() noexcept;
 
-  void count(std::uint32_t done, std::uint32_t not_done) noexcept;  // sets the counts of an earlier process
   void count_event(bool taken) noexcept {
     (taken ? status_.events : status_.events_refused).fetch_add(1, std::memory_order_relaxed);
   }
-  void count_events(std::uint32_t taken, std::uint32_t refused) noexcept;  // as count()
+  // For another process: what has ended so far, and the events.
+  void keep_counts(ByteWriter& bytes) const;
+  void restore_counts(ByteReader& bytes) noexcept;
 
   bool over() const noexcept {
     return std::all_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.over; });

@@ -423,10 +423,7 @@ std::string ScriptHost::keep(ByteWriter& bytes, std::int64_t time_ns) {
     bytes.put<std::uint8_t>(entry.lasting);
   }
   bytes.put(static_cast<std::uint32_t>(events_done_));
-  bytes.put(list_.status().done.load(std::memory_order_relaxed));
-  bytes.put(list_.status().not_done.load(std::memory_order_relaxed));
-  bytes.put(list_.status().events.load(std::memory_order_relaxed));
-  bytes.put(list_.status().events_refused.load(std::memory_order_relaxed));
+  list_.keep_counts(bytes);
   pause_.keep(bytes, time_ns);
   safe_.keep(bytes);
   delivery_.keep(bytes);
@@ -460,10 +457,7 @@ void ScriptHost::go_on(const Snapshot& snapshot, CommandSender& commands) noexce
   ByteReader bytes(settings_.kept);
   settings_.kept = {};
   events_done_ = std::min<std::size_t>(bytes.take<std::uint32_t>(), events_.size());
-  const auto done = bytes.take<std::uint32_t>();
-  list_.count(done, bytes.take<std::uint32_t>());
-  const auto taken = bytes.take<std::uint32_t>();
-  list_.count_events(taken, bytes.take<std::uint32_t>());
+  list_.restore_counts(bytes);
   pause_.restore(bytes);
   safe_.restore(bytes);
   delivery_.restore(bytes);
