@@ -8,6 +8,7 @@
 #include "config/json/problems.h"
 #include "config/scenario/event_text.h"
 #include "signal/byte_order.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 
@@ -20,7 +21,7 @@ std::string shortened(std::string text) {
   constexpr std::size_t told = 200;
   if (text.size() <= told) return text;
   std::size_t end = told;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;  // not inside a character
+  while (end > 0 && inside_character(text[end])) --end;
   return text.substr(0, end) + "...";
 }
 

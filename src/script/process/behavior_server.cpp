@@ -44,8 +44,7 @@ BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ServedHost& h
       commands_(link.commands) {
   link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
-    const std::string& name = host_.behavior(i).name();
-    std::copy_n(name.begin(), std::min(name.size(), BehaviorLink::name_bytes - 1), link_.ready.names[i].begin());
+    put_text(link_.ready.names[i], host_.behavior(i).name());
     const std::vector<std::string>& regions = host_.behavior(i).status().region_paths;
     for (std::size_t r = 0; r < regions.size(); ++r) std::ranges::copy(regions[r], link_.ready.regions[i][r].begin());
   }
