@@ -10,8 +10,7 @@
 
 #include "config/scenario/play_item.h"
 #include "script/behavior/behavior_why.h"
-#include "script_event.h"
-#include "script_parameter.h"
+#include "script_declarations.h"
 
 namespace kadans {
 

@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "engine/behavior_inputs.h"
-#include "line_watch.h"
 #include "lua_core.h"
 #include "lua_state.h"
 #include "signal/monotonic_clock.h"

@@ -11,8 +11,7 @@
 #include "kadans/signal/random.h"
 #include "lua_heap.h"
 #include "script/bindings/snapshot_tables.h"
-#include "script/host/script_event.h"
-#include "script/host/script_parameter.h"
+#include "script/host/script_declarations.h"
 #include "script_error.h"
 
 namespace kadans {

@@ -7,7 +7,6 @@
 
 #include "engine/behavior_inputs.h"
 #include "kadans/signal/input_error.h"
-#include "line_watch.h"
 #include "lua_core.h"
 #include "script/check/source_lexer.h"
 #include "script/check/syntax_hint.h"
