@@ -220,7 +220,7 @@ bool BehaviorSide::begin(Pending& pending) {
     case Order::Kind::saved:
       tuning_.saved(order.changes);
       for (const ParameterChange& change : order.changes)
-        say(time_ns_, order.who, "saved " + change.name + " = " + number_text(change.now));
+        say(order.who, "saved " + change.name + " = " + number_text(change.now));
       return true;
     case Order::Kind::clear_faults:
       pending.lifts = lifts_;
@@ -230,7 +230,7 @@ bool BehaviorSide::begin(Pending& pending) {
     case Order::Kind::mark:
       if (order.text.size() > mark_bytes_max)
         throw InputError({.message = "a mark has at most " + std::to_string(mark_bytes_max) + " bytes"});
-      return say(time_ns_, order.who, "marks: " + order.text), true;
+      return say(order.who, "marks: " + order.text), true;
     case Order::Kind::enable_drives:
     case Order::Kind::disable_drives:
     case Order::Kind::reset_drives:
@@ -321,8 +321,7 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
   if (const DriveOrder asked = drive_order_of(order.kind); taken && asked != DriveOrder::none) {
     const std::string undone = undone_text(asked, pending.joints, snapshot.power, *p_.instance.catalog().model);
     if (!std::exchange(pending.logged, true))
-      say(time_ns_, order.who,
-          std::string("asks drives to ") + name(asked) + ": " + (order.text.empty() ? "all" : order.text));
+      say(order.who, std::string("asks drives to ") + name(asked) + ": " + (order.text.empty() ? "all" : order.text));
     answer.done = undone.empty();
     const bool given_up = !answer.done && time_ns - pending.asked_ns > drives_answer_in_ns;
     if (answer.done && asked == DriveOrder::home) answer.text = "asked; `kadans ctl drives` tells when they are homed";
@@ -345,14 +344,14 @@ void BehaviorSide::finish(Pending& pending) {
   const ParameterChange& change = pending.change;
   switch (order.kind) {
     case Order::Kind::switch_set:
-      return say(time_ns_, order.who, "switched to control set " + order.text);
+      return say(order.who, "switched to control set " + order.text);
     case Order::Kind::clear_faults:
-      return say(time_ns_, order.who, "cleared the faults");
+      return say(order.who, "cleared the faults");
     case Order::Kind::reset_odometry:
-      return say(time_ns_, order.who, "reset the odometry");
+      return say(order.who, "reset the odometry");
     case Order::Kind::set_point:
       if (time_ns_ - std::exchange(led_ns_, time_ns_) < led_again_ns) return;
-      return say(time_ns_, order.who, "set " + order.text);
+      return say(order.who, "set " + order.text);
     case Order::Kind::undo:
       tuning_.drop();
       break;
@@ -363,13 +362,12 @@ void BehaviorSide::finish(Pending& pending) {
       return;
   }
   answer.changes = {change};
-  say(time_ns_, order.who,
-      (order.kind == Order::Kind::undo ? "undid " : "set ") + change.name + ": " + number_text(change.before) + " -> " +
-          number_text(change.now));
+  say(order.who, (order.kind == Order::Kind::undo ? "undid " : "set ") + change.name + ": " +
+                     number_text(change.before) + " -> " + number_text(change.now));
 }
 
-void BehaviorSide::say(std::int64_t time_ns, const std::string& who, const std::string& what) {
-  p_.log.message(time_ns, BehaviorLog::Severity::info, "ctl", who.empty() ? what : who + " " + what);
+void BehaviorSide::say(const std::string& who, const std::string& what) {
+  p_.log.message(time_ns_, BehaviorLog::Severity::info, "ctl", who.empty() ? what : who + " " + what);
 }
 
 // Orders: what plays, control sets, parameters, consoles.
@@ -468,7 +466,7 @@ std::string BehaviorSide::told(const Pending& pending, bool& done) {
   }
   if (reload && text.empty()) return "no new version: the files are as they were loaded";
   if (!order.who.empty() && !reload && pending.given != PlayOrder::Kind::emit)
-    say(time_ns_, order.who, "asked for " + play_order_names[static_cast<std::size_t>(pending.given)]);
+    say(order.who, "asked for " + play_order_names[static_cast<std::size_t>(pending.given)]);
   return text;
 }
 
@@ -576,7 +574,7 @@ void BehaviorSide::evaluate(const Order& order, Answer& answer) {
   answer.incomplete = reply.incomplete;
   answer.writes = console.writes();
   answer.leaves = reply.quit;
-  if (console.writes()) say(time_ns_, order.who, "typed " + order.text);
+  if (console.writes()) say(order.who, "typed " + order.text);
 }
 
 }  // namespace kadans

@@ -108,7 +108,7 @@ class BehaviorSide final : public BesideTick {
   bool waits_for_tick(const Pending& pending) const noexcept;
   bool settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns);
   void finish(Pending& pending);
-  void say(std::int64_t time_ns, const std::string& who, const std::string& what);
+  void say(const std::string& who, const std::string& what);
 
   OrderTaker& orders() const noexcept { return p_.host != nullptr ? static_cast<OrderTaker&>(*p_.host) : *p_.process; }
   bool ask(Pending& pending, const BehaviorQuestion& question);

@@ -141,7 +141,7 @@ void read_tasks(lua_State* state, int index, const ObjectInfo& object, const cha
     double value = 0;
     if (!find_value(state, index, word, value)) continue;
     if (targets.count == targets.all.size()) luaL_error(state, "%s: too many targets at once", called);
-    targets.all[targets.count++] = {.id = id, .value = value, .from = {}};
+    targets.add(id, value);
   }
   if (targets.count == 0) luaL_error(state, "%s: there is no target in this table of tasks", called);
 }
