@@ -48,7 +48,7 @@ ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, Behavio
       log_(log),
       pause_(catalog),
       safe_(settings.safe, catalog),
-      delivery_(log, settings.inputs) {
+      delivery_(log, settings.inputs, list_, pause_) {
   settings_.limits.inputs = &inputs_;
   settings_.limits.watch = &line_watch_;
   std::vector<InputProblem> problems;
@@ -247,8 +247,7 @@ void ScriptHost::check_event(const PlayOrder& order) {
       std::ranges::count(orders_, PlayOrder::Kind::emit, [](const Due& due) { return due.order.kind; });
   std::string why = out_of_bounds(order.event.data);
   // What another process kept is in the list from the first tick on; the event is judged again when it is delivered.
-  if (why.empty() && settings_.kept.empty())
-    why = EventDelivery::refusal(order.event, order.behavior.name, list_, pause_.paused());
+  if (why.empty() && settings_.kept.empty()) why = delivery_.refusal(order.event, order.behavior.name);
   if (why.empty() && static_cast<std::size_t>(waiting) >= EventDelivery::ordered_max)
     why = std::to_string(EventDelivery::ordered_max) + " events wait for the next tick already";
   if (why.empty()) return;
@@ -258,8 +257,8 @@ void ScriptHost::check_event(const PlayOrder& order) {
 
 void ScriptHost::take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept {
   delivery_.begin_tick();
-  delivery_.deliver_sent(list_, snapshot);
-  delivery_.look_at_inputs(list_, snapshot, pause_.paused());
+  delivery_.deliver_sent(snapshot);
+  delivery_.look_at_inputs(snapshot);
   for (; events_done_ < events_.size() && events_[events_done_].at_ns <= snapshot.time_ns; ++events_done_) {
     carry_out(events_[events_done_], snapshot, commands);
   }
@@ -271,8 +270,7 @@ void ScriptHost::carry_out(Due& due, const Snapshot& snapshot, CommandSender& co
   using Kind = PlayOrder::Kind;
   const Kind kind = due.order.kind;
   if (kind == Kind::reload) return reload(due.order, snapshot, commands);
-  if (kind == Kind::emit)
-    return delivery_.deliver(due.order.event, due.order.behavior.name, list_, snapshot, pause_.paused());
+  if (kind == Kind::emit) return delivery_.deliver(due.order.event, due.order.behavior.name, snapshot);
   std::string text = play_order_names[static_cast<std::size_t>(kind)];
   for (const PlayList::Entry& entry : due.loaded) text += " " + entry.behavior->name();
   log_.message(snapshot.time_ns, BehaviorLog::Severity::info, "supervisor", text);
