@@ -76,7 +76,6 @@ class LiveHub {
   void beat();
   double rate_hz() const noexcept { return clients_.empty() ? idle_hz : beats_hz; }
 
-  const Instance& instance() const noexcept { return p_.instance; }
   const LiveChannels& channels() const noexcept { return channels_; }
   // The first message to a client: who the server is and what it offers. The text is shared by all clients.
   const std::string& introduction(bool writes);

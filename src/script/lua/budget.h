@@ -62,7 +62,6 @@ class Budget {
   // True when a limit was passed since begin(). The script is stopped even if it caught the error.
   bool breached() const noexcept { return error_.breach != ScriptBreach::none; }
   std::uint64_t left() const noexcept { return spent_ < limit_ ? limit_ - spent_ : 0; }
-  std::uint64_t limit() const noexcept { return limit_; }
   std::uint64_t spent() const noexcept { return spent_; }
 
   // Raises the breach again, if there is one. For functions that catch errors.
