@@ -17,21 +17,7 @@ using Json = nlohmann::ordered_json;
 
 Json vector_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-const char* kind_name(Chart::Kind kind) noexcept {
-  switch (kind) {
-    case Chart::Kind::state:
-      return "state";
-    case Chart::Kind::parallel:
-      return "parallel";
-    case Chart::Kind::region:
-      return "region";
-    case Chart::Kind::final_state:
-      return "final";
-    case Chart::Kind::history:
-      return "history";
-  }
-  return "";
-}
+constexpr const char* kind_names[] = {"state", "parallel", "region", "final", "history"};  // by Chart::Kind
 
 Json number_of(StateIndex state) { return state == no_state ? Json(nullptr) : Json(state); }
 
@@ -43,7 +29,7 @@ Json chart_of(const Behavior& behavior) {
   for (const Chart::State& state : chart.states) {
     states.push_back({{"name", state.name},
                       {"path", state.path},
-                      {"kind", kind_name(state.kind)},
+                      {"kind", kind_names[static_cast<std::size_t>(state.kind)]},
                       {"parent", number_of(state.parent)},
                       {"initial", number_of(state.initial)}});
     if (state.deep) states.back()["deep"] = true;

@@ -9,18 +9,6 @@
 namespace kadans {
 namespace {
 
-int foxglove_level(BehaviorLog::Severity severity) noexcept {
-  switch (severity) {
-    case BehaviorLog::Severity::info:
-      return 2;
-    case BehaviorLog::Severity::warning:
-      return 3;
-    case BehaviorLog::Severity::error:
-      return 4;
-  }
-  return 0;
-}
-
 void put_what(nlohmann::ordered_json& json, const ToldFault& fault) {
   if (!fault.joint.empty()) json["joint"] = fault.joint;
   json["value"] = fault.value;
@@ -98,7 +86,7 @@ std::string json_of(const Event& event) {
     json["behavior"] = transition.behavior;
     json["states"] = event.states;
   } else {
-    json["level"] = foxglove_level(event.severity);
+    json["level"] = static_cast<int>(event.severity) + 2;  // of log_schema: 2 INFO, 3 WARNING, 4 ERROR
     json["message"] = event.text;
     json["name"] = transition.behavior;
     json["file"] = "";
