@@ -77,7 +77,7 @@ int print(lua_State* state) {
   luaL_pushresult(&buffer);
   end_callback(state);
   ScriptVoice* voice = core.owner->settings().voice;
-  if (voice != nullptr) voice->say(lua_tostring(state, -1));
+  if (voice != nullptr) voice->say_with(BehaviorLog::Severity::info, lua_tostring(state, -1));
   return 0;
 }
 
