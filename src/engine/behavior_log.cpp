@@ -206,7 +206,8 @@ bool take_told(ByteReader& bytes, std::int64_t time_ns, Event& event) {
     for (std::string* text : {&event.transition.from, &event.transition.to, &event.transition.why})
       *text = bytes.take_string();
   } else if (event.kind == Event::Kind::emitted) {
-    EmittedEvent& emitted = event.emitted = {.time_ns = time_ns, .tick = bytes.take<std::uint64_t>()};
+    EmittedEvent& emitted = event.emitted;
+    emitted = {.time_ns = time_ns, .tick = bytes.take<std::uint64_t>()};
     emitted.ordered = bytes.take<std::uint8_t>() != 0;
     for (std::string* text : {&emitted.event, &emitted.data, &emitted.who}) *text = bytes.take_string();
   } else if (event.kind == Event::Kind::active) {
