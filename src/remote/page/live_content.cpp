@@ -39,10 +39,9 @@ void LiveChannel::put(std::uint64_t time_ns, std::span<const std::byte> payload)
 }
 
 LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
-    : catalog_(instance.catalog()),
-      topics_(signal_topics(catalog_.signals, Precision::full)),
+    : topics_(signal_topics(instance.catalog().signals, Precision::full)),
       subjects_(instance.facts().subjects),
-      viewers_(catalog_.signals, subjects_),
+      viewers_(instance.catalog().signals, subjects_),
       description_(texts.description) {
   for (const SignalTopic& topic : topics_) {
     signals_["signals" + topic.topic] = topic.description;

@@ -63,7 +63,6 @@ class LiveChannels {
   std::size_t add_json(const std::string& topic, const std::string& schema, const char* text, bool events);
   void put_json(std::size_t channel, std::int64_t time_ns, const std::string& json);
 
-  const Catalog& catalog_;
   std::vector<SignalTopic> topics_;  // the first channels
   std::vector<LiveChannel> channels_;
   std::map<std::string, std::string> signals_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "config/json/foreign_json.h"
 #include "live_client.h"
@@ -97,7 +98,7 @@ const std::string& LiveHub::introduction(bool writes) {
                            {"capabilities", {"parameters", "parametersSubscribe", "services", "assets"}},
                            {"supportedEncodings", nlohmann::ordered_json::array({"json"})},
                            {"metadata", metadata},
-                           {"sessionId", session_id()}});
+                           {"sessionId", std::to_string(getpid())}});
 }
 
 const std::string& LiveHub::advertisement() {
