@@ -58,4 +58,13 @@ class BehaviorInputs {
   std::uint32_t looks_ = 0;  // at the clock, since a tick began or ended or somebody asked
 };
 
+// Tells what was asked, as put(ByteWriter&) writes it; nullptr: to nobody, and nothing is written.
+template <typename Put>
+void tell_asked(BehaviorInputs* inputs, BehaviorInputs::Asked kind, Put put) {
+  if (inputs == nullptr) return;
+  ByteWriter bytes;
+  put(bytes);
+  inputs->asked(kind, bytes.bytes());
+}
+
 }  // namespace kadans

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
+#include "signal/byte_order.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -154,22 +155,79 @@ void BehaviorLog::active(const ActiveStates& active) {
   for (LineSink* sink : facts_) sink->tell_active(active);
 }
 
-void put_event(const EmittedEvent& event, ByteWriter& bytes) {
+namespace {
+
+void put_head(Event::Kind kind, std::string_view behavior, ByteWriter& bytes) {
+  bytes.put(static_cast<std::uint8_t>(kind));
+  bytes.put_string(behavior);
+}
+
+bool take_states(ByteReader& bytes, std::vector<std::string>& states) {
+  auto left = bytes.take<std::uint32_t>();
+  if (left > ActiveStates::told_max) return false;
+  for (; left > 0 && bytes.ok(); --left) states.push_back(bytes.take_string());
+  return true;
+}
+
+}  // namespace
+
+void put_told(const Line& line, ByteWriter& bytes) {
+  if (const Transition* t = line.transition) {
+    put_head(Event::Kind::transition, line.behavior, bytes);
+    for (const std::string* text : {&t->from, &t->to, &t->why}) bytes.put_string(*text);
+  } else {
+    put_head(Event::Kind::message, line.behavior, bytes);
+    bytes.put(static_cast<std::uint8_t>(line.severity));
+    bytes.put_string(line.text);
+  }
+}
+
+void put_told(const ActiveStates& active, ByteWriter& bytes) {
+  put_head(Event::Kind::active, active.behavior, bytes);
+  bytes.put(static_cast<std::uint32_t>(active.states.size()));
+  for (const std::string_view state : active.states) bytes.put_string(state);
+}
+
+void put_told(const EmittedEvent& event, ByteWriter& bytes) {
+  put_head(Event::Kind::emitted, "", bytes);
   bytes.put(event.tick);
   bytes.put<std::uint8_t>(event.ordered);
   for (const std::string* text : {&event.event, &event.data, &event.who}) bytes.put_string(*text);
 }
 
-EmittedEvent take_event(ByteReader& bytes, std::int64_t time_ns) {
-  EmittedEvent event{.time_ns = time_ns, .tick = bytes.take<std::uint64_t>()};
-  event.ordered = bytes.take<std::uint8_t>() != 0;
-  for (std::string* text : {&event.event, &event.data, &event.who}) *text = bytes.take_string();
-  return event;
+bool take_told(ByteReader& bytes, std::int64_t time_ns, Event& event) {
+  const auto kind = bytes.take<std::uint8_t>();
+  if (kind > static_cast<std::uint8_t>(Event::Kind::emitted)) return false;
+  event.kind = static_cast<Event::Kind>(kind);
+  event.transition = {.time_ns = time_ns, .behavior = bytes.take_string(), .from = {}, .to = {}, .why = {}};
+  event.text.clear();
+  event.states.clear();
+  if (event.kind == Event::Kind::transition) {
+    for (std::string* text : {&event.transition.from, &event.transition.to, &event.transition.why})
+      *text = bytes.take_string();
+  } else if (event.kind == Event::Kind::emitted) {
+    EmittedEvent& emitted = event.emitted;
+    emitted = {.time_ns = time_ns, .tick = bytes.take<std::uint64_t>()};
+    emitted.ordered = bytes.take<std::uint8_t>() != 0;
+    for (std::string* text : {&emitted.event, &emitted.data, &emitted.who}) *text = bytes.take_string();
+  } else if (event.kind == Event::Kind::active) {
+    if (!take_states(bytes, event.states)) return false;
+  } else {
+    const auto severity = bytes.take<std::uint8_t>();
+    if (severity > static_cast<std::uint8_t>(BehaviorLog::Severity::error)) return false;
+    event.severity = static_cast<BehaviorLog::Severity>(severity);
+    event.text = bytes.take_string();
+  }
+  return bytes.ok() && bytes.left() == 0;
 }
 
-void put_states(const ActiveStates& active, ByteWriter& bytes) {
-  bytes.put(static_cast<std::uint32_t>(active.states.size()));
-  for (const std::string_view state : active.states) bytes.put_string(state);
+void Event::say_to(BehaviorLog& log) const {
+  if (kind == Kind::active) {
+    const std::vector<std::string_view> paths(states.begin(), states.end());
+    return log.active({transition.time_ns, transition.behavior, paths});
+  }
+  if (kind == Kind::emitted) return log.emitted(emitted);
+  log.say(line());
 }
 
 void ActiveNow::take(const ActiveStates& told) {

@@ -43,9 +43,6 @@ struct EmittedEvent {
   std::string who{};
   bool ordered = false;  // given while the run went on: only the record knows of it
 };
-// An event as bytes, without its time.
-void put_event(const EmittedEvent& event, ByteWriter& bytes);
-EmittedEvent take_event(ByteReader& bytes, std::int64_t time_ns);
 
 // The innermost active states of a behavior: those of all its regions and of the behaviors that it calls, by path, in
 // document order. Told when they have changed, at the end of a tick; none: the behavior is over. Valid while it is
@@ -59,7 +56,6 @@ struct ActiveStates {
 
   std::vector<std::string> copies() const { return {states.begin(), states.end()}; }
 };
-void put_states(const ActiveStates& active, ByteWriter& bytes);  // their number, and their paths
 
 // What is active now: the states by behavior, of at most behaviors_max of them; none that is over.
 class ActiveNow {
@@ -122,6 +118,29 @@ class LineSink {
   virtual void tell_emitted(const EmittedEvent& event) { (void)event; }
   virtual void tell_active(const ActiveStates& active) { (void)active; }
 };
+
+// What a sink is told, kept on its way to another thread or process.
+struct Event {
+  enum class Kind : std::uint8_t { message, transition, active, emitted };
+  Kind kind = Kind::message;
+  Transition transition;  // all kinds use its time_ns and behavior
+  BehaviorLog::Severity severity = BehaviorLog::Severity::info;
+  std::string text;
+  std::vector<std::string> states;  // the active ones
+  EmittedEvent emitted{};
+
+  // Of a message or transition; valid as long as the event.
+  Line line() const noexcept {
+    return {transition.time_ns, severity, transition.behavior, text, kind == Kind::transition ? &transition : nullptr};
+  }
+  void say_to(BehaviorLog& log) const;
+};
+// As bytes, which begin with the kind, without the time.
+void put_told(const Line& line, ByteWriter& bytes);
+void put_told(const ActiveStates& active, ByteWriter& bytes);
+void put_told(const EmittedEvent& event, ByteWriter& bytes);
+// False: the bytes are damaged, or there are more.
+[[nodiscard]] bool take_told(ByteReader& bytes, std::int64_t time_ns, Event& event);
 
 // Text sinks write "     1.50 s  squat: on my way". They lock, so no real-time thread uses them.
 // When stderr is systemd's journal, each line of stderr_sink begins with its priority, "<4>".

@@ -13,6 +13,7 @@
 #include <sys/resource.h>
 
 #include "realtime/machine/placement.h"
+#include "signal/monotonic_clock.h"
 #include "signals_blocked.h"
 
 namespace kadans {
@@ -74,12 +75,6 @@ std::uint64_t faults_of_this_thread() noexcept {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);
   return static_cast<std::uint64_t>(usage.ru_minflt + usage.ru_majflt);
-}
-
-std::int64_t cpu_time_of(clockid_t clock) noexcept {
-  timespec used{};
-  if (clock_gettime(clock, &used) != 0) return 0;
-  return std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec;
 }
 
 }  // namespace
@@ -165,7 +160,7 @@ void TaskThread::run() noexcept {
     fail(error.what());
   }
   wait_.end();
-  cpu_time_at_end_ns_.store(cpu_time_of(CLOCK_THREAD_CPUTIME_ID), std::memory_order_relaxed);
+  cpu_time_at_end_ns_.store(thread_cpu_ns(), std::memory_order_relaxed);
   over_.store(true, std::memory_order_release);
 }
 
@@ -208,7 +203,7 @@ void TaskThread::fail(const char* why) noexcept { std::snprintf(failure_.data(),
 std::int64_t TaskThread::cpu_time_ns() const noexcept {
   if (over() || !joinable_) return cpu_time_at_end_ns_.load(std::memory_order_relaxed);
   clockid_t clock{};
-  return pthread_getcpuclockid(thread_, &clock) == 0 ? cpu_time_of(clock) : 0;
+  return pthread_getcpuclockid(thread_, &clock) == 0 ? clock_ns(clock) : 0;
 }
 
 }  // namespace kadans

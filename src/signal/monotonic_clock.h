@@ -1,4 +1,4 @@
-// The clock of this machine that nobody sets. Any thread.
+// The clock of this machine that nobody sets, and those that count a thread's own work. Any thread.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,15 @@
 
 namespace kadans {
 
-// CLOCK_MONOTONIC.
-inline std::int64_t monotonic_ns() noexcept {
+// 0: there is no such clock.
+inline std::int64_t clock_ns(clockid_t clock) noexcept {
   timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  if (clock_gettime(clock, &now) != 0) return 0;
   return std::int64_t{now.tv_sec} * ns_per_s + now.tv_nsec;
 }
+
+inline std::int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
+// The CPU time of this thread, without the time of other threads. It asks the kernel, which costs about 0.7 us.
+inline std::int64_t thread_cpu_ns() noexcept { return clock_ns(CLOCK_THREAD_CPUTIME_ID); }
 
 }  // namespace kadans

@@ -145,28 +145,19 @@ constexpr StatusField fields[] = {
 }  // namespace
 
 double StatusReference::value() const noexcept {
-  if (number_ != nullptr) return *number_;
-  if (flag_ != nullptr) return *flag_ ? 1 : 0;
-  if (choice_ != nullptr) return *choice_;
-  if (count_ != nullptr) return *count_;
-  if (code_ != nullptr) return static_cast<double>(*code_);
-  return static_cast<double>(*tick_);
+  return std::visit([](const auto* at) { return static_cast<double>(*at); }, at_);
 }
 
 void StatusReference::set(double value) const noexcept {
-  if (number_ != nullptr) *number_ = value;
-  if (flag_ != nullptr) *flag_ = value != 0;
-  if (choice_ != nullptr) *choice_ = static_cast<std::uint8_t>(value);
-  if (count_ != nullptr) *count_ = static_cast<std::uint32_t>(value);
-  if (code_ != nullptr) *code_ = static_cast<FaultCode>(value);
-  if (tick_ != nullptr) *tick_ = static_cast<std::uint64_t>(value);
+  std::visit([value]<typename T>(T* at) { *at = static_cast<T>(value); }, at_);
 }
 
 void StatusReference::declare(SignalTable& table, Signal signal) const {
-  if (number_ != nullptr) table.add(std::move(signal), number_);
-  if (flag_ != nullptr) table.add(std::move(signal), flag_);
-  if (choice_ != nullptr) table.add(std::move(signal), choice_);
-  if (count_ != nullptr) table.add(std::move(signal), count_);
+  std::visit(
+      [&](const auto* at) {
+        if constexpr (requires { table.add(std::move(signal), at); }) table.add(std::move(signal), at);
+      },
+      at_);
 }
 
 std::span<const StatusField> status_fields() noexcept { return fields; }

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "kadans/signal/seen_info.h"
@@ -18,28 +20,20 @@ namespace kadans {
 // A reference to a field of one of a few types, which reads and writes it as a number.
 class StatusReference {
  public:
-  StatusReference(double& at) noexcept : number_(&at) {}  // NOLINT(google-explicit-constructor): a field's own type
-  StatusReference(bool& at) noexcept : flag_(&at) {}      // NOLINT(google-explicit-constructor)
+  template <typename T>
+  StatusReference(T& at) noexcept : at_(&at) {}  // NOLINT(google-explicit-constructor): a field's own type
   template <typename Choice>
-  requires(sizeof(Choice) == 1) StatusReference(Choice& at)
+  requires(std::is_enum_v<Choice> && sizeof(Choice) == 1) StatusReference(Choice& at)
   noexcept  // NOLINT(google-explicit-constructor)
-      : choice_(reinterpret_cast<std::uint8_t*>(&at)) {}
-  StatusReference(std::uint32_t& at) noexcept : count_(&at) {}  // NOLINT(google-explicit-constructor)
-  StatusReference(FaultCode& at) noexcept : code_(&at) {}       // NOLINT(google-explicit-constructor)
-  StatusReference(std::uint64_t& at) noexcept : tick_(&at) {}   // NOLINT(google-explicit-constructor)
+      : at_(reinterpret_cast<std::uint8_t*>(&at)) {}
 
   double value() const noexcept;
   void set(double value) const noexcept;  // within the field's range
-  // Declares a signal that gathers it. For numbers, flags and counts only.
+  // Declares a signal that gathers it. For numbers, flags, choices and counts only.
   void declare(SignalTable& table, Signal signal) const;
 
  private:
-  double* number_ = nullptr;
-  bool* flag_ = nullptr;
-  std::uint8_t* choice_ = nullptr;
-  std::uint32_t* count_ = nullptr;
-  FaultCode* code_ = nullptr;
-  std::uint64_t* tick_ = nullptr;
+  std::variant<double*, bool*, std::uint8_t*, std::uint32_t*, FaultCode*, std::uint64_t*> at_;
 };
 
 struct StatusField {

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "kadans/signal/nearest_name.h"
 #include "kadans/signal/parameter.h"
 #include "kadans/signal/setpoint.h"
 #include "kadans/signal/signal.h"
@@ -17,6 +18,14 @@ namespace {
 template <std::size_t length>
 void copy_runs(const auto& runs, std::span<double> row) noexcept {
   for (const auto& [id, first] : runs) std::memcpy(&row[id], first, length * sizeof(double));
+}
+
+// The number of this name or key; nothing where there is none.
+template <typename Ids, typename Key>
+std::optional<std::uint32_t> found_in(const Ids& ids, const Key& key) {
+  const auto found = ids.find(key);
+  if (found == ids.end()) return std::nullopt;
+  return found->second;
 }
 
 }  // namespace
@@ -45,9 +54,7 @@ bool ParameterTable::set(ParameterId id, double value) noexcept {
 }
 
 std::optional<ParameterId> ParameterTable::find(std::string_view name) const {
-  const auto found = ids_.find(std::string(name));
-  if (found == ids_.end()) return std::nullopt;
-  return found->second;
+  return found_in(ids_, std::string(name));
 }
 
 std::vector<std::string> ParameterTable::names() const {
@@ -67,18 +74,9 @@ SetpointId SetpointTable::add(Setpoint setpoint) {
   return id;
 }
 
-std::optional<SetpointId> SetpointTable::find(std::string_view name) const {
-  const auto found = ids_.find(std::string(name));
-  if (found == ids_.end()) return std::nullopt;
-  return found->second;
-}
+std::optional<SetpointId> SetpointTable::find(std::string_view name) const { return found_in(ids_, std::string(name)); }
 
-std::vector<std::string> SetpointTable::names() const {
-  std::vector<std::string> all;
-  all.reserve(entries_.size());
-  for (const Setpoint& setpoint : entries_) all.push_back(setpoint.name);
-  return all;
-}
+std::vector<std::string> SetpointTable::names() const { return names_of(entries_); }
 
 SignalId SignalTable::add_info(Signal signal) {
   const auto id = static_cast<SignalId>(infos_.size());
@@ -110,32 +108,26 @@ SignalId SignalTable::add(Signal signal, const double* source) {
   return id;
 }
 
-SignalId SignalTable::add(Signal signal, const bool* source) {
+template <typename T>
+SignalId SignalTable::add_to(std::vector<Source<T>>& sources, Signal signal, const T* source) {
   const SignalId id = add_info(std::move(signal));
-  bools_.push_back({id, source});
+  sources.push_back({id, source});
   sources_.emplace_back(source);
   return id;
 }
 
+SignalId SignalTable::add(Signal signal, const bool* source) { return add_to(bools_, std::move(signal), source); }
+
 SignalId SignalTable::add(Signal signal, const std::uint8_t* source) {
-  const SignalId id = add_info(std::move(signal));
-  choices_.push_back({id, source});
-  sources_.emplace_back(source);
-  return id;
+  return add_to(choices_, std::move(signal), source);
 }
 
 SignalId SignalTable::add(Signal signal, const std::uint32_t* source) {
-  const SignalId id = add_info(std::move(signal));
-  counts_.push_back({id, source});
-  sources_.emplace_back(source);
-  return id;
+  return add_to(counts_, std::move(signal), source);
 }
 
 SignalId SignalTable::add(Signal signal, const std::atomic<std::uint32_t>* source) {
-  const SignalId id = add_info(std::move(signal));
-  shared_.push_back({id, source});
-  sources_.emplace_back(source);
-  return id;
+  return add_to(shared_, std::move(signal), source);
 }
 
 void SignalTable::read_from(SignalId id, const double* source) {
@@ -178,23 +170,10 @@ double SignalTable::read(SignalId id) const noexcept {
   return std::visit(number, sources_[id]);
 }
 
-std::optional<SignalId> SignalTable::find(std::string_view name) const {
-  const auto found = ids_.find(std::string(name));
-  if (found == ids_.end()) return std::nullopt;
-  return found->second;
-}
+std::optional<SignalId> SignalTable::find(std::string_view name) const { return found_in(ids_, std::string(name)); }
 
-std::optional<SignalId> SignalTable::find_key(std::int64_t key) const noexcept {
-  const auto found = keys_.find(key);
-  if (found == keys_.end()) return std::nullopt;
-  return found->second;
-}
+std::optional<SignalId> SignalTable::find_key(std::int64_t key) const noexcept { return found_in(keys_, key); }
 
-std::vector<std::string> SignalTable::names() const {
-  std::vector<std::string> all;
-  all.reserve(infos_.size());
-  for (const Signal& signal : infos_) all.push_back(signal.name);
-  return all;
-}
+std::vector<std::string> SignalTable::names() const { return names_of(infos_); }
 
 }  // namespace kadans

@@ -124,7 +124,6 @@ TEST_CASE("messages that are repeated, overtaken, of a stranger or wrong are not
   wrong("}}", "},\"more\":1}");
   wrong("}}", "}");
   CHECK(pair.hear(std::string(message_bytes_max + 1, ' '), 0) == Answer::wrong);
-  CHECK(pair.blue.count(Answer::wrong) == 12);
 }
 
 TEST_CASE("a robot that starts again is heard again, although its numbers begin at 1") {
@@ -189,6 +188,7 @@ TEST_CASE("the simulated network delays, loses and repeats as its seed says, and
   const auto heard = [&](std::uint64_t seed) {
     SimulatedNetwork network(settings, 3, seed);
     std::vector<std::string> all;
+    int others = 0;
     std::string_view datagram;
     std::int64_t came_ns = 0;
     for (int i = 0; i < 300; ++i) {
@@ -197,11 +197,10 @@ TEST_CASE("the simulated network delays, loses and repeats as its seed says, and
       CHECK_FALSE(network.port(1).receive(now_ns + 19 * ms_ns, datagram, came_ns));
       while (network.port(1).receive(now_ns + 30 * ms_ns, datagram, came_ns)) all.emplace_back(datagram);
       CHECK_FALSE(network.port(0).receive(now_ns + second_ns, datagram, came_ns));
-      while (network.port(2).receive(now_ns + 30 * ms_ns, datagram, came_ns)) {
-      }
+      while (network.port(2).receive(now_ns + 30 * ms_ns, datagram, came_ns)) ++others;
     }
-    CHECK(network.sent() == 600);
-    CHECK(static_cast<double>(network.lost()) == doctest::Approx(180).epsilon(0.2));
+    const double lost = 600 - static_cast<double>(all.size()) - others;
+    CHECK(lost == doctest::Approx(180).epsilon(0.2));
     return all;
   };
   CHECK(heard(1) == heard(1));

@@ -68,6 +68,9 @@ class SignalTable {
     SignalId id;
     const T* value;
   };
+  template <typename T>
+  SignalId add_to(std::vector<Source<T>>& sources, Signal signal, const T* source);
+
   // The source of a signal, whatever its type.
   using AnySource = std::variant<const double*, const bool*, const std::uint8_t*, const std::uint32_t*,
                                  const std::atomic<std::uint32_t>*>;

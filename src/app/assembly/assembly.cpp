@@ -7,6 +7,7 @@
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
 #include "kadans/signal/nearest_name.h"
+#include "remote/instance/run_description.h"
 
 namespace kadans {
 namespace {
@@ -111,6 +112,7 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
   settings.safe = safe_posture_of(robot.safe);
   if (scenario.on_wall_clock) settings.limits = limits_on_wall_clock(robot.engine);
   settings.kept = kept;
+  settings.describe = behaviors_description;
   auto host = std::make_unique<ScriptHost>(settings, catalog, log);
   verify_events(scenario, *host);
   return host;

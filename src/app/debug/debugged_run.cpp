@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
-#include <ctime>
 
 #include <sys/time.h>
 #include <unistd.h>
@@ -11,6 +10,7 @@
 #include "open_files.h"
 #include "realtime/machine/child_process.h"
 #include "script/behavior/behavior.h"
+#include "signal/monotonic_clock.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -20,12 +20,6 @@ constexpr std::int64_t work_between_copies_ns = 20'000'000;  // so that any mome
 constexpr std::uint64_t polled_ticks = 8;
 constexpr int look_s = 2, condition_s = 1;
 constexpr int lines_max = 1'000'000;
-
-std::int64_t processor_ns() noexcept {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
 
 // Ends this process when it has worked so long; 0: does not.
 void end_after(int seconds) noexcept {
@@ -345,7 +339,7 @@ void DebuggedRun::go(const Json& order) {
   inspections_.clear();
   reloads_ = order.value("reload", false);
   if (now_.point == 0) reload();
-  copied_ns_ = processor_ns();
+  copied_ns_ = thread_cpu_ns();
 }
 
 void DebuggedRun::take_breaks(const Json& breaks) {
@@ -390,9 +384,9 @@ void DebuggedRun::hear_orders() {
 void DebuggedRun::leave_copy() {
   const auto near = 2 * static_cast<std::uint64_t>(assembly_.robot().engine.behavior_divisor());
   const bool approaches = goal_.quiet && goal_.until && goal_.until->tick == now_.tick + near;
-  if (!approaches && (now_.tick % polled_ticks != 0 || processor_ns() - copied_ns_ < work_between_copies_ns)) return;
+  if (!approaches && (now_.tick % polled_ticks != 0 || thread_cpu_ns() - copied_ns_ < work_between_copies_ns)) return;
   if (split({{"event", "copy"}})) return serve();
-  copied_ns_ = processor_ns();
+  copied_ns_ = thread_cpu_ns();
 }
 
 // Makes a copy of this process, and gives it to the debugger. True in the copy.

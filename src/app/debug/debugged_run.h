@@ -20,7 +20,7 @@
 #include "scenario/run.h"
 #include "script/bindings/signal_expressions.h"
 #include "script/debug/inspection.h"
-#include "script/lua/line_watch.h"
+#include "script/lua/budget.h"
 
 namespace kadans {
 

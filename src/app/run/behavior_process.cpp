@@ -10,7 +10,6 @@
 #include "kadans/signal/nearest_name.h"
 #include "realtime/machine/machine.h"
 #include "realtime/machine/placement.h"
-#include "remote/instance/run_description.h"
 #include "run_threads.h"
 #include "script/process/behavior_server.h"
 #include "telemetry/record/recorded_inputs.h"
@@ -128,9 +127,8 @@ int run_behavior_process(const RunOptions& options) {
   }
   const std::unique_ptr<ScriptHost> host =
       make_script_host(scenario, robot.config, system->catalog, scenario.seed, log, bytes);
-  ServedBehaviors served(*host, behaviors_description);
   settle(link.setup);
-  return BehaviorServer(link, bell, served, log, lines, system->catalog, sets).serve();
+  return BehaviorServer(link, bell, *host, log, lines, system->catalog, sets).serve();
 }
 
 }  // namespace kadans

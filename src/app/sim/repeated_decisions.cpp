@@ -7,7 +7,7 @@
 
 #include "config/scenario/event_text.h"
 #include "engine/tick/seen_entries.h"
-#include "script/host/play_list.h"
+#include "script/host/behavior_tables.h"
 #include "signal/byte_order.h"
 #include "signal/number_text.h"
 #include "telemetry/record/input_stream.h"

@@ -8,7 +8,7 @@
 
 #include "app/run/behavior_process.h"
 #include "kadans/signal/input_error.h"
-#include "script/host/play_list.h"
+#include "script/host/behavior_tables.h"
 #include "signal/number_text.h"
 
 namespace kadans {

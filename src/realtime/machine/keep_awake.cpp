@@ -1,6 +1,5 @@
 #include "keep_awake.h"
 
-#include <ctime>
 #include <system_error>
 
 #include <fcntl.h>
@@ -9,6 +8,7 @@
 
 #include "realtime/signals_blocked.h"
 #include "realtime/wait.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans {
 
@@ -54,9 +54,7 @@ void* KeepAwake::spin(void* self) {
 
 std::int64_t KeepAwake::cpu_time_ns() const noexcept {
   clockid_t clock{};
-  timespec used{};
-  if (pthread_getcpuclockid(thread_, &clock) != 0 || clock_gettime(clock, &used) != 0) return 0;
-  return std::int64_t{used.tv_sec} * 1'000'000'000 + used.tv_nsec;
+  return pthread_getcpuclockid(thread_, &clock) == 0 ? clock_ns(clock) : 0;
 }
 
 }  // namespace kadans

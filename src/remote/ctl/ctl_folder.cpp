@@ -56,14 +56,21 @@ fs::path of_user() {
   fail(path, what + ": " + std::generic_category().message(errno));
 }
 
-sockaddr_un address_of(const fs::path& path) {
+// Nothing where the path is too long.
+std::optional<sockaddr_un> address_of(const fs::path& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string text = path.string();
-  if (text.size() >= sizeof address.sun_path)
-    fail(path, "the path of a socket has at most " + std::to_string(sizeof address.sun_path - 1) + " characters");
+  if (text.size() >= sizeof address.sun_path) return std::nullopt;
   std::memcpy(address.sun_path, text.c_str(), text.size() + 1);
   return address;
+}
+
+// A folder of this user's or the system's.
+bool is_own(const fs::path& folder) {
+  struct stat found {};
+  return lstat(folder.c_str(), &found) == 0 && S_ISDIR(found.st_mode) &&
+         (found.st_uid == getuid() || found.st_uid == 0);
 }
 
 gid_t group_named(const std::string& name) {
@@ -88,14 +95,14 @@ std::vector<fs::path> ctl_folders_for_clients() {
 }
 
 CtlSockets::CtlSockets(const Settings& settings) : folder_(fs::absolute(settings.folder).lexically_normal()) {
-  (void)address_of(folder_ / name(Role::develop));
+  const fs::path longest = folder_ / name(Role::develop);
+  if (!address_of(longest))
+    fail(longest,
+         "the path of a socket has at most " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
   std::error_code failed;
   fs::create_directories(folder_, failed);
   if (failed) fail(folder_, "cannot be made: " + failed.message());
-  struct stat found {};
-  const bool folder = lstat(folder_.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
-  if (!folder || (found.st_uid != getuid() && found.st_uid != 0))
-    fail(folder_, "is no folder of this user's or the system's, so no sockets are made in it");
+  if (!is_own(folder_)) fail(folder_, "is no folder of this user's or the system's, so no sockets are made in it");
   try {
     lock();
     listen_as(Role::read, settings.operators);
@@ -127,7 +134,7 @@ void CtlSockets::lock() {
 // Nobody can connect before the socket has its owner and mode.
 void CtlSockets::listen_as(Role role, const std::string& group) {
   const fs::path path = folder_ / name(role);
-  const sockaddr_un address = address_of(path);
+  const sockaddr_un address = address_of(path).value();
   int& socket = listeners_[static_cast<std::size_t>(role)];
   socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (socket < 0) fail_as_system(path, "no socket");
@@ -155,8 +162,6 @@ void CtlSockets::close_all() noexcept {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 // "user root and group kadans"
 std::string owners(const fs::path& path) {
   struct stat found {};
@@ -169,12 +174,7 @@ std::string owners(const fs::path& path) {
 }
 
 // In /tmp anybody can make a folder with our name.
-bool trusted(const fs::path& folder) {
-  if (folder.parent_path() != "/tmp") return true;
-  struct stat found {};
-  return lstat(folder.c_str(), &found) == 0 && S_ISDIR(found.st_mode) &&
-         (found.st_uid == getuid() || found.st_uid == 0);
-}
+bool trusted(const fs::path& folder) { return folder.parent_path() != "/tmp" || is_own(folder); }
 
 }  // namespace
 
@@ -210,19 +210,16 @@ CtlLink::~CtlLink() {
 }
 
 bool CtlLink::connect_to(const fs::path& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  const std::string text = path.string();
-  if (text.size() >= sizeof address.sun_path) return false;
-  std::memcpy(address.sun_path, text.c_str(), text.size() + 1);
+  const std::optional<sockaddr_un> address = address_of(path);
+  if (!address) return false;
   const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (socket < 0) throw std::system_error(errno, std::generic_category(), "socket");
-  if (connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
+  if (connect(socket, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0) {
     socket_ = socket;
     return true;
   }
-  if (errno == EACCES && denied_.empty()) denied_ = text;
-  if (errno == ECONNREFUSED && stale_.empty()) stale_ = text;
+  if (errno == EACCES && denied_.empty()) denied_ = path.string();
+  if (errno == ECONNREFUSED && stale_.empty()) stale_ = path.string();
   close(socket);
   return false;
 }

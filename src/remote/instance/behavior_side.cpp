@@ -15,7 +15,6 @@
 #include "config/scenario/event_text.h"
 #include "engine/refusal_text.h"
 #include "kadans/signal/nearest_name.h"
-#include "run_description.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -83,24 +82,24 @@ bool names_transaction(const Snapshot& snapshot, std::uint32_t sequence, Refusal
 void BehaviorSide::beside_tick(std::int64_t time_ns) {
   time_ns_ = time_ns;
   heed_stop();
-  settle(time_ns);
-  settle_decisions(time_ns);
+  settle();
+  settle_decisions();
   for (const auto& port : p_.instance.ports()) {
     for (std::size_t left = orders_in_tick; left > 0; --left) {  // whoever asks again at once waits for the next tick
       std::unique_ptr<OrderCase> order = port->behaviors_.take();
       if (order == nullptr) break;
-      carry_out(std::move(order), port->behaviors_, time_ns);
+      carry_out(std::move(order), port->behaviors_);
     }
   }
   if (next_ != nullptr) next_->beside_tick(time_ns);
 }
 
-void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns) {
+void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from) {
   if (concerns_decisions(order->order) && !order->order.text.empty()) {
     order->answer.done = true;
-    return ask_decisions(std::move(order), from, time_ns);
+    return ask_decisions(std::move(order), from);
   }
-  Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns, .asked_tick = p_.engine.ticks()};
+  Pending pending{.order = std::move(order), .from = &from, .asked_ns = time_ns_, .asked_tick = p_.engine.ticks()};
   Answer& answer = pending.order->answer;
   try {
     if (!begin(pending)) return pending_.push_back(std::move(pending));
@@ -108,7 +107,7 @@ void BehaviorSide::carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from,
   } catch (const std::exception& error) {
     answer.text = error.what();
   }
-  this->answer(std::move(pending.order), from, time_ns);
+  this->answer(std::move(pending.order), from);
 }
 
 // Those that name what decides, or nobody.
@@ -118,19 +117,19 @@ bool BehaviorSide::concerns_decisions(const Order& order) const noexcept {
   return order.text.empty() || order.text == p_.decisions->name;
 }
 
-void BehaviorSide::answer(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns) {
+void BehaviorSide::answer(std::unique_ptr<OrderCase> order, OrderQueue& from) {
   const bool goes_on = order->answer.done || order->order.kind == Order::Kind::reload;
-  if (goes_on && concerns_decisions(order->order)) return ask_decisions(std::move(order), from, time_ns);
+  if (goes_on && concerns_decisions(order->order)) return ask_decisions(std::move(order), from);
   from.answer(std::move(order));
 }
 
-void BehaviorSide::ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns) {
+void BehaviorSide::ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& from) {
   const bool why = order->order.kind == Order::Kind::why;
   auto question = std::make_unique<DecisionQuestion>();
   question->number = ++decision_questions_;
   question->question.kind = why ? BehaviorQuestion::Kind::why : BehaviorQuestion::Kind::reload;
-  if (p_.decisions->ask(std::move(question))) {
-    asked_decisions_.push_back({std::move(order), &from, time_ns, decision_questions_});
+  if (p_.decisions->asked.try_push(std::move(question))) {
+    asked_decisions_.push_back({std::move(order), &from, time_ns_, decision_questions_});
     return;
   }
   order->answer.done = false;
@@ -138,9 +137,9 @@ void BehaviorSide::ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& f
   from.answer(std::move(order));
 }
 
-void BehaviorSide::settle_decisions(std::int64_t time_ns) {
+void BehaviorSide::settle_decisions() {
   if (p_.decisions == nullptr) return;
-  while (const auto replied = p_.decisions->reply()) {
+  while (const auto replied = p_.decisions->answered.try_pop()) {
     for (AskedDecisions& asked : asked_decisions_) {
       if (asked.number != replied->number) continue;
       Answer& answer = asked.order->answer;
@@ -157,7 +156,7 @@ void BehaviorSide::settle_decisions(std::int64_t time_ns) {
     std::erase_if(asked_decisions_, [](const AskedDecisions& asked) { return asked.order == nullptr; });
   }
   std::erase_if(asked_decisions_, [&](AskedDecisions& asked) {
-    if (time_ns - asked.asked_ns <= control_answers_in_ns) return false;
+    if (time_ns_ - asked.asked_ns <= control_answers_in_ns) return false;
     asked.order->answer.done = false;
     asked.order->answer.text +=
         (asked.order->answer.text.empty() ? "" : "\n") + std::string("the decisions did not answer within a second");
@@ -221,7 +220,7 @@ bool BehaviorSide::begin(Pending& pending) {
     case Order::Kind::saved:
       tuning_.saved(order.changes);
       for (const ParameterChange& change : order.changes)
-        say(time_ns_, order.who, "saved " + change.name + " = " + number_text(change.now));
+        say(order.who, "saved " + change.name + " = " + number_text(change.now));
       return true;
     case Order::Kind::clear_faults:
       pending.lifts = lifts_;
@@ -231,7 +230,7 @@ bool BehaviorSide::begin(Pending& pending) {
     case Order::Kind::mark:
       if (order.text.size() > mark_bytes_max)
         throw InputError({.message = "a mark has at most " + std::to_string(mark_bytes_max) + " bytes"});
-      return say(time_ns_, order.who, "marks: " + order.text), true;
+      return say(order.who, "marks: " + order.text), true;
     case Order::Kind::enable_drives:
     case Order::Kind::disable_drives:
     case Order::Kind::reset_drives:
@@ -268,25 +267,25 @@ bool BehaviorSide::waits_for_tick(const Pending& pending) const noexcept {
          p_.engine.ticks() == pending.asked_tick;
 }
 
-void BehaviorSide::settle(std::int64_t time_ns) {
+void BehaviorSide::settle() {
   if (pending_.empty()) return;
   for (Pending& pending : pending_) {
-    if (pending.asked != 0) hear(pending, time_ns);
+    if (pending.asked != 0) hear(pending);
   }
   const auto snapshot = p_.exchange.snapshot.read(0);
   const bool ticked = std::ranges::none_of(pending_, [this](const Pending& one) { return waits_for_tick(one); });
   if (ticked) lines_ = p_.echo.take();
   std::erase_if(pending_, [&](Pending& pending) {
-    if (!settled(pending, *snapshot, time_ns)) return false;
-    answer(std::move(pending.order), *pending.from, time_ns);
+    if (!settled(pending, *snapshot)) return false;
+    answer(std::move(pending.order), *pending.from);
     return true;
   });
 }
 
-bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns) {
+bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot) {
   const Order& order = pending.order->order;
   Answer& answer = pending.order->answer;
-  const bool late = time_ns - pending.asked_ns > control_answers_in_ns;
+  const bool late = time_ns_ - pending.asked_ns > control_answers_in_ns;
   if (order.kind == Order::Kind::line) {
     const auto row = p_.instance.console_row();
     if (row->values.empty() && !late) return false;
@@ -322,10 +321,9 @@ bool BehaviorSide::settled(Pending& pending, const Snapshot& snapshot, std::int6
   if (const DriveOrder asked = drive_order_of(order.kind); taken && asked != DriveOrder::none) {
     const std::string undone = undone_text(asked, pending.joints, snapshot.power, *p_.instance.catalog().model);
     if (!std::exchange(pending.logged, true))
-      say(time_ns_, order.who,
-          std::string("asks drives to ") + name(asked) + ": " + (order.text.empty() ? "all" : order.text));
+      say(order.who, std::string("asks drives to ") + name(asked) + ": " + (order.text.empty() ? "all" : order.text));
     answer.done = undone.empty();
-    const bool given_up = !answer.done && time_ns - pending.asked_ns > drives_answer_in_ns;
+    const bool given_up = !answer.done && time_ns_ - pending.asked_ns > drives_answer_in_ns;
     if (answer.done && asked == DriveOrder::home) answer.text = "asked; `kadans ctl drives` tells when they are homed";
     if (given_up) answer.text = undone + ", 5 s after it was asked to " + name(asked);
     return answer.done || given_up;
@@ -346,14 +344,14 @@ void BehaviorSide::finish(Pending& pending) {
   const ParameterChange& change = pending.change;
   switch (order.kind) {
     case Order::Kind::switch_set:
-      return say(time_ns_, order.who, "switched to control set " + order.text);
+      return say(order.who, "switched to control set " + order.text);
     case Order::Kind::clear_faults:
-      return say(time_ns_, order.who, "cleared the faults");
+      return say(order.who, "cleared the faults");
     case Order::Kind::reset_odometry:
-      return say(time_ns_, order.who, "reset the odometry");
+      return say(order.who, "reset the odometry");
     case Order::Kind::set_point:
       if (time_ns_ - std::exchange(led_ns_, time_ns_) < led_again_ns) return;
-      return say(time_ns_, order.who, "set " + order.text);
+      return say(order.who, "set " + order.text);
     case Order::Kind::undo:
       tuning_.drop();
       break;
@@ -364,13 +362,12 @@ void BehaviorSide::finish(Pending& pending) {
       return;
   }
   answer.changes = {change};
-  say(time_ns_, order.who,
-      (order.kind == Order::Kind::undo ? "undid " : "set ") + change.name + ": " + number_text(change.before) + " -> " +
-          number_text(change.now));
+  say(order.who, (order.kind == Order::Kind::undo ? "undid " : "set ") + change.name + ": " +
+                     number_text(change.before) + " -> " + number_text(change.now));
 }
 
-void BehaviorSide::say(std::int64_t time_ns, const std::string& who, const std::string& what) {
-  p_.log.message(time_ns, BehaviorLog::Severity::info, "ctl", who.empty() ? what : who + " " + what);
+void BehaviorSide::say(const std::string& who, const std::string& what) {
+  p_.log.message(time_ns_, BehaviorLog::Severity::info, "ctl", who.empty() ? what : who + " " + what);
 }
 
 // Orders: what plays, control sets, parameters, consoles.
@@ -392,7 +389,7 @@ bool BehaviorSide::ask(Pending& pending, const BehaviorQuestion& question) {
     return false;
   }
   const auto snapshot = p_.exchange.snapshot.read(0);
-  take(pending, p_.host->reply(question, *snapshot, behaviors_description));
+  take(pending, p_.host->reply(question, *snapshot));
   return true;
 }
 
@@ -413,9 +410,9 @@ void BehaviorSide::take(Pending& pending, BehaviorReply&& reply) {
 }
 
 // What the behaviors' process replies. One that is late is not waited for; a report then tells what it told last.
-void BehaviorSide::hear(Pending& pending, std::int64_t time_ns) {
+void BehaviorSide::hear(Pending& pending) {
   std::optional<BehaviorReply> reply = p_.process->reply(pending.asked);
-  if (!reply && time_ns - pending.asked_ns <= control_answers_in_ns) return;
+  if (!reply && time_ns_ - pending.asked_ns <= control_answers_in_ns) return;
   if (!reply) {
     p_.process->forget(pending.asked);
     reply = pending.order->order.kind == Order::Kind::report
@@ -469,7 +466,7 @@ std::string BehaviorSide::told(const Pending& pending, bool& done) {
   }
   if (reload && text.empty()) return "no new version: the files are as they were loaded";
   if (!order.who.empty() && !reload && pending.given != PlayOrder::Kind::emit)
-    say(time_ns_, order.who, "asked for " + play_order_names[static_cast<std::size_t>(pending.given)]);
+    say(order.who, "asked for " + play_order_names[static_cast<std::size_t>(pending.given)]);
   return text;
 }
 
@@ -577,7 +574,7 @@ void BehaviorSide::evaluate(const Order& order, Answer& answer) {
   answer.incomplete = reply.incomplete;
   answer.writes = console.writes();
   answer.leaves = reply.quit;
-  if (console.writes()) say(time_ns_, order.who, "typed " + order.text);
+  if (console.writes()) say(order.who, "typed " + order.text);
 }
 
 }  // namespace kadans

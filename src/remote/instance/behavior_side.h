@@ -97,24 +97,24 @@ class BehaviorSide final : public BesideTick {
     std::uint32_t number;
   };
 
-  void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
+  void carry_out(std::unique_ptr<OrderCase> order, OrderQueue& from);
   bool concerns_decisions(const Order& order) const noexcept;
-  void answer(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
-  void ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& from, std::int64_t time_ns);
-  void settle_decisions(std::int64_t time_ns);
+  void answer(std::unique_ptr<OrderCase> order, OrderQueue& from);
+  void ask_decisions(std::unique_ptr<OrderCase> order, OrderQueue& from);
+  void settle_decisions();
   bool begin(Pending& pending);
-  void settle(std::int64_t time_ns);
+  void settle();
   void heed_stop();
   bool waits_for_tick(const Pending& pending) const noexcept;
-  bool settled(Pending& pending, const Snapshot& snapshot, std::int64_t time_ns);
+  bool settled(Pending& pending, const Snapshot& snapshot);
   void finish(Pending& pending);
-  void say(std::int64_t time_ns, const std::string& who, const std::string& what);
+  void say(const std::string& who, const std::string& what);
 
   OrderTaker& orders() const noexcept { return p_.host != nullptr ? static_cast<OrderTaker&>(*p_.host) : *p_.process; }
   bool ask(Pending& pending, const BehaviorQuestion& question);
   bool ask_why(Pending& pending);
   static void take(Pending& pending, BehaviorReply&& reply);
-  void hear(Pending& pending, std::int64_t time_ns);
+  void hear(Pending& pending);
   void give(Pending& pending, PlayOrder::Kind kind);
   void set_parameter(Pending& pending, const std::string& name, double value);
   void send(Pending& pending, std::span<const Command> commands);

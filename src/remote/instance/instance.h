@@ -27,8 +27,10 @@
 #include "kadans/signal/status.h"
 #include "latest_row.h"
 #include "parameter_history.h"
-#include "remote/order/answer.h"
+#include "remote/order/order.h"
+#include "remote/order/order_queue.h"
 #include "safety/emergency_stop.h"
+#include "script/host/behavior_tables.h"
 #include "telemetry/record/event_log.h"
 #include "telemetry/record/viewer_messages.h"
 
@@ -56,6 +58,22 @@ struct InstanceStatus {
   SeenEntries seen;
 };
 InstanceStatus status_of(const Snapshot& snapshot, const RecordStatus& record) noexcept;
+
+struct Answer {
+  std::uint64_t number = 0;  // of the order
+  bool done = false;
+  std::string text;  // when not done: the reason; else a message
+  std::vector<BehaviorReport> behaviors{};
+  std::vector<BehaviorReasons> reasons{};
+  bool paused = false;
+  std::vector<ParameterChange> changes{};
+  std::vector<ParameterChange> set{};  // for the order `changes`: also those that are already saved
+  std::vector<std::string> words{};    // of a completion; they replace the text from `begin` on
+  std::size_t begin = 0;
+  bool incomplete = false, writes = false, leaves = false;  // of a console
+};
+using OrderCase = BasicOrderCase<Order, Answer>;
+using OrderQueue = BasicOrderQueue<OrderCase>;
 
 class InstancePort {
  public:

@@ -39,18 +39,6 @@ void ParameterHistory::saved(const std::vector<ParameterChange>& changes) {
   }
 }
 
-std::vector<ParameterChange> ParameterHistory::unsaved() const {
-  std::vector<ParameterChange> all;
-  for (const auto& [name, change] : unsaved_) all.push_back(change);
-  return all;
-}
-
-std::vector<ParameterChange> ParameterHistory::set() const {
-  std::vector<ParameterChange> all;
-  for (const auto& [name, change] : set_) all.push_back(change);
-  return all;
-}
-
 namespace {
 
 // The control object that a parameter belongs to, or nullptr.

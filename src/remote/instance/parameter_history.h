@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,15 +30,20 @@ class ParameterHistory {
   // Notes that these values are now saved in the configuration.
   void saved(const std::vector<ParameterChange>& changes);
   // The differences from the configuration, sorted by name.
-  std::vector<ParameterChange> unsaved() const;
+  std::vector<ParameterChange> unsaved() const { return listed(unsaved_); }
   // The differences from the values at the start, saved or not, sorted by name.
-  std::vector<ParameterChange> set() const;
+  std::vector<ParameterChange> set() const { return listed(set_); }
 
  private:
+  using Changes = std::map<std::string, ParameterChange>;
+  static std::vector<ParameterChange> listed(const Changes& changes) {
+    const auto all = std::views::values(changes);
+    return {all.begin(), all.end()};
+  }
   void move_on(const ParameterChange& change);
 
   std::vector<ParameterChange> steps_;
-  std::map<std::string, ParameterChange> unsaved_, set_;
+  Changes unsaved_, set_;
 };
 
 // The text of the robot's configuration as the instance read it, and the way to save tuned parameters into the file.

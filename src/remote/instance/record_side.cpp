@@ -214,13 +214,11 @@ void RecordSide::publish() {
       status.bytes = recorder_->file_bytes();
       status.dropped = recorder_->dropped();
     }
-    const std::size_t length = std::min(file_.size(), status.file.size() - 1);
-    std::copy_n(file_.begin(), length, status.file.begin());
+    put_text(status.file, file_);
   }
   if (recorder_ && recorder_->flight() != nullptr) {
-    const std::string& flight = recorder_->flight()->file();
     status.flights = recorder_->flight()->dumps();
-    std::copy_n(flight.begin(), std::min(flight.size(), status.flight.size() - 1), status.flight.begin());
+    put_text(status.flight, recorder_->flight()->file());
   }
   status_.publish(status);
 }

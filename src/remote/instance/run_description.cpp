@@ -17,21 +17,7 @@ using Json = nlohmann::ordered_json;
 
 Json vector_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-const char* kind_name(Chart::Kind kind) noexcept {
-  switch (kind) {
-    case Chart::Kind::state:
-      return "state";
-    case Chart::Kind::parallel:
-      return "parallel";
-    case Chart::Kind::region:
-      return "region";
-    case Chart::Kind::final_state:
-      return "final";
-    case Chart::Kind::history:
-      return "history";
-  }
-  return "";
-}
+constexpr const char* kind_names[] = {"state", "parallel", "region", "final", "history"};  // by Chart::Kind
 
 Json number_of(StateIndex state) { return state == no_state ? Json(nullptr) : Json(state); }
 
@@ -43,7 +29,7 @@ Json chart_of(const Behavior& behavior) {
   for (const Chart::State& state : chart.states) {
     states.push_back({{"name", state.name},
                       {"path", state.path},
-                      {"kind", kind_name(state.kind)},
+                      {"kind", kind_names[static_cast<std::size_t>(state.kind)]},
                       {"parent", number_of(state.parent)},
                       {"initial", number_of(state.initial)}});
     if (state.deep) states.back()["deep"] = true;
@@ -69,20 +55,18 @@ Json chart_of(const Behavior& behavior) {
   return {{"states", states}, {"transitions", transitions}};
 }
 
+// Of a behavior or of the table. An infinite range has no JSON number: null.
+Json parameter_of(const auto& p, double value) {
+  return {{"name", p.name},       {"unit", p.unit}, {"min", p.min}, {"max", p.max},
+          {"initial", p.initial}, {"value", value}, {"doc", p.doc}};
+}
+
 Json behaviors_of(const ScriptHost* host) {
   Json behaviors = Json::array();
   for (std::size_t i = 0; host != nullptr && i < host->size(); ++i) {
     const Behavior& behavior = host->behavior(i);
     Json parameters = Json::array();
-    for (const ScriptParameter& p : behavior.parameters()) {
-      parameters.push_back({{"name", p.name},
-                            {"unit", p.unit},
-                            {"min", p.min},
-                            {"max", p.max},
-                            {"initial", p.initial},
-                            {"value", p.value},
-                            {"doc", p.doc}});
-    }
+    for (const ScriptParameter& p : behavior.parameters()) parameters.push_back(parameter_of(p, p.value));
     Json events = Json::array();
     for (const ScriptEvent& event : behavior.events()) events.push_back(event_json(event));
     behaviors.push_back(
@@ -140,19 +124,10 @@ Json objects_of(const RobotConfig& robot, const Catalog& catalog) {
   return objects;
 }
 
-// An infinite range has no JSON number: null.
 Json parameters_of(const Catalog& catalog) {
   Json parameters = Json::array();
-  for (ParameterId id = 0; id < catalog.parameters.size(); ++id) {
-    const Parameter& p = catalog.parameters.info(id);
-    parameters.push_back({{"name", p.name},
-                          {"unit", p.unit},
-                          {"min", p.min},
-                          {"max", p.max},
-                          {"initial", p.initial},
-                          {"value", catalog.parameters.get(id)},
-                          {"doc", p.doc}});
-  }
+  for (ParameterId id = 0; id < catalog.parameters.size(); ++id)
+    parameters.push_back(parameter_of(catalog.parameters.info(id), catalog.parameters.get(id)));
   return parameters;
 }
 

@@ -240,32 +240,16 @@ using enum OrderArgument::Kind;
 std::string shown(const std::string& verb) { return "'" + verb.substr(0, 64) + "'"; }
 
 bool fits(const Json& value, OrderArgument::Kind kind) {
-  switch (kind) {
-    case text:
-      return value.is_string();
-    case number:
-      return value.is_number();
-    case flag:
-      return value.is_boolean();
-    case texts:
-      return value.is_array() && std::ranges::all_of(value, [](const Json& one) { return one.is_string(); });
-    case none:
-      break;
-  }
-  return false;
+  const auto is_text = [](const Json& one) { return one.is_string(); };
+  return (kind == text && is_text(value)) || (kind == number && value.is_number()) ||
+         (kind == flag && value.is_boolean()) ||
+         (kind == texts && value.is_array() && std::ranges::all_of(value, is_text));
 }
 
 const char* kind_text(OrderArgument::Kind kind) {
-  switch (kind) {
-    case number:
-      return "a number";
-    case flag:
-      return "true or false";
-    case texts:
-      return "an array of strings";
-    default:
-      return "a string";
-  }
+  if (kind == number) return "a number";
+  if (kind == flag) return "true or false";
+  return kind == texts ? "an array of strings" : "a string";
 }
 
 const OrderInfo& order_named(const std::string& verb) {
@@ -368,6 +352,16 @@ std::vector<PresetOverride> save_changes(Instance& instance, InstancePort& port,
       instance.configuration().save(answer.changes, instance.catalog(), {.preset = preset, .values = answer.set});
   (void)port.send({.kind = Order::Kind::saved, .who = who, .changes = answer.changes});
   return overridden;
+}
+
+Answer saved(Instance& instance, InstancePort& port, const Answer& answer, const std::string& who,
+             const std::string& preset) {
+  try {
+    const std::vector<PresetOverride> overridden = save_changes(instance, port, answer, who, preset);
+    return {.done = true, .text = instance.configuration().told(answer.changes.size(), overridden)};
+  } catch (const std::exception& error) {
+    return {.done = false, .text = error.what()};
+  }
 }
 
 }  // namespace kadans

@@ -63,6 +63,9 @@ OrderRequest read_brief_request(const Json& json, bool paced);
 // Finishes a `save` after the behavior thread has answered with the changes: writes the file and informs that thread.
 // Throws what ConfigurationText::save throws.
 std::vector<PresetOverride> save_changes(Instance& instance, InstancePort& port, const Answer& answer,
-                                         const std::string& who, const std::string& preset = {});
+                                         const std::string& who, const std::string& preset);
+// The same, and what came of it is the answer: a line for people.
+Answer saved(Instance& instance, InstancePort& port, const Answer& answer, const std::string& who,
+             const std::string& preset);
 
 }  // namespace kadans

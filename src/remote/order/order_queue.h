@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "exchange/owned_ring.h"
 #include "kadans/exchange/memory.h"
-#include "kadans/exchange/ring.h"
 
 namespace kadans {
 
@@ -40,25 +40,16 @@ class BasicOrderCase {
 // The greatest number of orders that are on their way.
 inline constexpr std::size_t orders_waiting_max = 15;
 
-// `Case` is a BasicOrderCase whose answer has a number and a text.
+// `Case` is a BasicOrderCase whose answer has a number and a text. To be destroyed when neither thread uses it any
+// more.
 template <typename Case, typename Memory = MachineMemory>
 class BasicOrderQueue {
  public:
-  BasicOrderQueue() = default;
-  // To be destroyed when neither thread uses it any more.
-  ~BasicOrderQueue() {
-    for (Cases* cases : {&asked_, &answered_}) {
-      for (Case* left = nullptr; cases->try_pop(left);) delete left;
-    }
-  }
-  BasicOrderQueue(const BasicOrderQueue&) = delete;
-  BasicOrderQueue& operator=(const BasicOrderQueue&) = delete;
-
   // Client's thread. False: too many orders wait.
   [[nodiscard]] bool ask(std::unique_ptr<Case> order) {
     if (on_their_way_.size() == orders_waiting_max) return false;
     on_their_way_.push_back(order.get());
-    if (asked_.try_push(order.get())) return order.release() != nullptr;  // the ring owns it now
+    if (asked_.try_push(std::move(order))) return true;
     on_their_way_.pop_back();
     return false;
   }
@@ -70,15 +61,14 @@ class BasicOrderQueue {
   }
   // Client's thread. nullptr: no order has been answered.
   std::unique_ptr<Case> answered() noexcept {
-    Case* order = nullptr;
-    if (answered_.try_pop(order)) std::erase(on_their_way_, order);
-    return std::unique_ptr<Case>(order);
+    std::unique_ptr<Case> order = answered_.try_pop();
+    if (order != nullptr) std::erase(on_their_way_, order.get());
+    return order;
   }
 
   // Executing thread. nullptr: no order is waiting. Withdrawn orders go back without being carried out.
   std::unique_ptr<Case> take() noexcept {
-    for (Case* order = nullptr; asked_.try_pop(order);) {
-      std::unique_ptr<Case> taken(order);
+    while (std::unique_ptr<Case> taken = asked_.try_pop()) {
       if (taken->take_up()) return taken;
       taken->answer.text = "withdrawn: its client is gone, or waits no more";
       answer(std::move(taken));
@@ -86,12 +76,11 @@ class BasicOrderQueue {
     return nullptr;
   }
   void answer(std::unique_ptr<Case> order) noexcept {
-    if (answered_.try_push(order.get())) (void)order.release();  // there is room for all orders that were asked
+    (void)answered_.try_push(std::move(order));  // there is room for all orders that were asked
   }
 
  private:
-  using Cases = Ring<Case*, 16, Memory>;
-  Cases asked_, answered_;
+  OwnedRing<Case, 16, Memory> asked_, answered_;
   std::vector<Case*> on_their_way_;  // client's
 };
 

@@ -66,10 +66,7 @@ void LiveClient::put(Outgoing out) {
   hub_.bound_replies();
 }
 
-template <typename J>
-void LiveClient::say(const J& json) {
-  put_text(json_text(json));
-}
+void LiveClient::say(const Json& json) { put_text(json_text(json)); }
 
 void LiveClient::complain(const std::string& what) { say(Json{{"op", "status"}, {"level", 2}, {"message", what}}); }
 
@@ -90,12 +87,11 @@ void LiveClient::text(std::string_view json) noexcept {
   });
 }
 
-template <typename J>
-void LiveClient::obey(const J& json) {
+void LiveClient::obey(const Json& json) {
   const std::string op = json.at("op");
   if (op == "subscribe") return subscribe(json);
   if (op == "unsubscribe") {
-    for (const J& id : json.at("subscriptionIds")) subscriptions_.erase(whole_number(id));
+    for (const Json& id : json.at("subscriptionIds")) subscriptions_.erase(whole_number(id));
   } else if (op == "getParameters") {
     get_parameters(json);
   } else if (op == "setParameters") {
@@ -103,10 +99,10 @@ void LiveClient::obey(const J& json) {
   } else if (op == "subscribeParameterUpdates") {
     watch(json.at("parameterNames"));
   } else if (op == "unsubscribeParameterUpdates") {
-    const J& names = json.at("parameterNames");
+    const Json& names = json.at("parameterNames");
     if (names.empty()) watches_all_ = false;
-    for (const J& name : names) {
-      const auto watched = watched_.find(name.template get<std::string>());
+    for (const Json& name : names) {
+      const auto watched = watched_.find(name.get<std::string>());
       if (watched == watched_.end()) continue;
       watched_bytes_ -= watched->size();
       watched_.erase(watched);
@@ -118,9 +114,8 @@ void LiveClient::obey(const J& json) {
   }
 }
 
-template <typename J>
-void LiveClient::subscribe(const J& json) {
-  for (const J& entry : json.at("subscriptions")) {
+void LiveClient::subscribe(const Json& json) {
+  for (const Json& entry : json.at("subscriptions")) {
     const std::uint32_t id = whole_number(entry.at("id")), channel = whole_number(entry.at("channelId"));
     if (channel == 0 || channel > hub_.channels().all().size())
       return complain("there is no channel " + std::to_string(channel));
@@ -130,10 +125,9 @@ void LiveClient::subscribe(const J& json) {
   }
 }
 
-template <typename J>
-void LiveClient::watch(const J& names) {
+void LiveClient::watch(const Json& names) {
   watches_all_ = watches_all_ || names.empty();
-  for (const J& name : names) {
+  for (const Json& name : names) {
     const std::string text = name;
     if (watched_.contains(text)) continue;
     if (watched_.size() >= watched_max || watched_bytes_ + text.size() > watched_max_bytes)
@@ -144,10 +138,9 @@ void LiveClient::watch(const J& names) {
   }
 }
 
-template <typename J>
-void LiveClient::get_parameters(const J& json) {
+void LiveClient::get_parameters(const Json& json) {
   std::set<std::string, std::less<>> names;
-  for (const J& name : json.at("parameterNames")) names.insert(name.template get<std::string>());
+  for (const Json& name : json.at("parameterNames")) names.insert(name.get<std::string>());
   Json found = Json::array();
   for (const LiveParameter& p : hub_.parameters()) {
     if (names.empty() || names.contains(p.name)) found.push_back(parameter_json(p));
@@ -157,11 +150,10 @@ void LiveClient::get_parameters(const J& json) {
   say(answer);
 }
 
-template <typename J>
-void LiveClient::set_parameters(const J& json) {
+void LiveClient::set_parameters(const Json& json) {
   if (!writes_) return complain("parameters are changed with the token that the server printed when it began");
   const std::string id = request_id(json);
-  for (const J& p : json.at("parameters")) {
+  for (const Json& p : json.at("parameters")) {
     const std::string name = p.at("name");
     if (!p.at("value").is_number()) {
       complain(name + ": a number is needed");
@@ -169,9 +161,9 @@ void LiveClient::set_parameters(const J& json) {
     }
     if (calls_.size() >= calls_max) return complain("too many orders wait");
     const std::uint32_t call = ++next_call_;
-    const bool sent = hub_.send(
-        {.kind = Order::Kind::set_parameter, .text = name, .value = p.at("value").template get<double>(), .who = who_},
-        id_, call);
+    const bool sent =
+        hub_.send({.kind = Order::Kind::set_parameter, .text = name, .value = p.at("value").get<double>(), .who = who_},
+                  id_, call);
     if (!sent) {
       complain(name + ": too many orders wait");
       continue;
@@ -180,8 +172,7 @@ void LiveClient::set_parameters(const J& json) {
   }
 }
 
-template <typename J>
-void LiveClient::fetch_asset(const J& json) {
+void LiveClient::fetch_asset(const Json& json) {
   const std::string uri = json.at("uri");
   const LiveAssets::Content content = hub_.assets().read(uri);
   put({true, asset_response(whole_number(json.at("requestId")), uri, content.get())});
@@ -221,14 +212,6 @@ void LiveClient::answer_service(std::uint32_t service_call, bool done, const std
   put({true, service_response(service_call, json_text(Json{{"done", done}, {"text", text}}))});
 }
 
-void LiveClient::save(const Call& call, const Answer& answer) {
-  try {
-    answer_service(call.service_call, true, hub_.save(answer, who_, call.preset));
-  } catch (const std::exception& error) {
-    answer_service(call.service_call, false, error.what());
-  }
-}
-
 void LiveClient::take(std::uint32_t number, const Answer& answer) noexcept {
   const auto found = calls_.find(number);
   if (found == calls_.end()) return;
@@ -240,7 +223,10 @@ void LiveClient::take(std::uint32_t number, const Answer& answer) noexcept {
 }
 
 void LiveClient::answer_call(const Call& call, const Answer& answer) {
-  if (call.save) return save(call, answer);
+  if (call.save) {
+    const Answer saved = hub_.save(answer, who_, call.preset);
+    return answer_service(call.service_call, saved.done, saved.text);
+  }
   if (call.service && !answer.reasons.empty()) {
     const Json told{{"done", true}, {"text", answer.text}, {"reasons", reasons_json(answer)}};
     return put({true, service_response(call.service_call, json_text(told))});
@@ -284,15 +270,10 @@ bool LiveClient::next(Outgoing& out) {
     const LiveMessage* message = hub_.channels().all()[subscription.channel].next(subscription.seen);
     if (message == nullptr) continue;
     last_served_ = at->first;
-    put_message(at->first, *message, out);
+    out = {true, message_data(at->first, message->time_ns, message->payload)};
     return true;
   }
   return false;
-}
-
-void LiveClient::put_message(std::uint32_t subscription, const LiveMessage& message, Outgoing& out) const {
-  out.binary = true;
-  out.bytes = message_data(subscription, message.time_ns, message.payload);
 }
 
 }  // namespace kadans

@@ -20,6 +20,8 @@
 #include <string_view>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "live_hub.h"
 
 namespace kadans {
@@ -56,6 +58,7 @@ class LiveClient {
   void give_up() noexcept;
 
  private:
+  using Json = nlohmann::ordered_json;
   struct Subscription {
     std::size_t channel;
     std::uint64_t seen;
@@ -72,27 +75,18 @@ class LiveClient {
   void guarded(Act act) noexcept;
   void put(Outgoing out);
   void put_text(const std::string& text);
-  template <typename Json>
   void say(const Json& json);
   void complain(const std::string& what);
-  template <typename Json>
   void obey(const Json& json);
-  template <typename Json>
   void subscribe(const Json& json);
-  template <typename Json>
   void watch(const Json& names);
-  template <typename Json>
   void get_parameters(const Json& json);
-  template <typename Json>
   void set_parameters(const Json& json);
-  template <typename Json>
   void fetch_asset(const Json& json);
   void answer_call(const Call& call, const Answer& answer);
   void call_service(std::span<const std::byte> bytes);
   void command(std::uint32_t service_call, const OrderRequest& request);
-  void save(const Call& call, const Answer& answer);
   void answer_service(std::uint32_t service_call, bool done, const std::string& text);
-  void put_message(std::uint32_t subscription, const LiveMessage& message, Outgoing& out) const;
 
   LiveHub& hub_;
   std::uint64_t id_;

@@ -39,10 +39,9 @@ void LiveChannel::put(std::uint64_t time_ns, std::span<const std::byte> payload)
 }
 
 LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
-    : catalog_(instance.catalog()),
-      topics_(signal_topics(catalog_.signals, Precision::full)),
+    : topics_(signal_topics(instance.catalog().signals, Precision::full)),
       subjects_(instance.facts().subjects),
-      viewers_(catalog_.signals, subjects_),
+      viewers_(instance.catalog().signals, subjects_),
       description_(texts.description) {
   for (const SignalTopic& topic : topics_) {
     signals_["signals" + topic.topic] = topic.description;
@@ -53,7 +52,7 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
          .schema = topic.definition});
   }
   first_viewer_ = channels_.size();
-  for (const ViewerChannel& channel : viewers_.channels()) add_viewer(channel);
+  for (const ViewerChannel& channel : viewers_.channels()) add(channel);
   log_ = add_json("/log", "foxglove.Log", log_schema, true);
   transitions_ = add_json("/transitions", "kadans.Transition", transition_schema, true);
   active_ = add_json("/active", "kadans.Active", active_schema, true);
@@ -63,33 +62,22 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
   described_ = add_json("/description", "kadans.Description", description_schema, false);
   put_json(described_, 0, texts.description);
   write_robot_description(texts.urdf, message_);
-  channels_[add_viewer(robot_description_channel(""))].put(0, message_.bytes());
+  channels_[add(robot_description_channel(""))].put(0, message_.bytes());
   for (const RobotTexts::Other& other : texts.others) {
     write_robot_description(other.urdf, message_);
-    channels_[add_viewer(robot_description_channel(other.name))].put(0, message_.bytes());
+    channels_[add(robot_description_channel(other.name))].put(0, message_.bytes());
   }
 }
 
-std::size_t LiveChannels::add(LiveChannel channel) {
-  channels_.push_back(std::move(channel));
+std::size_t LiveChannels::add(ViewerChannel channel, bool events) {
+  channels_.push_back({std::move(channel), events});
   return channels_.size() - 1;
 }
 
-std::size_t LiveChannels::add_viewer(const ViewerChannel& channel) {
-  return add({.topic = channel.topic,
-              .encoding = channel.encoding,
-              .schema_name = channel.schema_name,
-              .schema_encoding = channel.schema_encoding,
-              .schema = channel.schema});
-}
-
 std::size_t LiveChannels::add_json(const std::string& topic, const std::string& schema, const char* text, bool events) {
-  return add({.topic = topic,
-              .encoding = "json",
-              .schema_name = schema,
-              .schema_encoding = "jsonschema",
-              .schema = text,
-              .events = events});
+  return add(
+      {.topic = topic, .encoding = "json", .schema_name = schema, .schema_encoding = "jsonschema", .schema = text},
+      events);
 }
 
 void LiveChannels::put_json(std::size_t channel, std::int64_t time_ns, const std::string& json) {

@@ -30,10 +30,9 @@ struct LiveMessage {
   std::vector<std::byte> payload;
 };
 
-struct LiveChannel {
+struct LiveChannel : ViewerChannel {
   static constexpr std::size_t events_kept = 500;
 
-  std::string topic, encoding, schema_name, schema_encoding, schema;
   bool events = false;
   std::uint64_t count = 0;             // number of messages so far
   std::deque<LiveMessage> messages{};  // the newest
@@ -60,12 +59,10 @@ class LiveChannels {
   void take_drives(const std::string& json, std::int64_t time_ns);  // nothing when it is as before
 
  private:
-  std::size_t add(LiveChannel channel);
-  std::size_t add_viewer(const ViewerChannel& channel);
+  std::size_t add(ViewerChannel channel, bool events = false);
   std::size_t add_json(const std::string& topic, const std::string& schema, const char* text, bool events);
   void put_json(std::size_t channel, std::int64_t time_ns, const std::string& json);
 
-  const Catalog& catalog_;
   std::vector<SignalTopic> topics_;  // the first channels
   std::vector<LiveChannel> channels_;
   std::map<std::string, std::string> signals_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "config/json/foreign_json.h"
 #include "live_client.h"
@@ -97,7 +98,7 @@ const std::string& LiveHub::introduction(bool writes) {
                            {"capabilities", {"parameters", "parametersSubscribe", "services", "assets"}},
                            {"supportedEncodings", nlohmann::ordered_json::array({"json"})},
                            {"metadata", metadata},
-                           {"sessionId", session_id()}});
+                           {"sessionId", std::to_string(getpid())}});
 }
 
 const std::string& LiveHub::advertisement() {
@@ -208,9 +209,8 @@ void LiveHub::take_parameters() {
   for (const LiveParameter& p : behaviors_now_) note(p.name, p.value);
 }
 
-std::string LiveHub::save(const Answer& answer, const std::string& who, const std::string& preset) {
-  const auto overridden = save_changes(p_.instance, p_.port, answer, who, preset);
-  return p_.instance.configuration().told(answer.changes.size(), overridden);
+Answer LiveHub::save(const Answer& answer, const std::string& who, const std::string& preset) {
+  return saved(p_.instance, p_.port, answer, who, preset);
 }
 
 void LiveHub::act(const OrderRequest& request, const std::string& who) {

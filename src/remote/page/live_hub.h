@@ -76,7 +76,6 @@ class LiveHub {
   void beat();
   double rate_hz() const noexcept { return clients_.empty() ? idle_hz : beats_hz; }
 
-  const Instance& instance() const noexcept { return p_.instance; }
   const LiveChannels& channels() const noexcept { return channels_; }
   // The first message to a client: who the server is and what it offers. The text is shared by all clients.
   const std::string& introduction(bool writes);
@@ -85,9 +84,8 @@ class LiveHub {
   const std::vector<LiveParameter>& parameters() const noexcept { return parameters_; }
   const std::vector<LiveParameter>& changed() const noexcept { return changed_; }  // changed in the last beat
   const std::string& state() const noexcept { return state_; }                     // JSON with paused, held, speed
-  // Writes the tuned parameters into the robot's configuration and returns a line for people. Throws what
-  // ConfigurationText::save throws.
-  std::string save(const Answer& answer, const std::string& who, const std::string& preset);
+  // Writes the tuned parameters into the robot's configuration; what came of it is the answer.
+  Answer save(const Answer& answer, const std::string& who, const std::string& preset);
   std::uint64_t state_count() const noexcept { return state_count_; }
 
   void enter(std::uint64_t id, LiveClient& client) { clients_[id] = &client; }

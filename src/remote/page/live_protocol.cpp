@@ -1,7 +1,5 @@
 #include "live_protocol.h"
 
-#include <unistd.h>
-
 #include "config/json/foreign_json.h"
 
 namespace kadans {
@@ -39,8 +37,6 @@ Json command_in_json() {
 }
 
 }  // namespace
-
-std::string session_id() { return std::to_string(getpid()); }
 
 const std::string& service_advertisement() {
   static const std::string text =

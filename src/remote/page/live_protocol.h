@@ -25,8 +25,6 @@ struct ServiceCall {
   std::string request;
 };
 
-std::string session_id();  // of this process
-
 const std::string& service_advertisement();  // the same for all clients
 Json service_failure(std::uint32_t call, const std::string& why);
 Json parameter_json(const LiveParameter& parameter);

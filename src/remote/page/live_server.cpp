@@ -29,13 +29,6 @@ namespace asio = boost::asio;
 using Tcp = asio::ip::tcp;
 using Error = boost::system::error_code;
 
-std::string new_token() {
-  std::array<std::byte, 16> bytes{};
-  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw std::system_error(errno, std::generic_category(), "no random numbers for a token");
-  return hexadecimal(bytes);
-}
-
 struct LiveServer::Parts {
   static constexpr int niceness = 5;
   static constexpr std::chrono::milliseconds breath{50};  // when the system has no more to give
@@ -128,6 +121,14 @@ struct LiveServer::Parts {
 };
 
 namespace {
+
+// 128 random bits from the system, in hexadecimal.
+std::string new_token() {
+  std::array<std::byte, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    throw std::system_error(errno, std::generic_category(), "no random numbers for a token");
+  return hexadecimal(bytes);
+}
 
 // What would not come back as it was said, out of an address or a browser.
 void refuse_unusable(const LiveSettings& settings) {

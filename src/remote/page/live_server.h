@@ -64,7 +64,4 @@ class LiveServer {
   std::unique_ptr<Parts> parts_;
 };
 
-// 128 random bits from the system, in hexadecimal.
-std::string new_token();
-
 }  // namespace kadans

@@ -51,14 +51,13 @@ void EventTopics::add(const ScriptEvent& event) {
   } else if (!event.fields.empty()) {
     topic.type = Type::fields;
   }
-  const dds_topic_descriptor_t* described = &std_msgs_msg_dds__String__desc;
-  if (topic.type == Type::empty) described = &std_msgs_msg_dds__Empty__desc;
-  if (topic.type == Type::number) described = &std_msgs_msg_dds__Float64__desc;
-  if (topic.type == Type::flag) described = &std_msgs_msg_dds__Bool__desc;
-  if (topic.type == Type::velocity) described = &geometry_msgs_msg_dds__Twist__desc;
+  const dds_topic_descriptor_t* const messages[] = {
+      // by Type
+      &std_msgs_msg_dds__Empty__desc,  &std_msgs_msg_dds__Float64__desc, &std_msgs_msg_dds__Bool__desc,
+      &std_msgs_msg_dds__String__desc, &std_msgs_msg_dds__String__desc,  &geometry_msgs_msg_dds__Twist__desc};
   std::string name = topic.type == Type::velocity ? "rt/cmd_vel" : "rt/kadans/event/" + event.name;
   std::ranges::replace(name, '.', '/');
-  topic.reader = domain_.reader(*described, name, {.depth = events_depth});
+  topic.reader = domain_.reader(*messages[static_cast<std::size_t>(topic.type)], name, {.depth = events_depth});
   topics_.push_back(std::move(topic));
 }
 

@@ -37,31 +37,28 @@ namespace kadans {
 // The position and heading of the base are the true ones when the plant is a model. Otherwise they are those of the
 // odometry; without feet x and y are 0. Roll, pitch and the rates are always the estimate. The acceleration is the
 // IMU's measurement.
-class RobotReadings {
- public:
+struct RobotReadings {
   // Make it when all signals are declared. The catalog must outlive it. Throws InputError on a wrong URDF.
   RobotReadings(const Catalog& catalog, const std::string& urdf);
 
   void take(const LatestRow::View& row) noexcept;
 
-  std::int64_t time_ns() const noexcept { return time_ns_; }  // time since the run began
-  const std::vector<std::string>& joints() const noexcept { return joints_; }
-  const std::vector<double>& position_rad() const noexcept { return position_rad_; }
-  const std::vector<double>& velocity_rad_s() const noexcept { return velocity_rad_s_; }
-  const std::vector<double>& effort_Nm() const noexcept { return effort_Nm_; }
-  const Quat& orientation() const noexcept { return orientation_; }
-  const Vec3& angular_velocity_rad_s() const noexcept { return angular_velocity_rad_s_; }
+  std::int64_t time_ns = 0;  // time since the run began
+  std::vector<std::string> joints;
+  std::vector<double> position_rad, velocity_rad_s, effort_Nm;
+  Quat orientation{1, 0, 0, 0};
+  Vec3 angular_velocity_rad_s{};
 
   // Along the base's axes, gravity included. It is not known before the first reading of an IMU.
-  const Vec3& acceleration_m_s2() const noexcept { return acceleration_m_s2_; }
-  bool acceleration_known() const noexcept { return acceleration_m_s2_ != Vec3{}; }
+  Vec3 acceleration_m_s2{};
+  bool acceleration_known() const noexcept { return acceleration_m_s2 != Vec3{}; }
 
   // Where the base is by its feet, and its velocity along its own heading; nothing where the odometry is not valid.
   struct Odometry {
     Pose pose;
     Vec3 velocity_m_s{};
   };
-  const std::optional<Odometry>& odometry() const noexcept { return odometry_; }
+  std::optional<Odometry> odometry;
 
   struct Frame {
     std::string parent, child;
@@ -69,9 +66,8 @@ class RobotReadings {
   };
   // moving: first the base in "world", then all frames that joints move. fixed: the frames that do not move in their
   // parent.
-  const std::vector<Frame>& moving() const noexcept { return moving_; }
-  const std::vector<Frame>& fixed() const noexcept { return fixed_; }
-  const std::string& base() const noexcept { return moving_.front().child; }
+  std::vector<Frame> moving, fixed;
+  const std::string& base() const noexcept { return moving.front().child; }
 
  private:
   using Signal = std::optional<SignalId>;
@@ -84,17 +80,8 @@ class RobotReadings {
   std::vector<Signal> position_, velocity_, effort_;
   Signal roll_, pitch_, yaw_, x_, y_, height_, heading_;
   std::array<Signal, 3> rate_, acceleration_;
-
   Place reckoned_;
-  std::optional<Odometry> odometry_;
-
-  std::int64_t time_ns_ = 0;
-  std::vector<std::string> joints_;
-  std::vector<double> position_rad_, velocity_rad_s_, effort_Nm_;
-  Quat orientation_{1, 0, 0, 0};
-  Vec3 angular_velocity_rad_s_{}, acceleration_m_s2_{};
-  std::vector<UrdfFrame> driven_;  // the frames of moving_ without the base
-  std::vector<Frame> moving_, fixed_;
+  std::vector<UrdfFrame> driven_;  // the frames of `moving` without the base
 };
 
 // The topics of the bridge in its DDS domain: those of ROS 2 that show the robot, and those of its commands. One thread
@@ -142,12 +129,12 @@ RobotReadings::RobotReadings(const Catalog& catalog, const std::string& urdf) : 
   const auto find = [&](const std::string& name) { return catalog.signals.find(name); };
   const auto first = [&](const char* one, const char* other) { return find(one) ? find(one) : find(other); };
   for (const Joint& joint : model_.joints) {
-    joints_.push_back(joint.name);
+    joints.push_back(joint.name);
     position_.push_back(find("joint." + joint.name + ".position_rad"));
     velocity_.push_back(find("joint." + joint.name + ".velocity_rad_s"));
     effort_.push_back(find("joint." + joint.name + ".effort_Nm"));
   }
-  for (std::vector<double>* values : {&position_rad_, &velocity_rad_s_, &effort_Nm_}) values->resize(joints_.size());
+  for (std::vector<double>* values : {&position_rad, &velocity_rad_s, &effort_Nm}) values->resize(joints.size());
   roll_ = find("base.roll_rad"), pitch_ = find("base.pitch_rad"), yaw_ = find("base.yaw_rad");
   reckoned_ = {find("odometry.x_m"), find("odometry.y_m"), find("odometry.heading_rad"), find("odometry.valid"),
                find("base.height_m")};
@@ -156,42 +143,42 @@ RobotReadings::RobotReadings(const Catalog& catalog, const std::string& urdf) : 
   height_ = first("plant.base.height_m", "base.height_m");
   rate_ = {find("base.rate_x_rad_s"), find("base.rate_y_rad_s"), find("base.rate_z_rad_s")};
   acceleration_ = {find("imu.acceleration_x_m_s2"), find("imu.acceleration_y_m_s2"), find("imu.acceleration_z_m_s2")};
-  moving_.push_back({"world", model_.links.front().name, {}});
+  moving.push_back({"world", model_.links.front().name, {}});
   for (UrdfFrame& frame : urdf_frames(model_, urdf)) {
-    (frame.joint ? moving_ : fixed_).push_back({frame.parent, frame.child, frame.origin});
+    (frame.joint ? moving : fixed).push_back({frame.parent, frame.child, frame.origin});
     if (frame.joint) driven_.push_back(std::move(frame));
   }
 }
 
 void RobotReadings::take(const LatestRow::View& row) noexcept {
   const auto value = [&](const Signal& signal) { return signal ? row.values[*signal] : 0.0; };
-  take_odometry(row, 1e-9 * static_cast<double>(row.time_ns - time_ns_));
-  time_ns_ = row.time_ns;
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    position_rad_[i] = value(position_[i]);
-    velocity_rad_s_[i] = value(velocity_[i]);
-    effort_Nm_[i] = value(effort_[i]);
+  take_odometry(row, 1e-9 * static_cast<double>(row.time_ns - time_ns));
+  time_ns = row.time_ns;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    position_rad[i] = value(position_[i]);
+    velocity_rad_s[i] = value(velocity_[i]);
+    effort_Nm[i] = value(effort_[i]);
   }
   for (std::size_t i = 0; i < rate_.size(); ++i) {
-    angular_velocity_rad_s_[i] = value(rate_[i]);
-    acceleration_m_s2_[i] = value(acceleration_[i]);
+    angular_velocity_rad_s[i] = value(rate_[i]);
+    acceleration_m_s2[i] = value(acceleration_[i]);
   }
-  orientation_ = from_roll_pitch_yaw(value(roll_), value(pitch_), value(yaw_));
-  moving_[0].pose = {{value(x_), value(y_), value(height_)},
-                     from_roll_pitch_yaw(value(roll_), value(pitch_), value(heading_))};
-  for (std::size_t i = 0; i < driven_.size(); ++i) moving_[i + 1].pose = frame_pose(driven_[i], model_, position_rad_);
+  orientation = from_roll_pitch_yaw(value(roll_), value(pitch_), value(yaw_));
+  moving[0].pose = {{value(x_), value(y_), value(height_)},
+                    from_roll_pitch_yaw(value(roll_), value(pitch_), value(heading_))};
+  for (std::size_t i = 0; i < driven_.size(); ++i) moving[i + 1].pose = frame_pose(driven_[i], model_, position_rad);
 }
 
 void RobotReadings::take_odometry(const LatestRow::View& row, double elapsed_s) noexcept {
   const auto value = [&](const Signal& signal) { return signal ? row.values[*signal] : 0.0; };
-  if (value(reckoned_.valid) == 0) return odometry_.reset();
+  if (value(reckoned_.valid) == 0) return odometry.reset();
   const double heading_rad = value(reckoned_.heading), c = std::cos(heading_rad), s = std::sin(heading_rad);
   const Vec3 at_m{value(reckoned_.x), value(reckoned_.y), value(reckoned_.height)};
   const Pose now{at_m, from_roll_pitch_yaw(value(roll_), value(pitch_), heading_rad)};
-  const bool goes_on = odometry_ && elapsed_s > 0 && !(at_m[0] == 0 && at_m[1] == 0);  // that is a reset
-  const Vec3 from_m = goes_on ? odometry_->pose.position_m : at_m;
+  const bool goes_on = odometry && elapsed_s > 0 && !(at_m[0] == 0 && at_m[1] == 0);  // that is a reset
+  const Vec3 from_m = goes_on ? odometry->pose.position_m : at_m;
   const double per_s = goes_on ? 1 / elapsed_s : 0, x_m = at_m[0] - from_m[0], y_m = at_m[1] - from_m[1];
-  odometry_ = {now, {per_s * (c * x_m + s * y_m), per_s * (c * y_m - s * x_m), per_s * (at_m[2] - from_m[2])}};
+  odometry = {now, {per_s * (c * x_m + s * y_m), per_s * (c * y_m - s * x_m), per_s * (at_m[2] - from_m[2])}};
 }
 
 namespace {
@@ -231,18 +218,18 @@ Ros2Topics::Ros2Topics(std::uint32_t domain, const RobotReadings& robot, const s
               domain_.writer(std_msgs_msg_dds__String__desc, "rt/kadans/command_result", {.depth = commands_depth}),
           .odometry = domain_.writer(nav_msgs_msg_dds__Odometry__desc, "rt/odom")},
       commands_(domain_.reader(std_msgs_msg_dds__String__desc, "rt/kadans/command", {.depth = commands_depth})) {
-  for (const std::string& name : robot_.joints()) names_.push_back(chars(name));
-  stamped_.resize(std::max(robot_.moving().size(), robot_.fixed().size()));
+  for (const std::string& name : robot_.joints) names_.push_back(chars(name));
+  stamped_.resize(std::max(robot_.moving.size(), robot_.fixed.size()));
   publish_text(to_.description, urdf);
-  if (!robot_.fixed().empty()) publish_frames(to_.tf_static, robot_.fixed(), {});
+  if (!robot_.fixed.empty()) publish_frames(to_.tf_static, robot_.fixed, {});
 }
 
 void Ros2Topics::publish() noexcept {
-  const Stamp now{.sec = static_cast<std::int32_t>(robot_.time_ns() / ns_per_s),
-                  .nanosec = static_cast<std::uint32_t>(robot_.time_ns() % ns_per_s)};
+  const Stamp now{.sec = static_cast<std::int32_t>(robot_.time_ns / ns_per_s),
+                  .nanosec = static_cast<std::uint32_t>(robot_.time_ns % ns_per_s)};
   const rosgraph_msgs_msg_dds__Clock_ clock{.clock_time = now};
   (void)domain_.write(to_.clock, &clock);
-  publish_frames(to_.tf, robot_.moving(), now);
+  publish_frames(to_.tf, robot_.moving, now);
   publish_joint_states(now);
   publish_imu(now);
   publish_odometry(now);
@@ -253,9 +240,9 @@ void Ros2Topics::publish_joint_states(Stamp now) noexcept {
   message.header.stamp = now;
   message.header.frame_id = chars(robot_.base());
   message.name = sequence_of<decltype(message.name)>(names_);
-  message.position = sequence_of<decltype(message.position)>(robot_.position_rad());
-  message.velocity = sequence_of<decltype(message.velocity)>(robot_.velocity_rad_s());
-  message.effort = sequence_of<decltype(message.effort)>(robot_.effort_Nm());
+  message.position = sequence_of<decltype(message.position)>(robot_.position_rad);
+  message.velocity = sequence_of<decltype(message.velocity)>(robot_.velocity_rad_s);
+  message.effort = sequence_of<decltype(message.effort)>(robot_.effort_Nm);
   (void)domain_.write(to_.joint_states, &message);
 }
 
@@ -278,21 +265,21 @@ void Ros2Topics::publish_frames(dds_entity_t writer, const std::vector<RobotRead
 void Ros2Topics::publish_imu(Stamp now) noexcept {
   sensor_msgs_msg_dds__Imu_ message{};
   message.header = {.stamp = now, .frame_id = chars(robot_.base())};
-  message.orientation = quaternion(robot_.orientation());
-  message.angular_velocity = vector(robot_.angular_velocity_rad_s());
-  message.linear_acceleration = vector(robot_.acceleration_m_s2());
+  message.orientation = quaternion(robot_.orientation);
+  message.angular_velocity = vector(robot_.angular_velocity_rad_s);
+  message.linear_acceleration = vector(robot_.acceleration_m_s2);
   if (!robot_.acceleration_known()) message.linear_acceleration_covariance[0] = -1;
   (void)domain_.write(to_.imu, &message);
 }
 
 void Ros2Topics::publish_odometry(Stamp now) noexcept {
-  if (!robot_.odometry()) return;
-  const auto& [pose, velocity_m_s] = *robot_.odometry();
+  if (!robot_.odometry) return;
+  const auto& [pose, velocity_m_s] = *robot_.odometry;
   nav_msgs_msg_dds__Odometry_ message{};
   message.header = {.stamp = now, .frame_id = chars(odometry_frame)};
   message.child_frame_id = chars(robot_.base());
   message.pose.pose = {.position = vector(pose.position_m), .orientation = quaternion(pose.orientation)};
-  message.twist.twist = {.linear = vector(velocity_m_s), .angular = vector(robot_.angular_velocity_rad_s())};
+  message.twist.twist = {.linear = vector(velocity_m_s), .angular = vector(robot_.angular_velocity_rad_s)};
   (void)domain_.write(to_.odometry, &message);
 }
 

@@ -1,7 +1,5 @@
 #include "text_orders.h"
 
-#include <exception>
-
 #include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
 #include "remote/order/order_json.h"
@@ -78,26 +76,14 @@ std::optional<std::string> TextOrders::next() {
     if (found == waiting_.end()) continue;
     const Asked asked = std::move(found->second);
     waiting_.erase(found);
-    bool done = answer.done;
-    std::string text = answer.text;
-    if (asked.save && done) save(asked.preset, answer, done, text);
-    return answer_text(asked.id, asked.verb, done, text);
+    if (asked.save && answer.done) answer = saved(p_.instance, p_.port, answer, p_.who, asked.preset);
+    return answer_text(asked.id, asked.verb, answer.done, answer.text);
   }
   return std::nullopt;
 }
 
 void TextOrders::ask_behaviors() {
   if (report_ == 0) report_ = p_.port.send({.kind = Order::Kind::report, .who = p_.who});
-}
-
-void TextOrders::save(const std::string& preset, const Answer& answer, bool& done, std::string& text) {
-  try {
-    const auto overridden = save_changes(p_.instance, p_.port, answer, p_.who, preset);
-    text = p_.instance.configuration().told(answer.changes.size(), overridden);
-  } catch (const std::exception& error) {
-    done = false;
-    text = error.what();
-  }
 }
 
 }  // namespace kadans

@@ -59,7 +59,6 @@ class TextOrders {
     std::int64_t asked_ns = 0;
   };
   std::optional<std::string> obey(Asked& asked, const OrderRequest& request);
-  void save(const std::string& preset, const Answer& answer, bool& done, std::string& text);
 
   Parts p_;
   WallClock clock_;

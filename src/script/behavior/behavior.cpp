@@ -220,8 +220,6 @@ InputProblem problem_of(const ScriptError& error) { return {error.file.data(), e
 Behavior::Parts::Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to)
     : settings(wanted), catalog(offered), log(to) {}
 
-void Behavior::Parts::say(const char* text) noexcept { say_with(BehaviorLog::Severity::info, text); }
-
 void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text) noexcept {
   const std::int64_t now_ns = bindings.engine_ns();
   tell_dropped(false);

@@ -31,9 +31,7 @@
 #include "kadans/signal/status.h"
 #include "script/chart/chart.h"
 #include "script/host/play_report.h"
-#include "script/host/script_argument.h"
-#include "script/host/script_event.h"
-#include "script/host/script_parameter.h"
+#include "script/host/script_declarations.h"
 #include "script/lua/budget.h"
 #include "script/lua/script_error.h"
 

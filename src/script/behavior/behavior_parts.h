@@ -26,7 +26,6 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  void say(const char* text) noexcept override;
   void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
   void tell_dropped(bool at_once) noexcept;  // logs how many lines were dropped
   void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;

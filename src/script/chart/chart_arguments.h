@@ -15,8 +15,7 @@
 
 #include <lua.hpp>
 
-#include "script/host/script_argument.h"
-#include "script/host/script_parameter.h"
+#include "script/host/script_declarations.h"
 #include "script/lua/script_error.h"
 
 namespace kadans {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chart.h"
-#include "script/host/script_parameter.h"
+#include "script/host/script_declarations.h"
 
 namespace kadans {
 

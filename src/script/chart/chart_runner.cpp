@@ -5,7 +5,6 @@
 #include <lua.hpp>
 
 #include "script/bindings/bindings.h"
-#include "script/lua/line_watch.h"
 #include "script/lua/lua_core.h"
 #include "script/motion/motion.h"
 #include "signal/byte_order.h"

@@ -39,7 +39,9 @@ struct Console::Parts final : ScriptVoice {
   ~Parts() override = default;
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
-  void say(const char* text) noexcept override { printed += std::string(text) + "\n"; }
+  void say_with(BehaviorLog::Severity /*severity*/, const char* text) noexcept override {
+    printed += std::string(text) + "\n";
+  }
 
   Settings settings;
   const Catalog& catalog;

@@ -10,6 +10,11 @@ struct Put {
   ByteWriter& bytes;
 
   void operator()(const std::string& text) { bytes.put_string(text); }
+  void operator()(const std::filesystem::path& file) { bytes.put_string(file.string()); }
+  void operator()(const PlayValue& value) {
+    bytes.put(static_cast<std::uint8_t>(value.index()));
+    std::visit(*this, value);
+  }
   template <Number T>
   void operator()(T value) {
     bytes.put(value);
@@ -31,6 +36,12 @@ struct Take {
   bool known = true;  // no number of a kind is beyond the last
 
   void operator()(std::string& text) { text = bytes.take_string(); }
+  void operator()(std::filesystem::path& file) { file = bytes.take_string(); }
+  void operator()(PlayValue& value) {
+    const auto index = bytes.take<std::uint8_t>();
+    value = index == 0 ? PlayValue(0.0) : index == 1 ? PlayValue(false) : PlayValue(std::string());
+    std::visit(*this, value);
+  }
   template <Number T>
   void operator()(T& value) {
     if constexpr (std::is_same_v<T, bool>) {
@@ -47,6 +58,7 @@ struct Take {
   }
   void operator()(ScriptEvent::Field::Type& type) { kind(type, ScriptEvent::Field::Type::text); }
   void operator()(BehaviorQuestion::Kind& of) { kind(of, BehaviorQuestion::Kind::reload); }
+  void operator()(PlayOrder::Kind& of) { of = static_cast<PlayOrder::Kind>(bytes.take<std::uint8_t>()); }
   template <typename T>
   void operator()(std::vector<T>& all) {
     for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) part(all.emplace_back());
@@ -106,6 +118,27 @@ void fields(Is<BehaviorReply> auto& r, Each& each) {
   each(r.error), each(r.paused), each(r.behaviors), each(r.reasons), each(r.text), each(r.before), each(r.chunk);
 }
 
+template <typename Each>
+void fields(Is<PlayArgument> auto& a, Each& each) {
+  each(a.name), each(a.value);
+}
+
+template <typename Each>
+void fields(Is<PlayItem> auto& i, Each& each) {
+  each(i.file), each(i.lane), each(i.source), each(i.arguments);
+}
+
+template <typename Each>
+void fields(Is<PlayedEvent> auto& e, Each& each) {
+  each(e.name), each(e.who), each(e.ordered), each(e.data);
+}
+
+template <typename Each>
+void fields(Is<PlayOrder> auto& o, Each& each) {
+  each(o.kind), each(o.behavior.name), each(o.file), each(o.list);
+  if (o.kind == PlayOrder::Kind::emit) each.part(o.event);
+}
+
 template <typename T>
 void Put::part(const T& one) {
   fields(one, *this);
@@ -114,6 +147,13 @@ void Put::part(const T& one) {
 template <typename T>
 void Take::part(T& one) {
   fields(one, *this);
+}
+
+template <typename T>
+T taken(ByteReader& bytes) {
+  T one{};
+  Take{bytes}.part(one);
+  return one;
 }
 
 template <typename T>
@@ -129,5 +169,12 @@ void put_question(const BehaviorQuestion& question, ByteWriter& bytes) { Put{byt
 void put_reply(const BehaviorReply& reply, ByteWriter& bytes) { Put{bytes}.part(reply); }
 bool take_question(ByteReader& bytes, BehaviorQuestion& question) { return take_whole(bytes, question); }
 bool take_reply(ByteReader& bytes, BehaviorReply& reply) { return take_whole(bytes, reply); }
+
+void put_item(const PlayItem& item, ByteWriter& bytes) { Put{bytes}.part(item); }
+void put_event(const PlayedEvent& event, ByteWriter& bytes) { Put{bytes}.part(event); }
+void put_order(const PlayOrder& order, ByteWriter& bytes) { Put{bytes}.part(order); }
+PlayItem take_item(ByteReader& bytes) { return taken<PlayItem>(bytes); }
+PlayedEvent take_event(ByteReader& bytes) { return taken<PlayedEvent>(bytes); }
+PlayOrder take_order(ByteReader& bytes) { return taken<PlayOrder>(bytes); }
 
 }  // namespace kadans

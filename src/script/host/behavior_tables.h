@@ -1,15 +1,16 @@
 // What people ask of the behaviors that play, between two ticks: their tables (states, results, parameters, events),
 // why their transitions wait, their charts, and a change of a parameter. A host in a thread replies at once, one in a
-// process of its own with its next answer; the reply is the same. As bytes they cross between processes.
+// process of its own with its next answer; the reply is the same. As bytes they, and the orders to what plays, cross
+// between processes.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "config/scenario/play_item.h"
 #include "script/behavior/behavior_why.h"
-#include "script_event.h"
-#include "script_parameter.h"
+#include "script_declarations.h"
 
 namespace kadans {
 
@@ -56,5 +57,13 @@ void put_reply(const BehaviorReply& reply, ByteWriter& bytes);
 // or `false` is returned.
 [[nodiscard]] bool take_question(ByteReader& bytes, BehaviorQuestion& question);
 [[nodiscard]] bool take_reply(ByteReader& bytes, BehaviorReply& reply);
+
+// Orders and items of the play list likewise; an order's kind may be none that there is.
+void put_item(const PlayItem& item, ByteWriter& bytes);
+void put_event(const PlayedEvent& event, ByteWriter& bytes);
+void put_order(const PlayOrder& order, ByteWriter& bytes);
+PlayItem take_item(ByteReader& bytes);
+PlayedEvent take_event(ByteReader& bytes);
+PlayOrder take_order(ByteReader& bytes);
 
 }  // namespace kadans

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "behavior_tables.h"
 #include "config/json/problems.h"
 #include "config/scenario/event_text.h"
+#include "signal/byte_order.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 
@@ -18,7 +21,7 @@ std::string shortened(std::string text) {
   constexpr std::size_t told = 200;
   if (text.size() <= told) return text;
   std::size_t end = told;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;  // not inside a character
+  while (end > 0 && inside_character(text[end])) --end;
   return text.substr(0, end) + "...";
 }
 
@@ -28,15 +31,15 @@ bool is_meant(const std::string& to, const Behavior& behavior) {
 
 }  // namespace
 
-EventDelivery::EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs)
-    : log_(log), inputs_(std::move(inputs)), levels_(inputs_.size(), Level::unknown) {}
+EventDelivery::EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs, PlayList& list, const Pause& pause)
+    : log_(log), list_(list), pause_(pause), inputs_(std::move(inputs)), levels_(inputs_.size(), Level::unknown) {}
 
-std::string EventDelivery::refusal(const PlayedEvent& event, const std::string& to, PlayList& list, bool paused) {
-  if (paused) return "the behaviors are paused; the event would be old when they go on";
+std::string EventDelivery::refusal(const PlayedEvent& event, const std::string& to) {
+  if (pause_.paused()) return "the behaviors are paused; the event would be old when they go on";
   std::vector<std::string> known;
   std::string wrong, waits;
   bool fits = false;
-  list.each_in_turn([&](const PlayList::Entry& entry) {
+  list_.each_in_turn([&](const PlayList::Entry& entry) {
     const Behavior& behavior = *entry.behavior;
     if (!is_meant(to, behavior)) return;
     for (const ScriptEvent& declared : behavior.events()) known.push_back(declared.name);
@@ -60,8 +63,8 @@ std::string EventDelivery::refusal(const PlayedEvent& event, const std::string& 
   return unknown_name("event", event.name, known, "for what plays");
 }
 
-void EventDelivery::refuse(const PlayedEvent& event, const std::string& why, PlayList& list, const Snapshot& snapshot) {
-  list.count_event(false);
+void EventDelivery::refuse(const PlayedEvent& event, const std::string& why, const Snapshot& snapshot) {
+  list_.count_event(false);
   tell(event, Severity::warning, in_quotes(event.name) + " from " + event.who + " was refused: " + why, snapshot);
 }
 
@@ -79,24 +82,23 @@ void EventDelivery::tell(const PlayedEvent& event, Severity severity, const std:
   log_.message(snapshot.time_ns, severity, "supervisor", "event " + text);
 }
 
-void EventDelivery::deliver(const PlayedEvent& event, const std::string& to, PlayList& list, const Snapshot& snapshot,
-                            bool paused) {
-  if (const std::string why = refusal(event, to, list, paused); !why.empty()) return refuse(event, why, list, snapshot);
+void EventDelivery::deliver(const PlayedEvent& event, const std::string& to, const Snapshot& snapshot) {
+  if (const std::string why = refusal(event, to); !why.empty()) return refuse(event, why, snapshot);
   std::string takers, wrong, data = data_json(event.data);
   if (data_bytes_ + data.size() > data_bytes_max)
     return refuse(event,
                   "the events of this tick bring more than " + std::to_string(data_bytes_max >> 10U) + " kB of data",
-                  list, snapshot);
+                  snapshot);
   data_bytes_ += data.size();
-  list.each_in_turn([&](const PlayList::Entry& entry) {
+  list_.each_in_turn([&](const PlayList::Entry& entry) {
     if (!is_meant(to, *entry.behavior) || find_event(entry.behavior->events(), event.name) == nullptr) return;
     const std::string why = entry.behavior->post(event);
     if (why.empty()) takers += (takers.empty() ? "" : ", ") + entry.behavior->name();
     if (!why.empty()) wrong = why;
   });
-  if (!wrong.empty()) refuse(event, wrong, list, snapshot);
+  if (!wrong.empty()) refuse(event, wrong, snapshot);
   if (takers.empty()) return;
-  list.count_event(true);
+  list_.count_event(true);
   log_.emitted({.time_ns = snapshot.time_ns,
                 .tick = snapshot.tick,
                 .event = event.name,
@@ -114,27 +116,26 @@ EventDelivery::Level EventDelivery::level_of(const InputEvent& input, const Snap
   return value > 0.5 ? Level::on : Level::off;
 }
 
-void EventDelivery::look_at_inputs(PlayList& list, const Snapshot& snapshot, bool paused) {
+void EventDelivery::look_at_inputs(const Snapshot& snapshot) {
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const Level level = level_of(inputs_[i], snapshot);
     if (level == Level::unknown) continue;
     const Level before = std::exchange(levels_[i], level);
     if (before == Level::unknown || before == level) continue;
-    input_says(inputs_[i], level == Level::on ? inputs_[i].rise : inputs_[i].fall, list, snapshot, paused);
+    input_says(inputs_[i], level == Level::on ? inputs_[i].rise : inputs_[i].fall, snapshot);
   }
 }
 
 // A configuration names events for several behaviors, so that nobody declares one is told once.
-void EventDelivery::input_says(const InputEvent& input, const std::string& event, PlayList& list,
-                               const Snapshot& snapshot, bool paused) {
+void EventDelivery::input_says(const InputEvent& input, const std::string& event, const Snapshot& snapshot) {
   if (event.empty()) return;
   const PlayedEvent played{.name = event, .who = input.input, .of_input = true};
   bool declared = false;
-  list.each_in_turn([&](const PlayList::Entry& entry) {
+  list_.each_in_turn([&](const PlayList::Entry& entry) {
     declared = declared || find_event(entry.behavior->events(), event) != nullptr;
   });
-  if (declared) return deliver(played, "", list, snapshot, paused);
-  list.count_event(false);
+  if (declared) return deliver(played, "", snapshot);
+  list_.count_event(false);
   if (!told("input " + input.input + " " + event))
     log_.message(snapshot.time_ns, Severity::info, "supervisor",
                  "event '" + event + "' from " + input.input + ": no behavior that plays declares it (told once)");
@@ -149,12 +150,12 @@ void EventDelivery::collect(PlayList::Entry& sender) {
   sender.behavior->sent_events().clear();
 }
 
-void EventDelivery::deliver_sent(PlayList& list, const Snapshot& snapshot) {
+void EventDelivery::deliver_sent(const Snapshot& snapshot) {
   for (const SentEvent& sent : std::exchange(sent_, {})) {
     bool taken = false;
     std::string wrong = "nobody of that name plays and declares it";
     if (sent.to == "all") wrong = "no other behavior that plays declares it";
-    list.each_in_turn([&](const PlayList::Entry& entry) {
+    list_.each_in_turn([&](const PlayList::Entry& entry) {
       Behavior& behavior = *entry.behavior;
       const bool itself = entry.lane == sent.lane && behavior.name() == sent.event.who;
       if (itself || (sent.to != "all" && sent.to != behavior.name())) return;
@@ -163,7 +164,7 @@ void EventDelivery::deliver_sent(PlayList& list, const Snapshot& snapshot) {
       taken = taken || why.empty();
       if (!why.empty()) wrong = why;
     });
-    list.count_event(taken);
+    list_.count_event(taken);
     if (!taken && !told("sent " + sent.event.who + " " + sent.event.name + " " + sent.to))
       log_.message(snapshot.time_ns, Severity::warning, sent.event.who,
                    "event '" + sent.event.name + "' to '" + sent.to + "' was refused: " + wrong + " (told once)");

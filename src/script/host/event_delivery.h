@@ -19,6 +19,7 @@
 #include "config/robot/input_event.h"
 #include "engine/behavior_log.h"
 #include "kadans/signal/status.h"
+#include "pause.h"
 #include "play_list.h"
 #include "script/chart/event_queue.h"
 
@@ -31,18 +32,19 @@ class EventDelivery {
   // Of the data of events from outside in one tick, as JSON: the record has all of it, and its ring has room for more.
   static constexpr std::size_t data_bytes_max = std::size_t{64} << 10U;
 
-  EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs);
+  // The references must outlive it.
+  EventDelivery(BehaviorLog& log, std::vector<InputEvent> inputs, PlayList& list, const Pause& pause);
 
   // To be called when a tick begins.
   void begin_tick() noexcept { data_bytes_ = 0; }
   // Why nobody could take the event now; "": somebody can. `to`: the name of a behavior; "" or "all": all of them.
-  static std::string refusal(const PlayedEvent& event, const std::string& to, PlayList& list, bool paused);
-  void deliver(const PlayedEvent& event, const std::string& to, PlayList& list, const Snapshot& snapshot, bool paused);
+  std::string refusal(const PlayedEvent& event, const std::string& to);
+  void deliver(const PlayedEvent& event, const std::string& to, const Snapshot& snapshot);
   // To be called in each tick: what inputs say, as compared with the tick before.
-  void look_at_inputs(PlayList& list, const Snapshot& snapshot, bool paused);
+  void look_at_inputs(const Snapshot& snapshot);
   // To be called after the tick of a behavior.
   void collect(PlayList::Entry& sender);
-  void deliver_sent(PlayList& list, const Snapshot& snapshot);
+  void deliver_sent(const Snapshot& snapshot);
 
   // For another process.
   void keep(ByteWriter& bytes) const;
@@ -51,15 +53,16 @@ class EventDelivery {
  private:
   enum class Level : std::uint8_t { unknown, off, on };
   static Level level_of(const InputEvent& input, const Snapshot& snapshot) noexcept;
-  void input_says(const InputEvent& input, const std::string& event, PlayList& list, const Snapshot& snapshot,
-                  bool paused);
-  void refuse(const PlayedEvent& event, const std::string& why, PlayList& list, const Snapshot& snapshot);
+  void input_says(const InputEvent& input, const std::string& event, const Snapshot& snapshot);
+  void refuse(const PlayedEvent& event, const std::string& why, const Snapshot& snapshot);
   void tell(const PlayedEvent& event, BehaviorLog::Severity severity, const std::string& text,
             const Snapshot& snapshot);
   bool told(const std::string& what) { return told_.size() >= told_max || !told_.insert(what).second; }
 
   static constexpr std::size_t told_max = 256;
   BehaviorLog& log_;
+  PlayList& list_;
+  const Pause& pause_;
   std::vector<InputEvent> inputs_;
   std::vector<Level> levels_;  // of the inputs
   std::vector<SentEvent> sent_;

@@ -2,6 +2,8 @@
 
 #include <iterator>
 
+#include "signal/byte_order.h"
+
 namespace kadans {
 
 void PlayStatus::declare(SignalTable& signals) const {
@@ -46,14 +48,14 @@ void PlayList::end_all() noexcept {
   for (Entry& entry : entries_) entry.over = true;
 }
 
-void PlayList::count(std::uint32_t done, std::uint32_t not_done) noexcept {
-  status_.done.store(done, std::memory_order_relaxed);
-  status_.not_done.store(not_done, std::memory_order_relaxed);
+void PlayList::keep_counts(ByteWriter& bytes) const {
+  for (const auto* count : {&status_.done, &status_.not_done, &status_.events, &status_.events_refused})
+    bytes.put(count->load(std::memory_order_relaxed));
 }
 
-void PlayList::count_events(std::uint32_t taken, std::uint32_t refused) noexcept {
-  status_.events.store(taken, std::memory_order_relaxed);
-  status_.events_refused.store(refused, std::memory_order_relaxed);
+void PlayList::restore_counts(ByteReader& bytes) noexcept {
+  for (auto* count : {&status_.done, &status_.not_done, &status_.events, &status_.events_refused})
+    count->store(bytes.take<std::uint32_t>(), std::memory_order_relaxed);
 }
 
 void PlayList::publish(bool paused) noexcept {
@@ -65,88 +67,6 @@ void PlayList::publish(bool paused) noexcept {
   status_.playing.store(playing, std::memory_order_relaxed);
   status_.waiting.store(left - playing, std::memory_order_relaxed);
   status_.phase.store(paused ? 2 : left > 0 ? 1 : 0, std::memory_order_relaxed);
-}
-
-namespace {
-
-enum ArgumentKind : std::uint8_t { number, boolean, text };
-
-void put_argument(const PlayArgument& argument, ByteWriter& bytes) {
-  bytes.put_string(argument.name);
-  bytes.put(static_cast<std::uint8_t>(argument.value.index()));
-  if (const auto* is_number = std::get_if<double>(&argument.value)) bytes.put(*is_number);
-  if (const auto* is_true = std::get_if<bool>(&argument.value)) bytes.put<std::uint8_t>(*is_true);
-  if (const auto* is_text = std::get_if<std::string>(&argument.value)) bytes.put_string(*is_text);
-}
-
-PlayArgument take_argument(ByteReader& bytes) {
-  PlayArgument argument{.name = bytes.take_string(), .value = 0.0};
-  switch (bytes.take<std::uint8_t>()) {
-    case number:
-      argument.value = bytes.take<double>();
-      break;
-    case boolean:
-      argument.value = bytes.take<std::uint8_t>() != 0;
-      break;
-    default:
-      argument.value = bytes.take_string();
-  }
-  return argument;
-}
-
-}  // namespace
-
-void put_item(const PlayItem& item, ByteWriter& bytes) {
-  bytes.put_string(item.file.string());
-  bytes.put(item.lane);
-  bytes.put_string(item.source);
-  bytes.put(static_cast<std::uint32_t>(item.arguments.size()));
-  for (const PlayArgument& argument : item.arguments) put_argument(argument, bytes);
-}
-
-PlayItem take_item(ByteReader& bytes) {
-  PlayItem item{.file = bytes.take_string()};
-  item.lane = bytes.take<std::uint32_t>();
-  item.source = bytes.take_string();
-  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) {
-    item.arguments.push_back(take_argument(bytes));
-  }
-  return item;
-}
-
-void put_event(const PlayedEvent& event, ByteWriter& bytes) {
-  bytes.put_string(event.name);
-  bytes.put_string(event.who);
-  bytes.put<std::uint8_t>(event.ordered);
-  bytes.put(static_cast<std::uint32_t>(event.data.size()));
-  for (const PlayArgument& field : event.data) put_argument(field, bytes);
-}
-
-PlayedEvent take_event(ByteReader& bytes) {
-  PlayedEvent event{.name = bytes.take_string()};
-  event.who = bytes.take_string();
-  event.ordered = bytes.take<std::uint8_t>() != 0;
-  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left)
-    event.data.push_back(take_argument(bytes));
-  return event;
-}
-
-void put_order(const PlayOrder& order, ByteWriter& bytes) {
-  bytes.put(static_cast<std::uint8_t>(order.kind));
-  bytes.put_string(order.behavior.name);
-  bytes.put_string(order.file.string());
-  bytes.put(static_cast<std::uint32_t>(order.list.size()));
-  for (const PlayItem& item : order.list) put_item(item, bytes);
-  if (order.kind == PlayOrder::Kind::emit) put_event(order.event, bytes);
-}
-
-PlayOrder take_order(ByteReader& bytes) {
-  PlayOrder order{.kind = static_cast<PlayOrder::Kind>(bytes.take<std::uint8_t>())};
-  order.behavior.name = bytes.take_string();
-  order.file = bytes.take_string();
-  for (auto left = bytes.take<std::uint32_t>(); left > 0 && bytes.ok(); --left) order.list.push_back(take_item(bytes));
-  if (order.kind == PlayOrder::Kind::emit) order.event = take_event(bytes);
-  return order;
 }
 
 }  // namespace kadans

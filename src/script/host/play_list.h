@@ -10,9 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "config/scenario/play_item.h"
 #include "script/behavior/behavior.h"
-#include "signal/byte_order.h"
 
 namespace kadans {
 
@@ -51,11 +49,12 @@ class PlayList {
   void end(Entry& entry) noexcept;
   void end_all() noexcept;
 
-  void count(std::uint32_t done, std::uint32_t not_done) noexcept;  // sets the counts of an earlier process
   void count_event(bool taken) noexcept {
     (taken ? status_.events : status_.events_refused).fetch_add(1, std::memory_order_relaxed);
   }
-  void count_events(std::uint32_t taken, std::uint32_t refused) noexcept;  // as count()
+  // For another process: what has ended so far, and the events.
+  void keep_counts(ByteWriter& bytes) const;
+  void restore_counts(ByteReader& bytes) noexcept;
 
   bool over() const noexcept {
     return std::all_of(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.over; });
@@ -70,14 +69,5 @@ class PlayList {
   std::vector<Entry> entries_;
   PlayStatus status_;
 };
-
-// Writes orders and items of the play list as bytes for another process, and reads them back. A missing value is read
-// as zero or empty, and then the reader is not ok().
-void put_item(const PlayItem& item, ByteWriter& bytes);
-PlayItem take_item(ByteReader& bytes);
-void put_event(const PlayedEvent& event, ByteWriter& bytes);
-PlayedEvent take_event(ByteReader& bytes);
-void put_order(const PlayOrder& order, ByteWriter& bytes);
-PlayOrder take_order(ByteReader& bytes);
 
 }  // namespace kadans

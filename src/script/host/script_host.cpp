@@ -7,7 +7,6 @@
 #include "config/scenario/event_text.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/state_hash.h"
-#include "play_list.h"
 #include "script/bindings/machine_sets.h"
 #include "signal/byte_order.h"
 #include "signal/number_text.h"
@@ -49,7 +48,7 @@ ScriptHost::ScriptHost(const Settings& settings, const Catalog& catalog, Behavio
       log_(log),
       pause_(catalog),
       safe_(settings.safe, catalog),
-      delivery_(log, settings.inputs) {
+      delivery_(log, settings.inputs, list_, pause_) {
   settings_.limits.inputs = &inputs_;
   settings_.limits.watch = &line_watch_;
   std::vector<InputProblem> problems;
@@ -189,13 +188,10 @@ WrongData ScriptHost::wrong_event(const PlayedEvent& event) const {
 
 void ScriptHost::declare_signals(SignalTable& signals) {
   list_.status().declare(signals);
-  const auto declare = [&](const PlayList::Entry& entry) {
-    const BehaviorStatus& status = entry.behavior->status();
-    const std::string name = status.declare_numbered(signals, entry.behavior->name());
-    add_signal_states(entry.behavior->chart(), name, signals, signal_states_);
-  };
-  std::ranges::for_each(list_.entries(), declare);
-  for (const Due& due : events_) std::ranges::for_each(due.loaded, declare);
+  for (const Behavior* behavior : loaded()) {
+    const std::string name = behavior->status().declare_numbered(signals, behavior->name());
+    add_signal_states(behavior->chart(), name, signals, signal_states_);
+  }
 }
 
 std::vector<std::filesystem::path> ScriptHost::files() const {
@@ -224,18 +220,14 @@ bool ScriptHost::repeat_question(std::span<const std::byte> bytes, const Snapsho
   BehaviorQuestion question;
   if (!take_question(reader, question)) return false;
   try {
-    (void)reply(question, snapshot, [](const ScriptHost*) { return std::string(); });
+    (void)reply(question, snapshot);
   } catch (const InputError&) {  // refused, as it was then
   }
   return true;
 }
 
 void ScriptHost::order(const PlayOrder& order) {
-  if (inputs_ != nullptr) {
-    ByteWriter bytes;
-    put_order(order, bytes);
-    inputs_->asked(BehaviorInputs::Asked::order, bytes.bytes());
-  }
+  tell_asked(inputs_, BehaviorInputs::Asked::order, [&](ByteWriter& bytes) { put_order(order, bytes); });
   std::vector<InputProblem> problems;
   Due due{0, order, load(order.list, false, problems)};
   if (!problems.empty()) throw InputError(problems);
@@ -255,8 +247,7 @@ void ScriptHost::check_event(const PlayOrder& order) {
       std::ranges::count(orders_, PlayOrder::Kind::emit, [](const Due& due) { return due.order.kind; });
   std::string why = out_of_bounds(order.event.data);
   // What another process kept is in the list from the first tick on; the event is judged again when it is delivered.
-  if (why.empty() && settings_.kept.empty())
-    why = EventDelivery::refusal(order.event, order.behavior.name, list_, pause_.paused());
+  if (why.empty() && settings_.kept.empty()) why = delivery_.refusal(order.event, order.behavior.name);
   if (why.empty() && static_cast<std::size_t>(waiting) >= EventDelivery::ordered_max)
     why = std::to_string(EventDelivery::ordered_max) + " events wait for the next tick already";
   if (why.empty()) return;
@@ -266,8 +257,8 @@ void ScriptHost::check_event(const PlayOrder& order) {
 
 void ScriptHost::take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept {
   delivery_.begin_tick();
-  delivery_.deliver_sent(list_, snapshot);
-  delivery_.look_at_inputs(list_, snapshot, pause_.paused());
+  delivery_.deliver_sent(snapshot);
+  delivery_.look_at_inputs(snapshot);
   for (; events_done_ < events_.size() && events_[events_done_].at_ns <= snapshot.time_ns; ++events_done_) {
     carry_out(events_[events_done_], snapshot, commands);
   }
@@ -279,8 +270,7 @@ void ScriptHost::carry_out(Due& due, const Snapshot& snapshot, CommandSender& co
   using Kind = PlayOrder::Kind;
   const Kind kind = due.order.kind;
   if (kind == Kind::reload) return reload(due.order, snapshot, commands);
-  if (kind == Kind::emit)
-    return delivery_.deliver(due.order.event, due.order.behavior.name, list_, snapshot, pause_.paused());
+  if (kind == Kind::emit) return delivery_.deliver(due.order.event, due.order.behavior.name, snapshot);
   std::string text = play_order_names[static_cast<std::size_t>(kind)];
   for (const PlayList::Entry& entry : due.loaded) text += " " + entry.behavior->name();
   log_.message(snapshot.time_ns, BehaviorLog::Severity::info, "supervisor", text);
@@ -325,11 +315,7 @@ void ScriptHost::reload(const PlayOrder& order, const Snapshot& snapshot, Comman
 
 void ScriptHost::reload_saved(const Snapshot& snapshot, CommandSender& commands) noexcept {
   if (watch_ == nullptr || !watch_->poll()) return;
-  for (PlayList::Entry& entry : list_.entries()) {
-    if (entry.over) continue;
-    entry.behavior->hold_clock(pause_.held_ns());
-    (void)entry.behavior->reload(snapshot, commands, {}, PlayList::sets_beside(entry.lane, list_.entries()));
-  }
+  reload({}, snapshot, commands);
   watch_folders();  // of modules that are new
 }
 
@@ -345,21 +331,18 @@ void ScriptHost::watch_folders() {
   }
 }
 
-BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot, Describe describe) {
+BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
   const bool tells =
       question.kind == BehaviorQuestion::Kind::report || question.kind == BehaviorQuestion::Kind::describe;
-  if (inputs_ != nullptr && !tells) {
-    ByteWriter bytes;
-    put_question(question, bytes);
-    inputs_->asked(BehaviorInputs::Asked::question, bytes.bytes());
-  }
+  if (!tells)
+    tell_asked(inputs_, BehaviorInputs::Asked::question, [&](ByteWriter& bytes) { put_question(question, bytes); });
   switch (question.kind) {
     case BehaviorQuestion::Kind::report:
       return {.paused = paused(), .behaviors = reports()};
     case BehaviorQuestion::Kind::why:
       return {.reasons = why(question.text, snapshot)};
     case BehaviorQuestion::Kind::describe:
-      return {.text = describe(this)};
+      return {.text = settings_.describe != nullptr ? settings_.describe(this) : ""};
     case BehaviorQuestion::Kind::reload:
       throw InputError({.message = "behaviors are reloaded by an order"});
     case BehaviorQuestion::Kind::set_parameter:
@@ -438,10 +421,7 @@ std::string ScriptHost::keep(ByteWriter& bytes, std::int64_t time_ns) {
     bytes.put<std::uint8_t>(entry.lasting);
   }
   bytes.put(static_cast<std::uint32_t>(events_done_));
-  bytes.put(list_.status().done.load(std::memory_order_relaxed));
-  bytes.put(list_.status().not_done.load(std::memory_order_relaxed));
-  bytes.put(list_.status().events.load(std::memory_order_relaxed));
-  bytes.put(list_.status().events_refused.load(std::memory_order_relaxed));
+  list_.keep_counts(bytes);
   pause_.keep(bytes, time_ns);
   safe_.keep(bytes);
   delivery_.keep(bytes);
@@ -475,10 +455,7 @@ void ScriptHost::go_on(const Snapshot& snapshot, CommandSender& commands) noexce
   ByteReader bytes(settings_.kept);
   settings_.kept = {};
   events_done_ = std::min<std::size_t>(bytes.take<std::uint32_t>(), events_.size());
-  const auto done = bytes.take<std::uint32_t>();
-  list_.count(done, bytes.take<std::uint32_t>());
-  const auto taken = bytes.take<std::uint32_t>();
-  list_.count_events(taken, bytes.take<std::uint32_t>());
+  list_.restore_counts(bytes);
   pause_.restore(bytes);
   safe_.restore(bytes);
   delivery_.restore(bytes);

@@ -14,18 +14,14 @@
 #include <string>
 #include <vector>
 
-#include "behavior_tables.h"
-#include "config/scenario/play_item.h"
-#include "engine/behavior_host.h"
 #include "engine/behavior_inputs.h"
 #include "engine/behavior_log.h"
 #include "event_delivery.h"
 #include "file_watch.h"
 #include "pause.h"
-#include "play_list.h"
-#include "play_report.h"
 #include "safe_posture.h"
 #include "script/bindings/signal_expressions.h"
+#include "served_host.h"
 
 namespace kadans {
 
@@ -34,7 +30,7 @@ namespace kadans {
 void add_signal_states(const Chart& chart, const std::string& name, const SignalTable& signals,
                        std::vector<SignalState>& to);
 
-class ScriptHost final : public BehaviorHost, public OrderTaker {
+class ScriptHost final : public ServedHost {
  public:
   struct Event {
     std::int64_t at_ns = 0;
@@ -53,6 +49,7 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
     // Bytes from keep() of another process's host: the host plays these instead of `play` and continues where that one
     // ended. They are read in the constructor and in the first tick.
     std::span<const std::byte> kept{};
+    std::string (*describe)(const ScriptHost* host) = nullptr;  // the charts for viewers; nullptr: nobody asks for them
   };
   // Loads all behaviors, also those of events. Throws InputError with the problems of all files. `catalog` and `log`
   // must outlive the host.
@@ -78,17 +75,13 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   // In a run that repeats a record: the question that was asked there. False: the bytes are damaged.
   [[nodiscard]] bool repeat_question(std::span<const std::byte> bytes, const Snapshot& snapshot);
 
-  using Describe = std::string (*)(const ScriptHost*);  // the charts for viewers
-  // Behavior thread, between ticks: reports, reasons, charts as `describe` tells them, and changes of parameters.
-  // Throws InputError.
-  BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot, Describe describe);
+  // Behavior thread, between ticks: reports, reasons, charts, and changes of parameters. Throws InputError.
+  BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot) override;
   std::vector<BehaviorReasons> why(const std::string& name, const Snapshot& snapshot) const;
 
-  // Behavior thread, between ticks: writes the state of everything that plays as bytes. Returns "", or why it is
-  // impossible; then the bytes cannot be used.
-  std::string keep(ByteWriter& bytes, std::int64_t time_ns);
-  // After the first tick: why the host could not continue from the kept bytes; "" when it could.
-  const std::string& lost() const noexcept { return lost_; }
+  // Behavior thread, between ticks: writes the state of everything that plays.
+  std::string keep(ByteWriter& bytes, std::int64_t time_ns) override;
+  const std::string& lost() const noexcept override { return lost_; }
 
   // Before the loop. From now on saved files are reloaded. Throws std::runtime_error when nothing can be watched.
   void watch();
@@ -98,13 +91,13 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   // The states of these behaviors, for conditions. After declare_signals().
   std::span<const SignalState> signal_states() const noexcept { return signal_states_; }
 
-  // Behavior thread, between ticks: what plays now; the counts of orders are the caller's.
-  void report(PlayReport& report) const noexcept;
+  // Behavior thread, between ticks.
+  void report(PlayReport& report) const noexcept override;
 
   bool in_safe_posture() const noexcept { return safe_.moved(); }  // the robot was sent there after a failure
   bool paused() const noexcept { return pause_.paused(); }
   bool finished() const noexcept { return list_.over(); }  // every lane has ended
-  const PlayStatus& status() const noexcept { return list_.status(); }
+  const PlayStatus& status() const noexcept override { return list_.status(); }
   // Before the loop. Why no behavior that is loaded takes this event; "": one does.
   WrongData wrong_event(const PlayedEvent& event) const;
   std::vector<std::string> names() const;  // names of the loaded behaviors that are still in the list or in events
@@ -113,9 +106,9 @@ class ScriptHost final : public BehaviorHost, public OrderTaker {
   std::vector<std::filesystem::path> files() const;
 
   // The list: behaviors that play, wait or have played, in order. Behaviors of an event are in it from the event on.
-  std::size_t size() const noexcept { return list_.entries().size(); }
+  std::size_t size() const noexcept override { return list_.entries().size(); }
   Behavior& behavior(std::size_t index) noexcept { return *list_.entries()[index].behavior; }
-  const Behavior& behavior(std::size_t index) const noexcept { return *list_.entries()[index].behavior; }
+  const Behavior& behavior(std::size_t index) const noexcept override { return *list_.entries()[index].behavior; }
   bool over(std::size_t index) const noexcept { return list_.entries()[index].over; }
 
  private:

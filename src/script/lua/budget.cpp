@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 
 #include "engine/behavior_inputs.h"
-#include "line_watch.h"
 #include "lua_core.h"
 #include "lua_state.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans {
 namespace {
@@ -21,11 +19,6 @@ constexpr double scanned_bytes_per_instruction = 32;
 
 std::atomic<bool> interruption{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
-
-std::int64_t wall_now_ns() noexcept {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 const char breach_marker = 0;
 
@@ -57,12 +50,6 @@ void note_place(lua_State* state, ScriptError& error) noexcept {
   }
 }
 
-std::int64_t thread_now_ns() noexcept {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
-}
-
 void interrupt_scripts(bool yes) noexcept { interruption.store(yes, std::memory_order_relaxed); }
 
 void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept {
@@ -71,7 +58,7 @@ void Budget::begin(lua_State* state, std::uint64_t instructions, std::int64_t wa
   charged_ = 0;
   interval_ = wall_ns > 0 ? timed_interval : interval;
   wall_ns_ = wall_ns;
-  look_ns_ = wall_ns > 0 ? wall_now_ns() + wall_ns / 4 : 0;
+  look_ns_ = wall_ns > 0 ? monotonic_ns() + wall_ns / 4 : 0;
   thread_end_ns_ = 0;
   interrupted_ns_ = 0;
   error_.set = false;
@@ -114,9 +101,9 @@ void Budget::look(lua_State* state) {
 // The thread's clock costs a system call, so it is looked at only when a quarter of the time has passed on the wall
 // clock, and then again each time the script could have used up what is left.
 bool Budget::out_of_time() noexcept {
-  const std::int64_t now_ns = wall_now_ns();
+  const std::int64_t now_ns = monotonic_ns();
   if (now_ns < look_ns_) return false;
-  const std::int64_t thread_ns = thread_now_ns();
+  const std::int64_t thread_ns = thread_cpu_ns();
   if (thread_end_ns_ == 0) thread_end_ns_ = thread_ns + wall_ns_ - wall_ns_ / 4;
   look_ns_ = now_ns + (thread_end_ns_ - thread_ns);
   return thread_ns >= thread_end_ns_;
@@ -129,7 +116,7 @@ bool Budget::time_is_over() noexcept {
 }
 
 bool Budget::interrupted() noexcept {
-  const std::int64_t now_ns = wall_now_ns();
+  const std::int64_t now_ns = monotonic_ns();
   if (interrupted_ns_ == 0) interrupted_ns_ = now_ns;
   return now_ns - interrupted_ns_ >= interrupted_grace_ns;
 }

@@ -23,7 +23,18 @@ struct lua_Debug;
 namespace kadans {
 
 class BehaviorInputs;
-class LineWatch;
+
+// What a debugger hears of scripts while they run. Nobody listens in a run that is not debugged: then no hook for lines
+// is set.
+class LineWatch {
+ public:
+  virtual ~LineWatch() = default;
+  // Before the first instruction of a line; of `state`, which may be a coroutine. What is called must leave the state
+  // as it is.
+  virtual void line(lua_State* state, const char* chunk, int line) noexcept = 0;
+  // A script raised an error that it does not catch. Its stack still stands.
+  virtual void raised(lua_State* state, const char* message) noexcept = 0;
+};
 
 // To be called when the program shall end; any thread, also a signal handler. A running script is stopped after 0.2 s,
 // in which most scripts end by themselves. Scripts that are called later are stopped as well, until
@@ -51,7 +62,6 @@ class Budget {
   // True when a limit was passed since begin(). The script is stopped even if it caught the error.
   bool breached() const noexcept { return error_.breach != ScriptBreach::none; }
   std::uint64_t left() const noexcept { return spent_ < limit_ ? limit_ - spent_ : 0; }
-  std::uint64_t limit() const noexcept { return limit_; }
   std::uint64_t spent() const noexcept { return spent_; }
 
   // Raises the breach again, if there is one. For functions that catch errors.

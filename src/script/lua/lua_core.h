@@ -11,8 +11,7 @@
 #include "kadans/signal/random.h"
 #include "lua_heap.h"
 #include "script/bindings/snapshot_tables.h"
-#include "script/host/script_event.h"
-#include "script/host/script_parameter.h"
+#include "script/host/script_declarations.h"
 #include "script_error.h"
 
 namespace kadans {
@@ -44,9 +43,6 @@ inline LuaCore& core_of(lua_State* state) noexcept {
   lua_getallocf(state, &core);
   return *static_cast<LuaCore*>(core);
 }
-
-// The CPU time of this thread, without the time of other threads. It asks the kernel, which costs about 0.7 us.
-std::int64_t thread_now_ns() noexcept;
 
 // Notes the innermost script line in `error`. When there is none (a tail call leaves no trace), it notes the line where
 // the function that was called last begins. Never allocates.

@@ -7,12 +7,12 @@
 
 #include "engine/behavior_inputs.h"
 #include "kadans/signal/input_error.h"
-#include "line_watch.h"
 #include "lua_core.h"
 #include "script/check/source_lexer.h"
 #include "script/check/syntax_hint.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/input_file.h"
+#include "signal/monotonic_clock.h"
 
 namespace kadans {
 namespace {
@@ -249,7 +249,7 @@ void LuaState::collect_in_time(int kB) noexcept {
   constexpr int piece_kB = 32;
   for (std::int64_t end_ns = 0; kB > 0; kB -= piece_kB) {
     if (lua_gc(lua_, LUA_GCSTEP, std::min(kB, piece_kB)) != 0 || kB <= piece_kB) return;
-    const std::int64_t now_ns = thread_now_ns();
+    const std::int64_t now_ns = thread_cpu_ns();
     if (end_ns == 0) end_ns = now_ns + settings_.limits.tick_wall_ns;
     if (now_ns >= end_ns) return;
   }

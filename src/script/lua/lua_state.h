@@ -26,11 +26,7 @@ struct LuaCore;
 class ScriptVoice {
  public:
   virtual ~ScriptVoice() = default;
-  virtual void say(const char* text) noexcept = 0;
-  virtual void say_with(BehaviorLog::Severity severity, const char* text) noexcept {
-    (void)severity;
-    say(text);
-  }
+  virtual void say_with(BehaviorLog::Severity severity, const char* text) noexcept = 0;
 };
 
 class LuaState {

@@ -91,18 +91,9 @@ void observe(Motion& motion, const Snapshot& snapshot, std::int64_t now_ns) noex
 }
 
 const char* failure(const Motion& motion) noexcept {
-  switch (motion.state) {
-    case MotionState::queue_full:
-      return "queue_full";
-    case MotionState::refused:
-      return "refused";
-    case MotionState::cancelled:
-      return "cancelled";
-    case MotionState::expired:
-      return "expired";
-    default:
-      return nullptr;
-  }
+  constexpr const char* failures[] = {"cancelled", "queue_full", "refused", "expired"};  // as of MotionState
+  if (motion.state < MotionState::cancelled) return nullptr;
+  return failures[static_cast<int>(motion.state) - static_cast<int>(MotionState::cancelled)];
 }
 
 void push_reason(lua_State* state, const Motion& motion) {

@@ -187,7 +187,7 @@ int set(lua_State* state) {
   const char* unit = bindings_of(state).catalog->setpoints[id].unit.c_str();
   const MotionOptions options = read_motion_options(state, 4, MotionOption::set, "set", unit);
   MotionTargets targets;
-  targets.all[targets.count++] = {.id = id, .value = value, .from = {}};
+  targets.add(id, value);
   place_targets(state, options, options.trapezoid, targets);
   if (const int told = foresee(state, object, targets, {}, duration_of(options, targets)); told > 0) return told;
   return send_motion(state, number, options, targets);

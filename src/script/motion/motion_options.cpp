@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "script/bindings/bindings.h"
 #include "script/check/hint.h"
@@ -13,20 +14,13 @@
 namespace kadans {
 namespace {
 
-// How the set-point of a joint's position is called, or nothing.
-const Setpoint* position_setpoint(const Catalog& catalog, const ObjectInfo& object, std::size_t joint, SetpointId& id) {
-  constexpr std::string_view ending = ".position_rad";
-  for (const SetpointId candidate : object.setpoints) {
-    const Setpoint& setpoint = catalog.setpoints[candidate];
-    if (setpoint.joint != joint || !std::string_view(setpoint.name).ends_with(ending)) continue;
-    id = candidate;
-    return &setpoint;
+// The set-point of a joint's position, if the object has it.
+std::optional<SetpointId> position_setpoint(const Catalog& catalog, const ObjectInfo& object, std::size_t joint) {
+  for (const SetpointId id : object.setpoints) {
+    const Setpoint& setpoint = catalog.setpoints[id];
+    if (setpoint.joint == joint && setpoint.name.ends_with(".position_rad")) return id;
   }
-  return nullptr;
-}
-
-void add(MotionTargets& targets, SetpointId id, double value) {
-  targets.all[targets.count++] = {.id = id, .value = value, .from = {}};
+  return std::nullopt;
 }
 
 void named_pose(lua_State* state, const ObjectInfo& object, const char* name, MotionTargets& targets) {
@@ -39,9 +33,9 @@ void named_pose(lua_State* state, const ObjectInfo& object, const char* name, Mo
     const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(catalog.poses); });
     luaL_error(state, "unknown pose '%s'%s", name, hint.data());
   }
-  for (const auto& [joint, position_rad] : pose->position_rad) {
-    SetpointId id = 0;  // nothing for a joint that another object moves, or none
-    if (position_setpoint(catalog, object, joint, id) != nullptr) add(targets, id, position_rad);
+  for (const auto& [joint, position_rad] :
+       pose->position_rad) {  // nothing for a joint that another object moves, or none
+    if (const auto id = position_setpoint(catalog, object, joint)) targets.add(*id, position_rad);
   }
   if (targets.count == 0) luaL_error(state, "pose '%s' holds no joint of '%s'", name, object.name.c_str());
 }
@@ -51,10 +45,8 @@ int raise_wrong_joint(lua_State* state, int index, const ObjectInfo& object) {
   const Catalog& catalog = *bindings_of(state).catalog;
   std::array<const char*, max_joints + 1> names{};
   std::size_t known = 0;
-  SetpointId ignored = 0;
   for (const std::size_t joint : object.joints) {
-    if (position_setpoint(catalog, object, joint, ignored) != nullptr)
-      names[known++] = catalog.model->joints[joint].name.c_str();
+    if (position_setpoint(catalog, object, joint)) names[known++] = catalog.model->joints[joint].name.c_str();
   }
   for (const Joint& joint : catalog.model->joints) {
     lua_getfield(state, index, joint.name.c_str());
@@ -70,14 +62,14 @@ int raise_wrong_joint(lua_State* state, int index, const ObjectInfo& object) {
 void pose_table(lua_State* state, int index, const ObjectInfo& object, MotionTargets& targets) {
   const Catalog& catalog = *bindings_of(state).catalog;
   for (const std::size_t joint : object.joints) {  // in the robot's order, so that every run sends the same
-    SetpointId id = 0;
-    if (position_setpoint(catalog, object, joint, id) == nullptr) continue;
+    const auto id = position_setpoint(catalog, object, joint);
+    if (!id) continue;
     const char* name = catalog.model->joints[joint].name.c_str();
     lua_getfield(state, index, name);
     if (!lua_isnil(state, -1)) {
       if (lua_type(state, -1) != LUA_TNUMBER)
         luaL_error(state, "%s must be a number in rad, not a %s", name, luaL_typename(state, -1));
-      add(targets, id, lua_tonumber(state, -1));
+      targets.add(*id, lua_tonumber(state, -1));
     }
     lua_pop(state, 1);
   }

@@ -66,6 +66,7 @@ struct MotionTarget {
 struct MotionTargets {
   std::array<MotionTarget, max_joints> all;
   std::uint32_t count = 0;
+  void add(SetpointId id, double value) noexcept { all[count++] = {.id = id, .value = value, .from = {}}; }
   const MotionTarget* begin() const noexcept { return all.data(); }
   const MotionTarget* end() const noexcept { return all.data() + count; }
 };

@@ -8,6 +8,7 @@
 #include "script/bindings/bindings.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/check/hint.h"
+#include "script/host/play_report.h"
 #include "script/lua/script_error.h"
 
 namespace kadans {
@@ -22,28 +23,23 @@ struct PlainWord {
   int axis = 0;
 };
 
-void put(Word& to, std::string_view text) noexcept {
-  to = {};
-  std::copy_n(text.data(), std::min(text.size(), to.size() - 1), to.data());
-}
-
 PlainWord plain_word(std::string_view name, bool of_joint) noexcept {
   PlainWord word;
   if (of_joint && name.ends_with(position_ending)) {
-    put(word.key, name.substr(0, name.size() - position_ending.size()));
+    put_text(word.key, name.substr(0, name.size() - position_ending.size()));
     return word;
   }
   if (const std::size_t dot = name.find('.'); dot != std::string_view::npos) {
-    put(word.group, name.substr(0, dot));
+    put_text(word.group, name.substr(0, dot));
     name.remove_prefix(dot + 1);
   }
-  put(word.key, name);
+  put_text(word.key, name);
   const std::size_t unit = name.rfind('_');
   if (unit == std::string_view::npos || unit < 2 || name[unit - 2] != '_') return word;
   const char axis = name[unit - 1];
   if (axis < 'x' || axis > 'z') return word;
   word.axis = axis - 'x' + 1;
-  put(word.key, name.substr(0, unit - 2));
+  put_text(word.key, name.substr(0, unit - 2));
   const std::size_t begun = std::strlen(word.key.data());
   name.remove_prefix(unit);
   std::copy_n(name.data(), std::min(name.size(), word.key.size() - 1 - begun), word.key.data() + begun);
@@ -145,7 +141,7 @@ void read_tasks(lua_State* state, int index, const ObjectInfo& object, const cha
     double value = 0;
     if (!find_value(state, index, word, value)) continue;
     if (targets.count == targets.all.size()) luaL_error(state, "%s: too many targets at once", called);
-    targets.all[targets.count++] = {.id = id, .value = value, .from = {}};
+    targets.add(id, value);
   }
   if (targets.count == 0) luaL_error(state, "%s: there is no target in this table of tasks", called);
 }

@@ -89,8 +89,8 @@ struct BehaviorLink {
   };
   struct Answer {
     Turn<> number;                                // number of the request
-    PlayNumbers play{};                           // the numbers of PlayStatus, in its order
-    std::array<Numbers, behaviors_max> status{};  // the numbers of BehaviorStatus, in its order
+    PlayNumbers play{};                           // play_numbers()
+    std::array<Numbers, behaviors_max> status{};  // behavior_numbers()
     OfRegions<std::uint32_t> regions{};           // the active state of each region
     std::uint32_t kept_changed = 0;
     KeptState kept;
@@ -113,9 +113,14 @@ struct BehaviorLink {
 };
 static_assert(std::is_trivially_copyable_v<BehaviorLink>);
 
-// The first byte of a line that is a transition, tells active states (their number, then their paths), or is an event
-// from outside. Other lines have a severity of BehaviorLog there.
-inline constexpr std::uint8_t transition_line = 16, active_line = 17, emitted_line = 18;
+// Where the numbers of an answer are from, and where they go: pointers to them, in the answer's order.
+auto play_numbers(auto& play) {
+  return std::array{&play.phase,    &play.playing, &play.waiting,       &play.done,
+                    &play.not_done, &play.events,  &play.events_refused};
+}
+auto behavior_numbers(auto& of) {
+  return std::array{&of.heap_bytes, &of.instructions, &of.gc_pause_ns, &of.state, &of.reloads};
+}
 
 // A fingerprint by which two processes check that they use the same numbers for parameters, set-points, control sets
 // and objects. Each process reads the robot's files itself, and the files may have changed in between. Ranges and poses

@@ -6,35 +6,13 @@
 
 #include "behavior_link.h"
 #include "kadans/signal/input_error.h"
-#include "script/host/play_list.h"
 
 namespace kadans {
 
-bool SpokenLines::push(const Line& line) {
-  const Transition* t = line.transition;
-  begin(t != nullptr ? transition_line : static_cast<std::uint8_t>(line.severity), line.behavior);
-  if (t != nullptr) {
-    for (const std::string* text : {&t->from, &t->to, &t->why}) line_.put_string(*text);
-  } else {
-    line_.put_string(line.text);
-  }
-  return push();
-}
-
-void SpokenLines::tell_active(const ActiveStates& active) {
-  begin(active_line, active.behavior);
-  put_states(active, line_);
-  dropped_ += push() ? 0 : 1;
-}
-
-void SpokenLines::begin(std::uint8_t kind, std::string_view behavior) {
+bool SpokenLines::push(const auto& told) {
   line_.clear();
   line_.put(std::uint32_t{0});
-  line_.put(kind);
-  line_.put_string(behavior);
-}
-
-bool SpokenLines::push() {
+  put_told(told, line_);
   line_.set(0, static_cast<std::uint32_t>(line_.size() - sizeof(std::uint32_t)));
   return link_.lines.try_push(line_.bytes());
 }
@@ -48,14 +26,11 @@ void SpokenLines::tell(const Line& line) {
 void SpokenLines::tell_dropped(std::int64_t time_ns) {
   if (dropped_ == 0) return;
   const std::string text = std::to_string(dropped_) + " lines found no place";
-  if (push({time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
+  if (push(Line{time_ns, BehaviorLog::Severity::warning, "supervisor", text})) dropped_ = 0;
 }
 
-void SpokenLines::tell_emitted(const EmittedEvent& event) {
-  begin(emitted_line, "");
-  put_event(event, line_);
-  dropped_ += push() ? 0 : 1;
-}
+void SpokenLines::tell_active(const ActiveStates& active) { dropped_ += push(active) ? 0 : 1; }
+void SpokenLines::tell_emitted(const EmittedEvent& event) { dropped_ += push(event) ? 0 : 1; }
 
 BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ServedHost& host, BehaviorLog& log,
                                SpokenLines& lines, Catalog& catalog, ControlSets& sets)
@@ -69,8 +44,7 @@ BehaviorServer::BehaviorServer(BehaviorLink& link, Doorbell& bell, ServedHost& h
       commands_(link.commands) {
   link_.ready.count = static_cast<std::uint32_t>(std::min(host_.size(), BehaviorLink::behaviors_max));
   for (std::uint32_t i = 0; i < link_.ready.count; ++i) {
-    const std::string& name = host_.behavior(i).name();
-    std::copy_n(name.begin(), std::min(name.size(), BehaviorLink::name_bytes - 1), link_.ready.names[i].begin());
+    put_text(link_.ready.names[i], host_.behavior(i).name());
     const std::vector<std::string>& regions = host_.behavior(i).status().region_paths;
     for (std::size_t r = 0; r < regions.size(); ++r) std::ranges::copy(regions[r], link_.ready.regions[i][r].begin());
   }
@@ -93,10 +67,10 @@ bool BehaviorServer::answer() {
   commands_.follow(link_.request.last_sequence, link_.request.room);
   take_parameters();
   replies_.clear();
-  host_.begin_tick(snapshot_);
+  host_.before_tick(snapshot_);
   take_orders();
-  plays_ = link_.request.plays;
-  host_.tick(snapshot_, plays_, commands_);
+  host_.show(link_.request.plays);
+  host_.tick(snapshot_, commands_);
   if (!host_.lost().empty()) {
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::error, "supervisor", "cannot go on: " + host_.lost());
     return false;
@@ -167,15 +141,13 @@ void BehaviorServer::put(std::uint32_t number, const BehaviorReply& reply) {
 }
 
 void BehaviorServer::tell_status() {
-  const auto number = [](const std::atomic<std::uint32_t>& of) { return of.load(std::memory_order_relaxed); };
-  const PlayStatus& play = host_.status();
-  link_.answer.play = {number(play.phase),    number(play.playing), number(play.waiting),       number(play.done),
-                       number(play.not_done), number(play.events),  number(play.events_refused)};
+  const auto number = [](const std::atomic<std::uint32_t>* of) { return of->load(std::memory_order_relaxed); };
+  std::ranges::transform(play_numbers(host_.status()), link_.answer.play.begin(), number);
   for (std::size_t i = 0; i < std::min<std::size_t>(host_.size(), link_.ready.count); ++i) {
     const BehaviorStatus& status = host_.behavior(i).status();
-    link_.answer.status[i] = {number(status.heap_bytes), number(status.instructions), number(status.gc_pause_ns),
-                              number(status.state), number(status.reloads)};
-    for (std::size_t r = 0; r < status.region_paths.size(); ++r) link_.answer.regions[i][r] = number(status.regions[r]);
+    std::ranges::transform(behavior_numbers(status), link_.answer.status[i].begin(), number);
+    for (std::size_t r = 0; r < status.region_paths.size(); ++r)
+      link_.answer.regions[i][r] = number(&status.regions[r]);
   }
 }
 

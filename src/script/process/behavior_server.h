@@ -9,7 +9,7 @@
 #include "engine/transaction.h"
 #include "kadans/control/control_sets.h"
 #include "realtime/machine/shared_memory.h"
-#include "served_host.h"
+#include "script/host/served_host.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -26,9 +26,7 @@ class SpokenLines final : public LineSink {
   void tell_emitted(const EmittedEvent& event) override;
 
  private:
-  void begin(std::uint8_t kind, std::string_view behavior);
-  bool push(const Line& line);
-  bool push();  // line_, with its size
+  bool push(const auto& told);
 
   BehaviorLink& link_;
   ByteWriter line_;
@@ -64,7 +62,6 @@ class BehaviorServer {
   ControlSets& sets_;
   CommandSender commands_;
   Snapshot snapshot_;
-  PlayReport plays_;
   ByteWriter kept_, replies_;
   std::vector<std::byte> kept_last_;
   std::string unkept_;  // the last logged reason why the state cannot be kept

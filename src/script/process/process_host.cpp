@@ -8,7 +8,6 @@
 
 #include "behavior_link.h"
 #include "kadans/signal/state_hash.h"
-#include "script/host/play_list.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -31,7 +30,7 @@ T copy_of(const T& shared) noexcept {
 
 // Whether a line of the process is a message, and neither a transition nor another event of the run.
 bool is_said(std::span<const std::byte> line) noexcept {
-  return !line.empty() && std::to_integer<std::uint8_t>(line.front()) < transition_line;
+  return !line.empty() && line.front() == std::byte(Event::Kind::message);
 }
 
 bool is_name(std::string_view name) noexcept {
@@ -133,30 +132,10 @@ bool ChildAnswer::tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t 
 }
 
 bool ChildAnswer::tell_line(std::span<const std::byte> line, BehaviorLog& log, std::int64_t time_ns) {
-  ByteReader fields(line);
-  const auto kind = fields.take<std::uint8_t>();
-  const std::string behavior = fields.take_string();
-  if (kind == transition_line) {
-    const Transition transition{time_ns, behavior, fields.take_string(), fields.take_string(), fields.take_string()};
-    if (fields.ok()) log.transition(transition);
-  } else if (kind == emitted_line) {
-    const EmittedEvent event = take_event(fields, time_ns);
-    if (fields.ok()) log.emitted(event);
-  } else if (kind == active_line) {
-    std::array<std::string_view, ActiveStates::told_max> states;
-    const auto count = fields.take<std::uint32_t>();
-    if (count > states.size()) return false;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const auto path = fields.take_bytes(fields.take<std::uint32_t>());
-      states[i] = {reinterpret_cast<const char*>(path.data()), path.size()};
-    }
-    if (fields.ok()) log.active({time_ns, behavior, std::span(states).first(count)});
-  } else {
-    const std::string text = fields.take_string();
-    if (kind > static_cast<std::uint8_t>(BehaviorLog::Severity::error)) return false;
-    if (fields.ok()) log.message(time_ns, static_cast<BehaviorLog::Severity>(kind), behavior, text);
-  }
-  return fields.ok() && fields.left() == 0;
+  ByteReader told(line);
+  if (!take_told(told, time_ns, event_)) return false;
+  event_.say_to(log);
+  return true;
 }
 
 void ChildAnswer::copy(std::span<const std::byte> shared) {
@@ -207,26 +186,14 @@ bool ChildAnswer::take_replies(BehaviorLink& link, std::map<std::uint32_t, Behav
 }
 
 void ChildAnswer::take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept {
-  const auto store = [](std::atomic<std::uint32_t>& to, std::uint32_t& from) {
-    to.store(once(from), std::memory_order_relaxed);
+  const auto store = [](const auto& to, auto& from) {
+    for (std::size_t n = 0; n < to.size(); ++n) to[n]->store(once(from[n]), std::memory_order_relaxed);
   };
-  BehaviorLink::PlayNumbers& list = link.answer.play;
-  store(play.phase, list[0]);
-  store(play.playing, list[1]);
-  store(play.waiting, list[2]);
-  store(play.done, list[3]);
-  store(play.not_done, list[4]);
-  store(play.events, list[5]);
-  store(play.events_refused, list[6]);
+  store(play_numbers(play), link.answer.play);
   for (std::size_t i = 0; i < behaviors.size() && i < BehaviorLink::behaviors_max; ++i) {
-    BehaviorLink::Numbers& numbers = link.answer.status[i];
-    store(behaviors[i].heap_bytes, numbers[0]);
-    store(behaviors[i].instructions, numbers[1]);
-    store(behaviors[i].gc_pause_ns, numbers[2]);
-    store(behaviors[i].state, numbers[3]);
-    store(behaviors[i].reloads, numbers[4]);
+    store(behavior_numbers(behaviors[i]), link.answer.status[i]);
     for (std::size_t r = 0; r < behaviors[i].region_paths.size(); ++r)
-      store(behaviors[i].regions[r], link.answer.regions[i][r]);
+      behaviors[i].regions[r].store(once(link.answer.regions[i][r]), std::memory_order_relaxed);
   }
 }
 

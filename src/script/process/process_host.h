@@ -83,6 +83,7 @@ class ChildAnswer {
 
   std::vector<std::byte> bytes_;
   std::vector<Command> commands_;
+  Event event_;
 };
 
 // Decides when a process that died is started again: the first time at once, then after growing delays, and no more

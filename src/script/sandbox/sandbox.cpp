@@ -86,15 +86,18 @@ void take(lua_State* state, int to, int from, std::initializer_list<const char*>
   }
 }
 
-// [-0 +1] A read-only library of these functions; `extend` may change the copy.
-void push_library(lua_State* state, const char* name, std::initializer_list<const char*> names,
-                  void (*extend)(lua_State*)) {
+// [-0 +0] Puts a read-only library of these functions into the table at `globals`; extend(state) may change the copy,
+// which is at the top.
+void add_library(lua_State* state, int globals, const char* name, std::initializer_list<const char*> names,
+                 auto extend) {
   lua_newtable(state);
   const int copy = lua_gettop(state);
   lua_getglobal(state, name);
   take(state, copy, copy + 1, names);
   lua_pop(state, 1);
-  if (extend != nullptr) extend(state);
+  extend(state);
+  make_read_only(state, name);
+  lua_setfield(state, globals, name);
 }
 
 void open_libraries(lua_State* state) {
@@ -110,10 +113,10 @@ void open_libraries(lua_State* state) {
   }
 }
 
-void guard_string_metatable(lua_State* state, int strings) {
+void guard_string_metatable(lua_State* state, int globals) {
   lua_pushliteral(state, "");
   lua_getmetatable(state, -1);
-  lua_pushvalue(state, strings);
+  lua_getfield(state, globals, "string");
   lua_setfield(state, -2, "__index");
   lua_pushboolean(state, 0);
   lua_setfield(state, -2, "__metatable");
@@ -232,31 +235,21 @@ void open_sandbox(lua_State* state) {
   set_function(state, globals, "pairs", sandbox_pairs);
   set_function(state, globals, "require", sandbox_require);
 
-  push_library(state, "coroutine", {"create", "resume", "running", "status", "wrap", "yield"}, nullptr);
-  open_protected_calls(state, globals);
-  make_read_only(state, "coroutine");
-  lua_setfield(state, globals, "coroutine");
-  push_library(
-      state, "string",
+  add_library(state, globals, "coroutine", {"create", "resume", "running", "status", "wrap", "yield"},
+              [globals](lua_State* lua) { open_protected_calls(lua, globals); });
+  add_library(
+      state, globals, "string",
       {"byte", "char", "find", "format", "gmatch", "gsub", "len", "lower", "match", "rep", "reverse", "sub", "upper"},
       open_strings);
-  make_read_only(state, "string");
-  guard_string_metatable(state, lua_gettop(state));
-  lua_setfield(state, globals, "string");
-  push_library(state, "table", {"concat", "insert", "maxn", "remove", "sort"}, open_tables);
-  make_read_only(state, "table");
-  lua_setfield(state, globals, "table");
-  push_library(state, "math", {"abs",  "acos",  "asin",  "atan", "atan2", "ceil", "cos",   "cosh", "deg",
-                               "exp",  "floor", "frexp", "huge", "ldexp", "log",  "log10", "max",  "min",
-                               "modf", "pi",    "pow",   "rad",  "sin",   "sinh", "sqrt",  "tan",  "tanh"},
-               open_math);
-  make_read_only(state, "math");
-  lua_setfield(state, globals, "math");
-  push_library(state, "bit",
-               {"arshift", "band", "bnot", "bor", "bswap", "bxor", "lshift", "rol", "ror", "rshift", "tobit", "tohex"},
-               nullptr);
-  make_read_only(state, "bit");
-  lua_setfield(state, globals, "bit");
+  guard_string_metatable(state, globals);
+  add_library(state, globals, "table", {"concat", "insert", "maxn", "remove", "sort"}, open_tables);
+  add_library(state, globals, "math", {"abs",  "acos",  "asin",  "atan", "atan2", "ceil", "cos",   "cosh", "deg",
+                                       "exp",  "floor", "frexp", "huge", "ldexp", "log",  "log10", "max",  "min",
+                                       "modf", "pi",    "pow",   "rad",  "sin",   "sinh", "sqrt",  "tan",  "tanh"},
+              open_math);
+  add_library(state, globals, "bit",
+              {"arshift", "band", "bnot", "bor", "bswap", "bxor", "lshift", "rol", "ror", "rshift", "tobit", "tohex"},
+              [](lua_State*) {});
   lua_pushliteral(state, "Lua 5.1");
   lua_setfield(state, globals, "_VERSION");
 

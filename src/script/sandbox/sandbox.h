@@ -26,12 +26,9 @@ int raise_unknown_field(lua_State* state, const char* name, int content, int key
 void open_base(lua_State* state, int globals);  // [-0 +0] into the table at `globals`
 // [-0 +0] Puts pcall and xpcall into the table at `globals`, and resume and wrap into the coroutine library at the top.
 void open_protected_calls(lua_State* state, int globals);
-void open_math(lua_State* state);       // [-0 +0] into the math table at the top
-void open_strings(lua_State* state);    // [-0 +0] wraps the functions in the string table at the top
-void open_patterns(lua_State* state);   // find, match, gmatch and gsub of the string table
-void open_tables(lua_State* state);     // the same for the table library
-void check_writable(lua_State* state);  // raises when the first argument is no table, or a read-only one
-int sandbox_sort(lua_State* state);
+void open_math(lua_State* state);     // [-0 +0] into the math table at the top
+void open_strings(lua_State* state);  // [-0 +0] wraps the functions in the string table at the top
+void open_tables(lua_State* state);   // the same for the table library
 int sandbox_pairs(lua_State* state);
 
 // [-0 +0] Calls visit(key, value), two places on the stack, the value at its top, for the entries of the table at

@@ -43,6 +43,23 @@ int enter_coroutine(lua_State* state) {
   return depths;
 }
 
+// [-0 +1] A value without a __tostring as text; without addresses, which differ from run to run.
+void push_text(lua_State* state, int index) {
+  switch (lua_type(state, index)) {
+    case LUA_TNUMBER:
+      core_of(state).budget.charge(state, number_text_instructions);
+      [[fallthrough]];
+    case LUA_TSTRING:
+      lua_pushvalue(state, index);
+      lua_tostring(state, -1);
+      return;
+    case LUA_TBOOLEAN:
+      return lua_pushstring(state, lua_toboolean(state, index) != 0 ? "true" : "false");
+    default:
+      return lua_pushstring(state, luaL_typename(state, index));
+  }
+}
+
 // print(...): one line to the log.
 int print(lua_State* state) {
   const int count = lua_gettop(state);
@@ -53,49 +70,25 @@ int print(lua_State* state) {
   luaL_buffinit(state, &buffer);
   for (int i = 1; i <= count; ++i) {
     if (i > 1) luaL_addlstring(&buffer, " ", 1);
-    if (luaL_callmeta(state, i, "__tostring") == 0) {
-      if (lua_isstring(state, i) != 0) {
-        const bool number = lua_type(state, i) == LUA_TNUMBER;
-        core.budget.charge(state, number ? number_text_instructions : 0);
-        lua_pushvalue(state, i);
-      } else if (lua_isnil(state, i) || lua_isboolean(state, i)) {
-        lua_pushstring(state, lua_isnil(state, i) ? "nil" : lua_toboolean(state, i) != 0 ? "true" : "false");
-      } else {
-        lua_pushstring(state, luaL_typename(state, i));  // no addresses: they differ from run to run
-      }
-    }
+    if (luaL_callmeta(state, i, "__tostring") == 0) push_text(state, i);
     charge_text(state, static_cast<double>(lua_objlen(state, -1)));
     luaL_addvalue(&buffer);
   }
   luaL_pushresult(&buffer);
   end_callback(state);
   ScriptVoice* voice = core.owner->settings().voice;
-  if (voice != nullptr) voice->say(lua_tostring(state, -1));
+  if (voice != nullptr) voice->say_with(BehaviorLog::Severity::info, lua_tostring(state, -1));
   return 0;
 }
 
-// tostring(value): without addresses, which differ from run to run.
+// tostring(value)
 int to_string(lua_State* state) {
   luaL_checkany(state, 1);
   begin_callback(state, "tostring");
   const bool own = luaL_callmeta(state, 1, "__tostring") != 0;
   end_callback(state);
-  if (own) return 1;
-  switch (lua_type(state, 1)) {
-    case LUA_TNUMBER:
-      core_of(state).budget.charge(state, number_text_instructions);
-      [[fallthrough]];
-    case LUA_TSTRING:
-      lua_pushvalue(state, 1);
-      lua_tostring(state, -1);
-      return 1;
-    case LUA_TBOOLEAN:
-      lua_pushstring(state, lua_toboolean(state, 1) != 0 ? "true" : "false");
-      return 1;
-    default:
-      lua_pushstring(state, luaL_typename(state, 1));
-      return 1;
-  }
+  if (!own) push_text(state, 1);
+  return 1;
 }
 
 // load(text [, name]) -> function | nil, message. Text only, in the sandbox. LuaJIT looks for each name through all

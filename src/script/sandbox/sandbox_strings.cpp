@@ -17,10 +17,15 @@ constexpr double string_bytes_max = 64 * 1024;
 constexpr double directive_instructions = 40, long_number_instructions = 500, percent_instructions = 3;
 constexpr double letters_per_instruction = 4;
 
+std::string_view check_text(lua_State* state, int index) {
+  std::size_t length = 0;
+  const char* text = luaL_checklstring(state, index, &length);
+  return {text, length};
+}
+
 // rep(text, n): up to 64 kB.
 int rep(lua_State* state) {
-  std::size_t length = 0;
-  luaL_checklstring(state, 1, &length);
+  const std::size_t length = check_text(state, 1).size();
   const double count = luaL_checknumber(state, 2);
   if (length == 0 || !(count >= 1)) return lua_pushliteral(state, ""), 1;
   const double bytes = static_cast<double>(length) * count;
@@ -32,17 +37,13 @@ int rep(lua_State* state) {
 
 // lower, upper, reverse: as in Lua, a letter at a time.
 int whole(lua_State* state) {
-  std::size_t length = 0;
-  luaL_checklstring(state, 1, &length);
-  core_of(state).budget.charge(state, static_cast<double>(length) / letters_per_instruction);
+  core_of(state).budget.charge(state, static_cast<double>(check_text(state, 1).size()) / letters_per_instruction);
   return forward(state);
 }
 
 // sub(text, first [, last]): as in Lua; the piece is at most the whole.
 int piece(lua_State* state) {
-  std::size_t length = 0;
-  luaL_checklstring(state, 1, &length);
-  charge_text(state, static_cast<double>(length));
+  charge_text(state, static_cast<double>(check_text(state, 1).size()));
   return forward(state);
 }
 
@@ -85,10 +86,8 @@ std::size_t charge_directive(lua_State* state, std::string_view text, std::size_
 
 // format(format, ...): as in Lua, without %p and other addresses.
 int format_text(lua_State* state) {
-  std::size_t length = 0;
-  const char* given = luaL_checklstring(state, 1, &length);
-  const std::string_view text(given, length);
-  charge_text(state, static_cast<double>(length));
+  const std::string_view text = check_text(state, 1);
+  charge_text(state, static_cast<double>(text.size()));
   const int count = lua_gettop(state);
   int index = 1;
   for (std::size_t at = 0; (at = text.find('%', at)) != std::string_view::npos;) {
@@ -114,12 +113,6 @@ constexpr std::string_view special_characters = "^$*+?.([%-";
 constexpr double plain_bytes_per_instruction = 4;
 constexpr std::size_t template_steps = 3, text_steps = 48, value_steps = 160,
                       number_steps = 1200;  // of what replaces a match
-
-std::string_view check_text(lua_State* state, int index) {
-  std::size_t length = 0;
-  const char* text = luaL_checklstring(state, index, &length);
-  return {text, length};
-}
 
 // The place of the subject where the search begins: argument `index`, counted from 1, or from the end when negative.
 std::size_t search_start(lua_State* state, int index, std::size_t length) {
@@ -278,21 +271,17 @@ int gsub(lua_State* state) {
 }  // namespace
 
 void open_strings(lua_State* state) {
-  open_patterns(state);
+  const int strings = lua_gettop(state);
+  set_function(state, strings, "find", find);
+  set_function(state, strings, "match", match);
+  set_function(state, strings, "gmatch", gmatch);
+  set_function(state, strings, "gsub", gsub);
   wrap(state, "rep", rep);
   for (const char* name : {"lower", "reverse", "upper"}) wrap(state, name, whole);
   wrap(state, "sub", piece);
   wrap(state, "byte", byte);
   wrap(state, "char", character);
   wrap(state, "format", format_text);
-}
-
-void open_patterns(lua_State* state) {
-  const int strings = lua_gettop(state);
-  set_function(state, strings, "find", find);
-  set_function(state, strings, "match", match);
-  set_function(state, strings, "gmatch", gmatch);
-  set_function(state, strings, "gsub", gsub);
 }
 
 }  // namespace kadans

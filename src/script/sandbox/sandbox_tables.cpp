@@ -93,6 +93,12 @@ int next_pair(lua_State* state) {
   return 2;
 }
 
+// Raises when the first argument is no table, or a read-only one.
+void check_writable(lua_State* state) {
+  luaL_checktype(state, 1, LUA_TTABLE);
+  if (push_content(state, 1)) luaL_error(state, "this table is read-only");
+}
+
 // What is at `from` to `to`, which takes no key that stays empty.
 void move_element(lua_State* state, std::int64_t from, std::int64_t to) {
   lua_rawgeti(state, 1, static_cast<int>(to));
@@ -238,12 +244,19 @@ class Sorting {
   std::uint32_t* to_;
 };
 
-}  // namespace
-
-void check_writable(lua_State* state) {
-  luaL_checktype(state, 1, LUA_TTABLE);
-  if (push_content(state, 1)) luaL_error(state, "this table is read-only");
+// sort(table [, before]): as in Lua, by merging. So equal elements keep their order, and an order that contradicts
+// itself costs no more than another: n log n comparisons, each charged with what it compares.
+int sort(lua_State* state) {
+  check_writable(state);
+  if (!lua_isnoneornil(state, 2)) luaL_checktype(state, 2, LUA_TFUNCTION);
+  lua_settop(state, 2);
+  begin_callback(state, "table.sort");
+  Sorting(state, static_cast<std::uint32_t>(lua_objlen(state, 1))).run();
+  end_callback(state);
+  return 0;
 }
+
+}  // namespace
 
 int sandbox_pairs(lua_State* state) {
   luaL_checktype(state, 1, LUA_TTABLE);
@@ -261,19 +274,7 @@ void open_tables(lua_State* state) {
   wrap(state, "maxn", maxn);
   set_function(state, tables, "concat", concat);
   set_function(state, tables, "insert", insert);
-  set_function(state, tables, "sort", sandbox_sort);
-}
-
-// sort(table [, before]): as in Lua, by merging. So equal elements keep their order, and an order that contradicts
-// itself costs no more than another: n log n comparisons, each charged with what it compares.
-int sandbox_sort(lua_State* state) {
-  check_writable(state);
-  if (!lua_isnoneornil(state, 2)) luaL_checktype(state, 2, LUA_TFUNCTION);
-  lua_settop(state, 2);
-  begin_callback(state, "table.sort");
-  Sorting(state, static_cast<std::uint32_t>(lua_objlen(state, 1))).run();
-  end_callback(state);
-  return 0;
+  set_function(state, tables, "sort", sort);
 }
 
 }  // namespace kadans

@@ -7,6 +7,7 @@
 #include "config/robot/supervisor_config.h"
 #include "config/scenario/event_text.h"
 #include "kadans/signal/input_error.h"
+#include "script/host/script_host.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -143,25 +144,21 @@ void DecisionProcess::ask(std::unique_ptr<DecisionQuestion> question, const Snap
 
 void ServedDecisions::order(const PlayOrder& order) {
   if (order.kind != PlayOrder::Kind::emit) throw InputError({.message = "decisions take events alone"});
-  if (inputs_ != nullptr) {
-    event_.clear();
-    put_event(order.event, event_);
-    inputs_->asked(BehaviorInputs::Asked::heard, event_.bytes());
-  }
+  tell_asked(inputs_, BehaviorInputs::Asked::heard, [&](ByteWriter& bytes) { put_event(order.event, bytes); });
   if (const std::string why = decisions_.refusal(order.event); !why.empty()) throw InputError({.message = why});
 }
 
-void ServedDecisions::begin_tick(const Snapshot& snapshot) noexcept {
+void ServedDecisions::before_tick(const Snapshot& snapshot) noexcept {
   if (kept_.empty()) return;
   ByteReader bytes(kept_);
   lost_ = decisions_.go_on(bytes, snapshot);
   kept_ = {};
 }
 
-void ServedDecisions::tick(const Snapshot& snapshot, const PlayReport& plays, CommandSender& /*commands*/) noexcept {
+void ServedDecisions::tick(const Snapshot& snapshot, CommandSender& /*commands*/) noexcept {
   if (!lost_.empty()) return;
-  if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::plays, std::as_bytes(std::span(&plays, 1)));
-  (void)decisions_.tick(snapshot, plays);
+  if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::plays, std::as_bytes(std::span(&plays_, 1)));
+  (void)decisions_.tick(snapshot, plays_);
   bytes_.clear();
   put_decided(decisions_.failed(), decisions_.decided(), bytes_);
   if (inputs_ != nullptr) inputs_->asked(BehaviorInputs::Asked::decided, bytes_.bytes());
@@ -174,11 +171,7 @@ void ServedDecisions::tick(const Snapshot& snapshot, const PlayReport& plays, Co
 }
 
 BehaviorReply ServedDecisions::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
-  if (inputs_ != nullptr) {
-    event_.clear();
-    put_question(question, event_);
-    inputs_->asked(BehaviorInputs::Asked::question, event_.bytes());
-  }
+  tell_asked(inputs_, BehaviorInputs::Asked::question, [&](ByteWriter& bytes) { put_question(question, bytes); });
   return decisions_.reply(question, snapshot);
 }
 

@@ -16,8 +16,8 @@
 #include "decisions.h"
 #include "engine/behavior_inputs.h"
 #include "kadans/signal/status.h"
+#include "script/host/served_host.h"
 #include "script/process/process_host.h"
-#include "script/process/served_host.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -89,8 +89,9 @@ class ServedDecisions final : public ServedHost {
   std::size_t size() const noexcept override { return 1; }
   const Behavior& behavior(std::size_t /*index*/) const noexcept override { return decisions_.behavior(); }
   const PlayStatus& status() const noexcept override { return status_; }
-  void begin_tick(const Snapshot& snapshot) noexcept override;
-  void tick(const Snapshot& snapshot, const PlayReport& plays, CommandSender& commands) noexcept override;
+  void before_tick(const Snapshot& snapshot) noexcept override;
+  void show(const PlayReport& plays) noexcept override { plays_ = plays; }
+  void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
   const std::string& lost() const noexcept override { return lost_; }
   BehaviorReply reply(const BehaviorQuestion& question, const Snapshot& snapshot) override;
   std::string keep(ByteWriter& bytes, std::int64_t time_ns) override;
@@ -103,7 +104,8 @@ class ServedDecisions final : public ServedHost {
   std::span<const std::byte> kept_;
   BehaviorInputs* inputs_;
   PlayStatus status_;
-  ByteWriter bytes_, told_, event_;
+  PlayReport plays_;
+  ByteWriter bytes_, told_;
   std::string lost_;
 };
 

@@ -3,10 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 
-#include "kadans/exchange/ring.h"
+#include "exchange/owned_ring.h"
 #include "script/host/behavior_tables.h"
 
 namespace kadans {
@@ -17,47 +16,12 @@ struct DecisionQuestion {
   BehaviorReply reply{};
 };
 
-class DecisionQuestions {
- public:
-  using Case = std::unique_ptr<DecisionQuestion>;
-  static constexpr std::size_t room = 16;
+struct DecisionQuestions {
+  using Cases = OwnedRing<DecisionQuestion, 16>;
 
-  DecisionQuestions() = default;
-  ~DecisionQuestions() {
-    while (take()) {
-    }
-    while (reply()) {
-    }
-  }
-  DecisionQuestions(const DecisionQuestions&) = delete;
-  DecisionQuestions& operator=(const DecisionQuestions&) = delete;
-
-  std::string name;  // of what decides; "": nothing does. Set before the loop
-
-  // Behavior thread. False: there is no room.
-  [[nodiscard]] bool ask(Case question) { return push(asked_, std::move(question)); }
-  Case reply() noexcept { return pop(answered_); }  // nullptr: none
-
-  // Supervisor thread. A reply that finds no room is lost: nobody has waited for it.
-  Case take() noexcept { return pop(asked_); }
-  void answer(Case question) { (void)push(answered_, std::move(question)); }
-
- private:
-  using Cases = Ring<DecisionQuestion*, room>;
-
-  static bool push(Cases& ring, Case question) {
-    DecisionQuestion* one = question.get();
-    if (!ring.try_push(one)) return false;
-    (void)question.release();
-    return true;
-  }
-  static Case pop(Cases& ring) noexcept {
-    DecisionQuestion* one = nullptr;
-    (void)ring.try_pop(one);
-    return Case(one);
-  }
-
-  Cases asked_, answered_;
+  std::string name{};  // of what decides; "": nothing does. Set before the loop
+  Cases asked{};       // from the behavior thread to the supervisor's
+  Cases answered{};    // and back; a reply that finds no room is lost: nobody has waited for it
 };
 
 }  // namespace kadans

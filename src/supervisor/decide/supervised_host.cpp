@@ -77,7 +77,7 @@ void SupervisedHost::take_replies(std::int64_t time_ns) noexcept {
 }
 
 void SupervisedHost::take_orders(std::int64_t time_ns, bool leaving) noexcept {
-  while (const auto order = link_.take()) {
+  while (const auto order = link_.orders.try_pop()) {
     if (!leaving) {
       carry_out(*order, time_ns, true);
       continue;

@@ -11,6 +11,8 @@
 namespace kadans {
 namespace {
 
+using Asked = BehaviorInputs::Asked;
+
 constexpr const char* no_room = "too many orders wait for the behaviors";
 
 }  // namespace
@@ -89,17 +91,6 @@ void Supervisor::warn_once(std::string_view about, const std::string& text) {
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::warning, "supervisor", text + " (told once)");
 }
 
-void Supervisor::tell(BehaviorInputs::Asked kind, std::span<const std::byte> bytes) {
-  if (inputs_ != nullptr) inputs_->asked(kind, bytes);
-}
-
-void Supervisor::tell_bytes(BehaviorInputs::Asked kind, auto put) {
-  if (inputs_ == nullptr) return;
-  told_.clear();
-  put(told_);
-  inputs_->asked(kind, told_.bytes());
-}
-
 void Supervisor::take_perception(std::int64_t time_ns) {
   std::string_view datagram;
   std::int64_t came_ns = time_ns;
@@ -123,7 +114,7 @@ void Supervisor::take_messages(std::int64_t time_ns) {
     const RobotMessages::Answer answer = messages_.decode(datagram, came_ns, event, why);
     if (answer == RobotMessages::Answer::own) continue;
     if (answer == RobotMessages::Answer::taken) {
-      tell_bytes(BehaviorInputs::Asked::heard, [&](ByteWriter& bytes) { put_event(event, bytes); });
+      tell_asked(inputs_, Asked::heard, [&](ByteWriter& bytes) { put_event(event, bytes); });
       decider_->hear(std::move(event));
     } else {
       tell_heard({event.who, why});
@@ -195,22 +186,24 @@ bool Supervisor::decide() {
   report_.orders += lost_;
   report_.orders_refused += lost_;
   if (std::exchange(lost_now_, false)) put_text(report_.refusal, no_room);
-  if (inputs_ != nullptr) inputs_->tick_begins(snapshot_, snapshot_.time_ns);
-  tell(BehaviorInputs::Asked::seen, std::as_bytes(std::span(&world_.entries(), 1)));
-  tell(BehaviorInputs::Asked::plays, std::as_bytes(std::span(&report_, 1)));
+  if (inputs_ != nullptr) {
+    inputs_->tick_begins(snapshot_, snapshot_.time_ns);
+    inputs_->asked(Asked::seen, std::as_bytes(std::span(&world_.entries(), 1)));
+    inputs_->asked(Asked::plays, std::as_bytes(std::span(&report_, 1)));
+  }
   reload_saved();
   if (message_channel_ != nullptr) take_messages(snapshot_.time_ns);
-  while (auto asked = link_.questions.take()) {
-    tell_bytes(BehaviorInputs::Asked::question, [&](ByteWriter& bytes) { put_question(asked->question, bytes); });
+  while (auto asked = link_.questions.asked.try_pop()) {
+    tell_asked(inputs_, Asked::question, [&](ByteWriter& bytes) { put_question(asked->question, bytes); });
     decider_->ask(std::move(asked), snapshot_);
   }
   const bool decides = decider_->tick(snapshot_, report_);
-  tell_bytes(BehaviorInputs::Asked::decided,
+  tell_asked(inputs_, Asked::decided,
              [&](ByteWriter& bytes) { put_decided(decider_->failed(), decider_->decided(), bytes); });
   if (inputs_ != nullptr) inputs_->tick_ends();
   for (const Decider::Heard& heard : decider_->decided().heard) tell_heard(heard);
   decider_->decided().heard.clear();
-  for (auto& replied : decider_->decided().replies) link_.questions.answer(std::move(replied));
+  for (auto& replied : decider_->decided().replies) (void)link_.questions.answered.try_push(std::move(replied));
   decider_->decided().replies.clear();
   send_orders();
   send_messages();
@@ -220,7 +213,7 @@ bool Supervisor::decide() {
 void Supervisor::send_orders() {
   for (PlayOrder& order : decider_->decided().orders) {
     status_.orders.fetch_add(1, std::memory_order_relaxed);
-    if (link_.give(std::move(order))) continue;
+    if (link_.orders.try_push(std::make_unique<PlayOrder>(std::move(order)))) continue;
     ++lost_;
     lost_now_ = true;
     log_.message(snapshot_.time_ns, BehaviorLog::Severity::warning, "supervisor",
@@ -230,7 +223,7 @@ void Supervisor::send_orders() {
 
 void Supervisor::reload_saved() {
   if (watch_ == nullptr || !watch_->poll()) return;
-  tell(BehaviorInputs::Asked::reload, {});
+  if (inputs_ != nullptr) inputs_->asked(Asked::reload, {});
   decider_->reload(snapshot_);
 }
 

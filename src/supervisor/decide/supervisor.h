@@ -17,7 +17,6 @@
 #include <functional>
 #include <memory>
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -101,8 +100,6 @@ class Supervisor final : public Supervising, public ObservationSink {
   void take_observations(std::int64_t time_ns) noexcept;
   bool step(std::int64_t time_ns);
   bool decide();
-  void tell(BehaviorInputs::Asked kind, std::span<const std::byte> bytes);
-  void tell_bytes(BehaviorInputs::Asked kind, auto put);  // put(ByteWriter&) writes them, if they are told at all
   void send_orders();
   void reload_saved();
 
@@ -117,7 +114,6 @@ class Supervisor final : public Supervising, public ObservationSink {
   std::vector<Observation> perceived_;
   std::set<std::string, std::less<>> warned_;  // what is told only once
   BehaviorInputs* inputs_ = nullptr;
-  ByteWriter told_;
   std::unique_ptr<Decisions> decisions_;
   std::unique_ptr<DecisionProcess> process_;
   Decider* decider_ = nullptr;  // one of the two

@@ -3,10 +3,10 @@
 
 #include <atomic>
 #include <cstdint>
-#include <memory>
 
 #include "config/scenario/play_item.h"
 #include "decision_questions.h"
+#include "exchange/owned_ring.h"
 #include "kadans/exchange/latest.h"
 #include "kadans/exchange/ring.h"
 #include "kadans/signal/status.h"
@@ -21,15 +21,7 @@ struct Heartbeat {
   std::uint32_t failed = 0;  // 1: nothing decides any more, because of an error
 };
 
-class SupervisorLink {
- public:
-  SupervisorLink() = default;
-  ~SupervisorLink() {
-    for (PlayOrder* order = nullptr; orders_.try_pop(order);) delete order;
-  }
-  SupervisorLink(const SupervisorLink&) = delete;
-  SupervisorLink& operator=(const SupervisorLink&) = delete;
-
+struct SupervisorLink {
   std::atomic<bool> leaving{false};  // written by any thread: the run ends, and nothing is decided any more
   DecisionQuestions questions;       // of people, both ways
 
@@ -40,22 +32,8 @@ class SupervisorLink {
 
   // Written by the supervisor, read by the behavior thread.
   Latest<Heartbeat> heartbeat;
-  EventLog lines;  // what it says on a thread of its own; the behavior thread says it on
-  // False: the ring is full, and the order is lost. The order is freed by the behavior thread.
-  [[nodiscard]] bool give(PlayOrder order) {
-    auto owned = std::make_unique<PlayOrder>(std::move(order));
-    if (!orders_.try_push(owned.get())) return false;
-    (void)owned.release();
-    return true;
-  }
-  std::unique_ptr<PlayOrder> take() noexcept {
-    PlayOrder* order = nullptr;
-    (void)orders_.try_pop(order);
-    return std::unique_ptr<PlayOrder>(order);
-  }
-
- private:
-  Ring<PlayOrder*, 64> orders_;
+  EventLog lines;                   // what it says on a thread of its own; the behavior thread says it on
+  OwnedRing<PlayOrder, 64> orders;  // one that finds no room is lost
 };
 
 }  // namespace kadans

@@ -66,16 +66,14 @@ std::string RobotMessages::encode(const PlayedEvent& event, std::int64_t now_ns,
 
 RobotMessages::Answer RobotMessages::decode(std::string_view datagram, std::int64_t now_ns, PlayedEvent& event,
                                             std::string& why) {
-  Answer answer = Answer::wrong;
   why.clear();
   try {
     if (datagram.size() > message_bytes_max) refuse("", {1, 1}, "it is too long");
-    answer = read(datagram, now_ns, event);
+    return read(datagram, now_ns, event);
   } catch (const InputError& error) {
     why = error.problems().front().text();
+    return Answer::wrong;
   }
-  ++counts_[static_cast<std::size_t>(answer)];
-  return answer;
 }
 
 RobotMessages::Answer RobotMessages::read(std::string_view datagram, std::int64_t now_ns, PlayedEvent& event) {

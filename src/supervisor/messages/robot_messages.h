@@ -34,7 +34,6 @@ inline constexpr std::size_t message_bytes_max = 512;
 class RobotMessages {
  public:
   enum class Answer : std::uint8_t { taken, own, wrong, stranger, repeated, too_old };
-  static constexpr std::size_t answers = 6;
 
   // `boot`: another number for each start.
   RobotMessages(const MessagesConfig& config, std::uint32_t boot) : config_(config), boot_(boot) {}
@@ -43,8 +42,6 @@ class RobotMessages {
   std::string encode(const PlayedEvent& event, std::int64_t now_ns, std::string& why);
   // What a datagram says. Unless it is taken, `why` says what is wrong.
   Answer decode(std::string_view datagram, std::int64_t now_ns, PlayedEvent& event, std::string& why);
-
-  std::uint64_t count(Answer answer) const noexcept { return counts_[static_cast<std::size_t>(answer)]; }
 
  private:
   struct Peer {
@@ -60,7 +57,6 @@ class RobotMessages {
   std::deque<std::pair<std::int64_t, std::size_t>> sent_;  // in the last minute: time, bytes
   std::size_t sent_bytes_ = 0;
   std::map<std::string, Peer> peers_;
-  std::uint64_t counts_[answers]{};
 };
 
 }  // namespace kadans

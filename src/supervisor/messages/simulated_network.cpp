@@ -16,11 +16,7 @@ void SimulatedNetwork::carry(std::size_t from, std::int64_t now_ns, std::string_
     if (to == from) continue;
     const double lost = random_.uniform(), late = random_.uniform();
     std::deque<Datagram>& coming = ports_[to].coming;
-    ++sent_;
-    if (lost < settings_.lost || coming.size() >= under_way_max) {
-      ++lost_;
-      continue;
-    }
+    if (lost < settings_.lost || coming.size() >= under_way_max) continue;
     const std::int64_t due_ns = now_ns + std::llround(1e9 * (settings_.delay_s + late * settings_.jitter_s));
     const auto later = std::ranges::upper_bound(coming, due_ns, {}, &Datagram::due_ns);
     coming.insert(later, {due_ns, std::string(datagram)});

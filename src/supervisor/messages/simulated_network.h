@@ -24,8 +24,6 @@ class SimulatedNetwork {
 
   // The network outlives its ports.
   MessageChannel& port(std::size_t robot) noexcept { return ports_[robot]; }
-  std::uint64_t sent() const noexcept { return sent_; }
-  std::uint64_t lost() const noexcept { return lost_; }
 
  private:
   struct Datagram {
@@ -50,7 +48,6 @@ class SimulatedNetwork {
   ScenarioNetwork settings_;
   RandomStream random_;
   std::deque<Port> ports_;
-  std::uint64_t sent_ = 0, lost_ = 0;
 };
 
 }  // namespace kadans

@@ -18,41 +18,31 @@ void put_what(nlohmann::ordered_json& json, const ToldFault& fault) {
 
 }  // namespace
 
-// An event in the ring: its size in bytes (u32, the head not counted), its time (i64), its kind (u8), then its fields.
+// An event in the ring: its size in bytes (u32, the head not counted), its time (i64), then as put_told() writes it.
 
 EventLog::EventLog() : ring_(std::make_unique<Bytes>()) {}
 
 void EventLog::tell(const Line& line) {
-  const Transition* t = line.transition;
-  begin(t != nullptr ? Event::Kind::transition : Event::Kind::message, line.time_ns, line.behavior);
-  if (t != nullptr) {
-    for (const std::string* text : {&t->from, &t->to, &t->why}) outgoing_.put_string(*text);
-  } else {
-    outgoing_.put(static_cast<std::uint8_t>(line.severity));
-    outgoing_.put_string(line.text);
-  }
+  put(line.time_ns, line);
   push();
 }
 
 void EventLog::tell_emitted(const EmittedEvent& event) {
-  begin(Event::Kind::emitted, event.time_ns, "");
-  put_event(event, outgoing_);
+  put(event.time_ns, event);
   if (ring_->size() + outgoing_.size() <= emitted_bytes_max) return push();
   dropped_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void EventLog::tell_active(const ActiveStates& active) {
-  begin(Event::Kind::active, active.time_ns, active.behavior);
-  put_states(active, outgoing_);
+  put(active.time_ns, active);
   push();
 }
 
-void EventLog::begin(Event::Kind kind, std::int64_t time_ns, std::string_view behavior) {
+void EventLog::put(std::int64_t time_ns, const auto& told) {
   outgoing_.clear();
   outgoing_.put(std::uint32_t{0});
   outgoing_.put(time_ns);
-  outgoing_.put(static_cast<std::uint8_t>(kind));
-  outgoing_.put_string(behavior);
+  put_told(told, outgoing_);
 }
 
 void EventLog::push() noexcept {
@@ -72,35 +62,9 @@ bool EventLog::pop(std::int64_t time_ns, Event& event) {
   incoming_.resize(size);
   for (std::size_t i = 0; i < size; ++i) incoming_[i] = ring_->peek(head_bytes + i);
   ring_->drop(head_bytes + size);
-  ByteReader fields(incoming_);
-  event.kind = static_cast<Event::Kind>(fields.take<std::uint8_t>());
-  event.transition = {.time_ns = event_time_ns, .behavior = fields.take_string(), .from = {}, .to = {}, .why = {}};
-  event.text.clear();
-  event.states.clear();
-  if (event.kind == Event::Kind::transition) {
-    event.transition.from = fields.take_string();
-    event.transition.to = fields.take_string();
-    event.transition.why = fields.take_string();
-  } else if (event.kind == Event::Kind::emitted) {
-    event.emitted = take_event(fields, event_time_ns);
-  } else if (event.kind == Event::Kind::active) {
-    for (auto left = fields.take<std::uint32_t>(); left > 0 && fields.ok(); --left) {
-      event.states.push_back(fields.take_string());
-    }
-  } else {
-    event.severity = static_cast<BehaviorLog::Severity>(fields.take<std::uint8_t>());
-    event.text = fields.take_string();
-  }
+  ByteReader told(incoming_);
+  (void)take_told(told, event_time_ns, event);
   return true;
-}
-
-void Event::say_to(BehaviorLog& log) const {
-  if (kind == Kind::active) {
-    const std::vector<std::string_view> paths(states.begin(), states.end());
-    return log.active({transition.time_ns, transition.behavior, paths});
-  }
-  if (kind == Kind::emitted) return log.emitted(emitted);
-  log.say(line());
 }
 
 std::string json_of(const Event& event) {

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,22 +18,6 @@
 #include "signal/byte_order.h"
 
 namespace kadans {
-
-struct Event {
-  enum class Kind : std::uint8_t { message, transition, active, emitted };
-  Kind kind = Kind::message;
-  Transition transition;  // all kinds use its time_ns and behavior
-  BehaviorLog::Severity severity = BehaviorLog::Severity::info;
-  std::string text;
-  std::vector<std::string> states;  // the active ones
-  EmittedEvent emitted{};
-
-  // Of a message or transition; valid as long as the event.
-  Line line() const noexcept {
-    return {transition.time_ns, severity, transition.behavior, text, kind == Kind::transition ? &transition : nullptr};
-  }
-  void say_to(BehaviorLog& log) const;
-};
 
 // The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition, kadans.Active and
 // kadans.Fault.
@@ -63,7 +46,7 @@ class EventLog final : public LineSink {
   std::uint32_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }  // any thread
 
  private:
-  void begin(Event::Kind kind, std::int64_t time_ns, std::string_view behavior);
+  void put(std::int64_t time_ns, const auto& told);
   void push() noexcept;
 
   using Bytes = Ring<std::byte, std::size_t{1} << 18U>;

@@ -1,4 +1,4 @@
-#include "script_event.h"
+#include "script_declarations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,9 @@
-// An event that a behavior declares in k.events: it may come from outside the chart, with data of these fields.
+// What a script declares of itself: tunable parameters, arguments, and events that it takes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,27 @@
 
 namespace kadans {
 
+// A tunable parameter of a behavior, declared in k.params. It has a range and can be changed while the behavior runs.
+struct ScriptParameter {
+  std::string chunk;  // the file that declares it
+  std::string name;
+  std::string unit;
+  std::string doc;
+  double initial = 0, min = 0, max = 0;
+  double value = 0;
+  double loaded = 0;  // its value when the behavior was loaded, with its arguments and those of robot.json
+};
+
+// An argument of a behavior or a skill, as k.args declares it (chart_arguments.h).
+struct ScriptArgument {
+  std::string name, unit{}, doc{};
+  std::optional<PlayValue>
+      initial{};  // the default, which tells the type; nullopt: a table, which only k.call can give
+  double min = -HUGE_VAL, max = HUGE_VAL;  // of a number
+  std::vector<std::string> one_of{};       // of a text; empty: any
+};
+
+// An event that a behavior declares in k.events: it may come from outside the chart, with data of these fields.
 struct ScriptEvent {
   struct Field {
     enum class Type : std::uint8_t { number, flag, text };
