@@ -71,6 +71,11 @@ struct Chart {
     std::string why;
     int line = 0;
     bool listed = false;  // a further event of on = { "a", "b" }: otherwise the same as the one before
+    template <typename Visit>
+    void each_target(Visit visit) const {
+      if (target != no_state) visit(target);
+      for (const StateIndex further : also) visit(further);
+    }
   };
   // on = "fault.*": the events whose name is "fault" or begins with "fault."; on = "*": all. Never the end of a state.
   struct Pattern {
@@ -115,12 +120,17 @@ struct Chart {
   bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // true also for the ancestor itself
     return state >= ancestor && state < states[ancestor].end;
   }
+  // The states directly inside, first to last.
+  template <typename Visit>
+  void each_child(StateIndex parent, Visit visit) const {
+    for (auto child = static_cast<StateIndex>(parent + 1); child < states[parent].end; child = states[child].end)
+      visit(child);
+  }
   template <typename Visit>
   void each_region(StateIndex parallel, Visit visit) const {
-    const StateIndex end_of_all = states[parallel].end;
-    for (auto region = static_cast<StateIndex>(parallel + 1); region < end_of_all; region = states[region].end) {
-      if (states[region].kind == Kind::region) visit(region);
-    }
+    each_child(parallel, [&](StateIndex child) {
+      if (states[child].kind == Kind::region) visit(child);
+    });
   }
   // Whether the end of `ended` is an event for `state`: for itself and the states around it in its behavior, up to the
   // region that it is in.

@@ -375,11 +375,8 @@ void ChartRunner::mark_entry(StateIndex target) noexcept {
 
 // SCXML, computeEntrySet: all targets with what is in them, then what is around them.
 void ChartRunner::mark_targets(const Chart::Transition& transition) noexcept {
-  if (transition.target == no_state) return;
-  mark_entry(transition.target);
-  for (const StateIndex target : transition.also) mark_entry(target);
-  mark_ancestors(transition.target, transition.domain);
-  for (const StateIndex target : transition.also) mark_ancestors(target, transition.domain);
+  transition.each_target([&](StateIndex target) { mark_entry(target); });
+  transition.each_target([&](StateIndex target) { mark_ancestors(target, transition.domain); });
 }
 
 void ChartRunner::mark_defaults(StateIndex index, StateIndex around) noexcept {

@@ -49,19 +49,13 @@ class ChartCheck {
       more = false;
       for (const Chart::Transition& transition : chart_.transitions) {
         if (!reached_[transition.source]) continue;
-        each_target(transition, [&](StateIndex target) {
+        transition.each_target([&](StateIndex target) {
           if (reached_[target]) return;
           enter(target);
           more = true;
         });
       }
     }
-  }
-
-  template <typename Visit>
-  static void each_target(const Chart::Transition& transition, Visit visit) {
-    if (transition.target != no_state) visit(transition.target);
-    for (const StateIndex target : transition.also) visit(target);
   }
 
   // The state, those around it, and what is entered with them.
@@ -76,11 +70,10 @@ class ChartCheck {
       if (state.parent != no_state && !reached_[state.parent]) waiting.push_back(state.parent);
       // A transition past `initial` still makes the parent's default reachable only through the parent itself.
       if (at_entry(at, index)) waiting.insert(waiting.end(), state.defaults.begin(), state.defaults.end());
-      for (StateIndex i = at + 1; i < state.end; ++i) {
-        const bool region = state.kind == Chart::Kind::parallel && chart_.states[i].parent == at;
-        const bool called = chart_.states[i].machine_root && chart_.states[i].parent == at && state.initial == no_state;
-        if (region || called) waiting.push_back(i);
-      }
+      chart_.each_child(at, [&](StateIndex child) {
+        const bool called = chart_.states[child].machine_root && state.initial == no_state;
+        if (state.kind == Chart::Kind::parallel || called) waiting.push_back(child);
+      });
     }
   }
 
@@ -226,14 +219,6 @@ void add_emitted(const Tokens& tokens, Emitted& emitted) {
 // The names with which states may end, as far as the chart tells.
 using Ends = std::set<std::string>;
 
-template <typename Visit>
-void each_child(const Chart& chart, StateIndex index, Visit visit) {
-  for (StateIndex child = static_cast<StateIndex>(index + 1); child < chart.states[index].end;
-       child = chart.states[child].end) {
-    visit(child);
-  }
-}
-
 Ends own_ends(const Chart& chart, StateIndex index);
 
 // All regions must end; it is done when all of them are.
@@ -254,7 +239,7 @@ Ends ends_of_parallel(const Chart& chart, StateIndex index) {
 Ends own_ends(const Chart& chart, StateIndex index) {
   if (chart.states[index].kind == Chart::Kind::parallel) return ends_of_parallel(chart, index);
   Ends ends;
-  each_child(chart, index, [&](StateIndex child) {
+  chart.each_child(index, [&](StateIndex child) {
     const Chart::State& inside = chart.states[child];
     if (inside.kind == Chart::Kind::final_state) ends.insert(inside.outcome_name);
     if (!inside.machine_root) return;
@@ -267,7 +252,7 @@ Ends own_ends(const Chart& chart, StateIndex index) {
 // Its own ends, and those of states inside that reach it.
 Ends heard_ends(const Chart& chart, StateIndex index) {
   Ends ends = own_ends(chart, index);
-  each_child(chart, index, [&](StateIndex child) {
+  chart.each_child(index, [&](StateIndex child) {
     const bool within = !chart.states[child].machine_root && chart.states[child].kind != Chart::Kind::region;
     if (within) ends.merge(heard_ends(chart, child));
   });
