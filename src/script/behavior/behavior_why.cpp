@@ -8,6 +8,7 @@
 #include "behavior_parts.h"
 #include "script/chart/chart_calls.h"
 #include "script/chart/chart_graph.h"
+#include "script/check/source_lexer.h"
 #include "script/lua/lua_core.h"
 #include "signal/number_text.h"
 
@@ -109,8 +110,6 @@ int ask_guards(lua_State* state) {
   return 0;
 }
 
-bool in_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
-
 // The names of the function's arguments, s and m as a rule.
 std::array<std::string, 2> argument_names(const std::string& text) {
   std::array<std::string, 2> names;
@@ -119,7 +118,7 @@ std::array<std::string, 2> argument_names(const std::string& text) {
   if (close == std::string::npos) return names;
   std::size_t number = 0;
   for (std::size_t at = open + 1; at < close && number < names.size(); ++at) {
-    if (in_word(text[at])) names[number] += text[at];
+    if (in_name(text[at])) names[number] += text[at];
     if (text[at] == ',') ++number;
   }
   return names;
@@ -130,13 +129,13 @@ std::vector<Seen> fields_read(const std::string& text) {
   const std::array<std::string, 2> names = argument_names(text);
   std::vector<Seen> all;
   for (std::size_t at = 0; at < text.size() && all.size() < paths_max;) {
-    if (!in_word(text[at]) || (at > 0 && (in_word(text[at - 1]) || text[at - 1] == '.'))) {
+    if (!in_name(text[at]) || (at > 0 && (in_name(text[at - 1]) || text[at - 1] == '.'))) {
       ++at;
       continue;
     }
     std::size_t end = at;
     while (end < text.size() &&
-           (in_word(text[end]) || (text[end] == '.' && end + 1 < text.size() && in_word(text[end + 1]))))
+           (in_name(text[end]) || (text[end] == '.' && end + 1 < text.size() && in_name(text[end + 1]))))
       ++end;
     const std::string path = text.substr(at, end - at);
     const std::size_t dot = std::min(path.find('.'), path.size());

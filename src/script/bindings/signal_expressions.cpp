@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 9> expression_functions{"abs",  "min", "m
                                                                "ceil", "sin", "cos", "deg"};
 constexpr std::string_view tick_before = "last.";
 
-bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
+bool continues_name(char c) { return in_name(c) || c == '.'; }
 
 // Where a number that begins at `at` ends: an exponent's letter is no name.
 std::size_t number_end(std::string_view text, std::size_t at) {

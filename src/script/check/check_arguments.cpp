@@ -13,11 +13,10 @@
 namespace kadans {
 namespace {
 
-using TokenKind = SourceToken::Kind;
 using Mistakes = std::vector<ArgumentProblem>;
 
 // A number with nothing behind it that would change it: `1.5` or `-1.5` before a comma or a bracket.
-bool number_at(const std::vector<SourceToken>& tokens, std::size_t at, double& value) {
+bool number_at(const Tokens& tokens, std::size_t at, double& value) {
   const bool negative = tokens[at].is("-");
   if (negative) ++at;
   if (tokens[at].kind != TokenKind::number) return false;
@@ -36,13 +35,13 @@ std::string outside(const std::string& name, double value, double min, double ma
 }
 
 // A text that is the whole argument.
-bool whole_text(const std::vector<SourceToken>& tokens, std::size_t at) {
+bool whole_text(const Tokens& tokens, std::size_t at) {
   const SourceToken& after = tokens[at + 1];
   return tokens[at].kind == TokenKind::text && !after.is("..") && !after.is(":");
 }
 
 // Where the names stand in { name = value, ... } at `at`.
-std::vector<std::size_t> keys_of_table(const std::vector<SourceToken>& tokens, std::size_t at) {
+std::vector<std::size_t> keys_of_table(const Tokens& tokens, std::size_t at) {
   std::vector<std::size_t> keys;
   if (!tokens[at].is("{")) return keys;
   for (const std::size_t part : parts_of(tokens, at + 1)) {
@@ -51,12 +50,12 @@ std::vector<std::size_t> keys_of_table(const std::vector<SourceToken>& tokens, s
   return keys;
 }
 
-bool has_key(const std::vector<SourceToken>& tokens, std::size_t at, std::string_view name) {
+bool has_key(const Tokens& tokens, std::size_t at, std::string_view name) {
   const auto keys = keys_of_table(tokens, at);
   return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) { return tokens[key].text == name; });
 }
 
-bool has_value(const std::vector<SourceToken>& tokens, std::size_t at, std::string_view name, std::string_view text) {
+bool has_value(const Tokens& tokens, std::size_t at, std::string_view name, std::string_view text) {
   const auto keys = keys_of_table(tokens, at);
   return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) {
     return tokens[key].text == name && tokens[key + 2].kind == TokenKind::text && tokens[key + 2].text == text;
@@ -64,7 +63,7 @@ bool has_value(const std::vector<SourceToken>& tokens, std::size_t at, std::stri
 }
 
 // A text, a number or a flag that is the whole argument.
-bool whole_literal(const std::vector<SourceToken>& tokens, std::size_t at) {
+bool whole_literal(const Tokens& tokens, std::size_t at) {
   double ignored = 0;
   return whole_text(tokens, at) || number_at(tokens, at, ignored) || tokens[at].is("true") || tokens[at].is("false");
 }
@@ -72,13 +71,13 @@ bool whole_literal(const std::vector<SourceToken>& tokens, std::size_t at) {
 void append(Mistakes& problems, const Mistakes& more) { problems.insert(problems.end(), more.begin(), more.end()); }
 
 // The type of a literal, as Lua names it.
-std::string literal_type(const std::vector<SourceToken>& tokens, std::size_t at) {
+std::string literal_type(const Tokens& tokens, std::size_t at) {
   if (tokens[at].kind == TokenKind::text) return "string";
   return tokens[at].is_any({"true", "false"}) ? "boolean" : "number";
 }
 
 // What a literal option must be when it is something else.
-const char* other_type(const std::vector<SourceToken>& tokens, std::size_t at, const MotionOption& option) {
+const char* other_type(const Tokens& tokens, std::size_t at, const MotionOption& option) {
   const std::string type = literal_type(tokens, at);
   switch (option.type) {
     case MotionOption::Type::number:
@@ -94,8 +93,7 @@ const char* other_type(const std::vector<SourceToken>& tokens, std::size_t at, c
 }
 
 // One `name = value` of a motion's options, as the bindings will see it.
-Mistakes motion_option(const std::vector<SourceToken>& tokens, std::size_t key, MotionOption::Method method,
-                       const std::string& called) {
+Mistakes motion_option(const Tokens& tokens, std::size_t key, MotionOption::Method method, const std::string& called) {
   std::vector<std::string> names;
   for (const MotionOption& option : motion_options()) {
     if ((option.methods & method) == 0) continue;
@@ -118,8 +116,7 @@ Mistakes motion_option(const std::vector<SourceToken>& tokens, std::size_t key, 
 }
 
 // The options written out at `at`.
-Mistakes motion_table(const std::vector<SourceToken>& tokens, std::size_t at, MotionOption::Method method,
-                      const std::string& called) {
+Mistakes motion_table(const Tokens& tokens, std::size_t at, MotionOption::Method method, const std::string& called) {
   Mistakes problems;
   if (!tokens[at].is("{")) return problems;
   for (const std::size_t key : keys_of_table(tokens, at)) append(problems, motion_option(tokens, key, method, called));

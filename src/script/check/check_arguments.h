@@ -18,7 +18,6 @@ struct ArgumentProblem {
 
 class ArgumentCheck {
  public:
-  using Tokens = std::vector<SourceToken>;
   explicit ArgumentCheck(const Behavior::Parts& parts) : catalog_(parts.catalog) {}
 
   const ObjectInfo* object(const std::string& name) const noexcept;

@@ -71,8 +71,6 @@ class TestCalls {
   }
 
  private:
-  using TokenKind = SourceToken::Kind;
-
   void problem(const SourceToken& at, const std::string& message) {
     problems_.push_back({source_.chunk, at.line, 0, message});
   }
@@ -105,7 +103,7 @@ class TestCalls {
   const LuaState::Source& source_;
   const Behavior::Settings& settings_;
   std::vector<InputProblem>& problems_;
-  std::vector<SourceToken> tokens_;
+  Tokens tokens_;
 };
 
 void check_loaded(Looked& looked) {

@@ -146,9 +146,6 @@ class ChartCheck {
   std::vector<bool> reached_;
 };
 
-using TokenKind = SourceToken::Kind;
-using Tokens = std::vector<SourceToken>;
-
 // What the functions emit, as far as their text tells.
 struct Emitted {
   std::set<std::string> events;
@@ -184,8 +181,7 @@ void add_values(const Tokens& tokens, std::size_t at, std::size_t end, Emitted& 
     }
   };
   for (std::size_t i = at; i < end; ++i) {
-    for (const char* opening : {"(", "{", "[", "function"}) depth += tokens[i].is(opening) ? 1 : 0;
-    for (const char* closing : {")", "}", "]", "end"}) depth -= tokens[i].is(closing) ? 1 : 0;
+    depth += opens(tokens[i]);
     if (depth != 0) continue;
     if (tokens[i].is("and")) value = i + 1;
     if (!tokens[i].is("or")) continue;

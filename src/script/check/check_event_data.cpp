@@ -10,18 +10,12 @@
 namespace kadans {
 namespace {
 
-using Tokens = std::vector<SourceToken>;
-
 // A guard or an action, and all transitions that have it.
 struct EventReader {
   ChartFunction function;
   bool guard = false;
   std::vector<const Chart::Transition*> transitions;
 };
-
-bool is_name(const SourceToken& token, const std::string& text) {
-  return token.kind == SourceToken::Kind::name && token.text == text;
-}
 
 class EventDataCheck {
  public:
@@ -44,8 +38,8 @@ class EventDataCheck {
     std::vector<std::size_t> reads;  // of `s` in s.event.data.field
     const std::size_t end = end_of_block(tokens, function);
     for (std::size_t i = function; i < end; ++i) {
-      if (!is_name(tokens[i], snapshot) || !tokens[i + 1].is(".") || !is_name(tokens[i + 2], "event")) continue;
-      const bool of_data = tokens[i + 3].is(".") && is_name(tokens[i + 4], "data") && tokens[i + 5].is(".");
+      if (!tokens[i].is_name(snapshot) || !tokens[i + 1].is(".") || !tokens[i + 2].is_name("event")) continue;
+      const bool of_data = tokens[i + 3].is(".") && tokens[i + 4].is_name("data") && tokens[i + 5].is(".");
       if (!of_data) return;  // it asks for the event's name, whether there are data, or hands them on
       reads.push_back(i);
     }
@@ -66,8 +60,8 @@ class EventDataCheck {
   // The name of a function's argument.
   static std::string argument(const Tokens& tokens, std::size_t function, std::size_t number) {
     const std::size_t at = function + 2 + 2 * number;
-    const bool there = tokens[function + 1].is("(") && tokens[at].kind == SourceToken::Kind::name &&
-                       (number == 0 || tokens[at - 1].is(","));
+    const bool there =
+        tokens[function + 1].is("(") && tokens[at].kind == TokenKind::name && (number == 0 || tokens[at - 1].is(","));
     return there ? tokens[at].text : "";
   }
 

@@ -6,13 +6,6 @@
 namespace kadans {
 namespace {
 
-using FlowTokens = std::vector<SourceToken>;
-using FlowKind = SourceToken::Kind;
-
-bool is_plain(const SourceToken& token) {
-  return token.kind == FlowKind::number || token.kind == FlowKind::text || token.is("true") || token.is("false");
-}
-
 // Functions of Lua that end at once and change nothing.
 bool is_pure(const std::string& name) {
   constexpr std::string_view pure[] = {"print",  "tostring", "tonumber", "ipairs", "pairs",
@@ -21,8 +14,8 @@ bool is_pure(const std::string& name) {
 }
 
 // Where the condition of a `while` ends: at its `do`.
-std::size_t do_of(const FlowTokens& tokens, std::size_t at) {
-  for (int depth = 0; tokens[at].kind != FlowKind::end; ++at) {
+std::size_t do_of(const Tokens& tokens, std::size_t at) {
+  for (int depth = 0; tokens[at].kind != TokenKind::end; ++at) {
     if (depth == 0 && tokens[at].is("do")) return at;
     depth += opens(tokens[at]);
   }
@@ -66,7 +59,7 @@ FlowCheck::Body FlowCheck::body_of(const Tokens& tokens, std::size_t from, std::
     body.unknown = body.unknown || token.is("function");
     body.leaves = body.leaves || token.is_any({"break", "return", "goto"});
     const bool of_value = i > 0 && tokens[i - 1].is_any({")", "]"});
-    if (of_value && (token.is("(") || token.is("{") || token.is(":") || token.kind == FlowKind::text))
+    if (of_value && (token.is("(") || token.is("{") || token.is(":") || token.kind == TokenKind::text))
       (token.is(":") && tokens[i + 1].text == "wait" ? body.waits : body.unknown) = true;
     const SourceUse* const use = use_at(i);
     if (use == nullptr) continue;
@@ -113,7 +106,7 @@ bool FlowCheck::never_changes(const Tokens& tokens, const Loop& loop) const {
     }
     const bool sign =
         token.is_any({"and", "or", "not", "nil", "==", "~=", "<", ">", "<=", ">=", "+", "-", "*", "/", "(", ")", ".."});
-    if (!is_plain(token) && !sign) return false;
+    if (!token.is_literal() && !sign) return false;
   }
   const bool single = loop.condition_end == loop.condition + 1;
   const SourceToken& only = tokens[loop.condition];
@@ -138,7 +131,7 @@ const SourceUse* FlowCheck::stale(const Tokens& tokens, const Loop& loop) const 
   for (std::size_t i = loop.condition; i < loop.condition_end; ++i) {
     const SourceUse* const use = use_at(i);
     if (use == nullptr) {
-      if (tokens[i].kind == FlowKind::name) return nullptr;
+      if (tokens[i].kind == TokenKind::name) return nullptr;
       continue;
     }
     const bool read = use->meaning.role == SourceRole::snapshot && use->meaning.path.size() > 1;
@@ -193,7 +186,7 @@ bool FlowCheck::is_move(const SourceUse& use) const {
 std::optional<std::set<std::string>> FlowCheck::joints_of(const Tokens& tokens, std::size_t pose,
                                                           bool numbers_only) const {
   std::set<std::string> joints;
-  if (tokens[pose].kind == FlowKind::text && tokens[pose + 1].is_any({",", ")"})) {
+  if (tokens[pose].kind == TokenKind::text && tokens[pose + 1].is_any({",", ")"})) {
     for (const PoseInfo& known : catalog_.poses) {
       if (known.name != tokens[pose].text || catalog_.model == nullptr) continue;
       for (const auto& [joint, ignored] : known.position_rad) joints.insert(catalog_.model->joints[joint].name);
@@ -203,9 +196,9 @@ std::optional<std::set<std::string>> FlowCheck::joints_of(const Tokens& tokens, 
   }
   if (!tokens[pose].is("{")) return std::nullopt;
   for (const std::size_t part : parts_of(tokens, pose + 1)) {
-    if (tokens[part].kind != FlowKind::name || !tokens[part + 1].is("=")) return std::nullopt;
+    if (tokens[part].kind != TokenKind::name || !tokens[part + 1].is("=")) return std::nullopt;
     const std::size_t value = tokens[part + 2].is("-") ? part + 3 : part + 2;
-    const bool number = tokens[value].kind == FlowKind::number && tokens[value + 1].is_any({",", "}", ";"});
+    const bool number = tokens[value].kind == TokenKind::number && tokens[value + 1].is_any({",", "}", ";"});
     if (numbers_only && !number) return std::nullopt;
     joints.insert(tokens[part].text);
   }
@@ -218,7 +211,7 @@ double FlowCheck::time_of(const Tokens& tokens, std::size_t options) const {
   double time_s = 0;
   for (const std::size_t part : parts_of(tokens, options + 1)) {
     if (tokens[part].text == "relative") return 0;
-    if (tokens[part].text == "time_s" && tokens[part + 2].kind == FlowKind::number)
+    if (tokens[part].text == "time_s" && tokens[part + 2].kind == TokenKind::number)
       time_s = std::strtod(tokens[part + 2].text.c_str(), nullptr);
   }
   return time_s;
@@ -232,7 +225,7 @@ const SourceUse* FlowCheck::next_statement(const Tokens& tokens, std::size_t at)
       continue;
     }
     if (tokens[at].is("local") && tokens[at + 2].is("=")) at += 3;
-    if (tokens[at].kind == FlowKind::name && tokens[at + 1].is("=")) at += 2;
+    if (tokens[at].kind == TokenKind::name && tokens[at + 1].is("=")) at += 2;
     const SourceUse* const use = use_at(at);
     if (use == nullptr || use->arguments == 0 || is_move(*use)) return use;
     const bool gains = use->method == "set_gains" || use->method == "set_parameter" || use->method == "emit";
@@ -272,9 +265,9 @@ void FlowCheck::begun_anew(const SourceUse& use, const Tokens& tokens) {
 void FlowCheck::key(const Tokens& tokens, std::size_t at) {
   if (blocks_.empty() || !tokens[blocks_.back().token].is("{")) return;
   if (at == 0 || !tokens[at - 1].is_any({"{", ",", ";"})) return;
-  const bool bracket = tokens[at].is("[") && tokens[at + 1].kind == FlowKind::text && tokens[at + 2].is("]");
+  const bool bracket = tokens[at].is("[") && tokens[at + 1].kind == TokenKind::text && tokens[at + 2].is("]");
   const SourceToken& name = bracket ? tokens[at + 1] : tokens[at];
-  if (!tokens[bracket ? at + 3 : at + 1].is("=") || (!bracket && name.kind != FlowKind::name)) return;
+  if (!tokens[bracket ? at + 3 : at + 1].is("=") || (!bracket && name.kind != TokenKind::name)) return;
   const auto [first, added] = blocks_.back().keys.emplace(name.text, name.line);
   if (!added)
     tell(name.line, "'" + name.text + "' stands twice in this table: the one in line " + std::to_string(first->second) +
@@ -295,7 +288,7 @@ void FlowCheck::local_of_file(const SourceUse& use, const Tokens& tokens) {
 void FlowCheck::enter_token(const Tokens& tokens, std::size_t at) {
   const SourceToken& token = tokens[at];
   key(tokens, at);
-  const bool plain = token.is("local") && blocks_.empty() && tokens[at + 2].is("=") && is_plain(tokens[at + 3]);
+  const bool plain = token.is("local") && blocks_.empty() && tokens[at + 2].is("=") && tokens[at + 3].is_literal();
   if (plain && tokens[at + 4].line > tokens[at + 3].line) locals_of_file_.insert(at + 1);
   if (token.is("while") || token.is("repeat")) loop(tokens, at);
   if (token.is("return")) {
@@ -307,7 +300,7 @@ void FlowCheck::enter_token(const Tokens& tokens, std::size_t at) {
 }
 
 std::vector<ArgumentProblem> FlowCheck::run(const Tokens& tokens) {
-  for (std::size_t at = 0; at + 4 < tokens.size() && tokens[at].kind != FlowKind::end; ++at) {
+  for (std::size_t at = 0; at + 4 < tokens.size() && tokens[at].kind != TokenKind::end; ++at) {
     enter_token(tokens, at);
     const SourceUse* const use = use_at(at);
     if (use == nullptr) continue;

@@ -16,7 +16,6 @@ namespace kadans {
 
 class FlowCheck {
  public:
-  using Tokens = std::vector<SourceToken>;
   // `of_behavior`: the file is a behavior's own, no module.
   FlowCheck(const Catalog& catalog, const KnownNames& known, bool of_behavior)
       : catalog_(catalog), known_(known), of_behavior_(of_behavior) {}

@@ -15,8 +15,6 @@
 namespace kadans {
 namespace {
 
-using SourceTokens = std::vector<SourceToken>;
-
 int read_chart_functions(lua_State* state) {
   auto& reading = *static_cast<ChartFunctions*>(lua_touserdata(state, 1));
   const auto read = [&](int reference) {
@@ -40,7 +38,7 @@ ChartFunctions chart_functions(Behavior::Parts& parts) {
   return functions;
 }
 
-std::size_t function_in_line(const std::vector<SourceToken>& tokens, int line) {
+std::size_t function_in_line(const Tokens& tokens, int line) {
   std::size_t found = 0;
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     if (tokens[i].line != line || !tokens[i].is("function")) continue;
@@ -80,8 +78,8 @@ class LivelockCheck {
   }
 
   // The first token behind the arguments.
-  static std::size_t body_at(const SourceTokens& tokens, std::size_t function) {
-    while (!tokens[function].is(")") && tokens[function].kind != SourceToken::Kind::end) ++function;
+  static std::size_t body_at(const Tokens& tokens, std::size_t function) {
+    while (!tokens[function].is(")") && tokens[function].kind != TokenKind::end) ++function;
     return function + 1;
   }
 
@@ -95,7 +93,7 @@ class LivelockCheck {
     const ChartFunction* function = function_of(reference);
     const std::size_t at = function == nullptr ? 0 : function_at(*function);
     if (at == 0) return false;
-    const SourceTokens& tokens = tokens_.at(function->chunk);
+    const Tokens& tokens = tokens_.at(function->chunk);
     const std::size_t body = body_at(tokens, at);
     return body + 2 < tokens.size() && tokens[body].is("return") && tokens[body + 1].is("true") &&
            tokens[body + 2].is("end");
@@ -106,14 +104,13 @@ class LivelockCheck {
     const ChartFunction* function = function_of(reference);
     const std::size_t at = function == nullptr ? 0 : function_at(*function);
     if (at == 0) return;
-    const SourceTokens& tokens = tokens_.at(function->chunk);
+    const Tokens& tokens = tokens_.at(function->chunk);
     int depth = 0;
     for (std::size_t i = body_at(tokens, at); i + 2 < tokens.size() && depth >= 0; ++i) {
-      for (const char* opening : {"if", "do", "function", "repeat"}) depth += tokens[i].is(opening) ? 1 : 0;
-      for (const char* closing : {"end", "until"}) depth -= tokens[i].is(closing) ? 1 : 0;
+      depth += opens_block(tokens[i]);
       if (depth != 0 || !tokens[i].is(":") || tokens[i + 1].text != "emit") continue;
       const std::size_t text = tokens[i + 2].is("(") ? i + 3 : i + 2;
-      if (tokens[text].kind != SourceToken::Kind::text) continue;
+      if (tokens[text].kind != TokenKind::text) continue;
       const EventId event = chart_.find_event(tokens[text].text);
       if (event != no_event) events.insert(event);
     }
@@ -124,16 +121,15 @@ class LivelockCheck {
   bool looks_at_machine(const ChartFunction& function) const {
     const std::size_t at = function_at(function);
     if (at == 0) return true;
-    const SourceTokens& tokens = tokens_.at(function.chunk);
+    const Tokens& tokens = tokens_.at(function.chunk);
     std::size_t open = at;
-    while (!tokens[open].is("(") && tokens[open].kind != SourceToken::Kind::end) ++open;
+    while (!tokens[open].is("(") && tokens[open].kind != TokenKind::end) ++open;
     if (open + 3 >= tokens.size() || !tokens[open + 2].is(",")) return false;
     const std::string& machine = tokens[open + 3].text;
     int depth = 0;
     for (std::size_t i = open + 4; i < tokens.size() && depth >= 0; ++i) {
-      for (const char* opening : {"if", "do", "function", "repeat"}) depth += tokens[i].is(opening) ? 1 : 0;
-      for (const char* closing : {"end", "until"}) depth -= tokens[i].is(closing) ? 1 : 0;
-      if (tokens[i].kind == SourceToken::Kind::name && tokens[i].text == machine) return true;
+      depth += opens_block(tokens[i]);
+      if (tokens[i].kind == TokenKind::name && tokens[i].text == machine) return true;
     }
     return false;
   }
@@ -218,7 +214,7 @@ class LivelockCheck {
   const Chart& chart_;
   const ChartFunctions& functions_;
   std::vector<InputProblem>& problems_;
-  std::map<std::string, SourceTokens> tokens_;
+  std::map<std::string, Tokens> tokens_;
 };
 
 }  // namespace

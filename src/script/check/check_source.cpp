@@ -16,9 +16,6 @@
 namespace kadans {
 namespace {
 
-using TokenKind = SourceToken::Kind;
-using Tokens = std::vector<SourceToken>;
-
 // The local that a file ends with returning, or "".
 std::string returned_name(const Tokens& tokens) {
   std::size_t end = tokens.size();
@@ -41,9 +38,9 @@ bool filled_while_it_runs(const Tokens& tokens, const std::string& name) {
   std::vector<bool> blocks;  // whether each is a function's
   for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
     const SourceToken& token = tokens[i];
-    if (token.is("function") || token.is("if") || token.is("do") || token.is("repeat"))
-      blocks.push_back(token.is("function"));
-    if ((token.is("end") || token.is("until")) && !blocks.empty()) blocks.pop_back();
+    const int change = opens_block(token);
+    if (change > 0) blocks.push_back(token.is("function"));
+    if (change < 0 && !blocks.empty()) blocks.pop_back();
     if (std::ranges::find(blocks, true) == blocks.end() || token.kind != TokenKind::name) continue;
     if (token.text == "rawset" && tokens[i + 2].text == name) return true;
     if (token.text == name && tokens[i + 1].is("[") && tokens[end_of_bracket(tokens, i + 1) + 1].is("=")) return true;
@@ -64,10 +61,7 @@ bool uses_value(const Tokens& tokens, std::size_t at) {
   if (after.is(".") || after.is("(") || after.is(":") || after.is("[")) return true;
   if (at == 0) return false;
   const SourceToken& before = tokens[at - 1];
-  for (const char* word : {"=", "(", ",", "{", "return", "and", "or", "not", "..", "=="}) {
-    if (before.is(word)) return true;
-  }
-  return false;
+  return before.is_any({"=", "(", ",", "{", "return", "and", "or", "not", "..", "=="});
 }
 
 }  // namespace
@@ -96,7 +90,7 @@ void check_module_values(const std::vector<ReadSource>& read, const LuaState& lu
   for (const ReadSource& one : read) {
     const Tokens& tokens = one.scopes.tokens();
     for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
-      if (tokens[i].kind != TokenKind::name || tokens[i].text != "require" || !uses_value(tokens, i)) continue;
+      if (!tokens[i].is_name("require") || !uses_value(tokens, i)) continue;
       const SourceToken& name = tokens[i + 1].is("(") ? tokens[i + 2] : tokens[i + 1];
       const ReadSource* const file = name.kind == TokenKind::text ? file_of(read, lua, name.text) : nullptr;
       if (file == nullptr || file->scopes.functions().front().returns_value) continue;
@@ -137,7 +131,7 @@ constexpr std::array<const char*, 3> always_there{"vars", "args", "*"};
 // Fields that scripts write themselves: `m.vars.x = `, in one file.
 class Writes final : public SourceListener {
  public:
-  void used(const SourceUse& use, const std::vector<SourceToken>& /*tokens*/) override {
+  void used(const SourceUse& use, const Tokens& /*tokens*/) override {
     const auto& path = use.meaning.path;
     if (use.assigned && use.meaning.role == SourceRole::machine && path.size() >= 2 && path[0] == "vars") {
       vars.push_back(path[1]);
@@ -174,7 +168,7 @@ class SourceCheck final : public SourceListener {
     tell(flow_.run(scopes.tokens()));
   }
 
-  void used(const SourceUse& use, const std::vector<SourceToken>& tokens) override {
+  void used(const SourceUse& use, const Tokens& tokens) override {
     flow_.note(use);
     tell(values_.of_use(use, tokens));
     if (!use.known) return unknown(use);
@@ -226,7 +220,7 @@ class SourceCheck final : public SourceListener {
   }
 
   // m:wait(1), motion:wait(), m.posture:move(...):wait()
-  bool waits(const SourceUse& use, const std::vector<SourceToken>& tokens) const {
+  bool waits(const SourceUse& use, const Tokens& tokens) const {
     if (use.arguments == 0) return false;
     const auto& path = use.meaning.path;
     const bool machine = use.meaning.role == SourceRole::machine;
@@ -290,7 +284,7 @@ class SourceCheck final : public SourceListener {
     }
   }
 
-  void machine(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+  void machine(const SourceUse& use, const Tokens& tokens) {
     const auto& path = use.meaning.path;
     if (machine_.open) return;
     if (path.empty()) {
@@ -340,28 +334,26 @@ class SourceCheck final : public SourceListener {
   }
 
   // A plain value, or one that is counted on, in a field of vars that nobody declared.
-  void undeclared(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+  void undeclared(const SourceUse& use, const Tokens& tokens) {
     const std::string& name = use.meaning.path[1];
     const auto declared = known_.vars.find(source_.chunk);
     if (declared == known_.vars.end() || name == "*" || !tokens[use.next].is("=")) return;
     const std::vector<std::string>& names = declared->second;
     if (std::find(names.begin(), names.end(), name) != names.end()) return;
     const SourceToken& value = tokens[use.next + 1];
-    const bool plain = value.kind == SourceToken::Kind::number || value.kind == SourceToken::Kind::text ||
-                       value.is("true") || value.is("false");
     const std::size_t own = use.next - use.at;  // m.vars.n = m.vars.n + 1
     bool itself = true;
     for (std::size_t i = 0; i < own; ++i) itself = itself && tokens[use.next + 1 + i].text == tokens[use.at + i].text;
-    if (plain || itself)
+    if (value.is_literal() || itself)
       problem(place(use), "m.vars has no '" + name + "'" + hint_text(name, names) + ": declare it in vars = { }");
   }
 
   // The token behind '=' of an assignment.
-  static bool gives_function(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+  static bool gives_function(const SourceUse& use, const Tokens& tokens) {
     return use.next + 1 < tokens.size() && tokens[use.next + 1].is("function");
   }
 
-  void machine_field(const SourceUse& use, const ObjectInfo* object, const std::vector<SourceToken>& tokens) {
+  void machine_field(const SourceUse& use, const ObjectInfo* object, const Tokens& tokens) {
     const auto& path = use.meaning.path;
     if (object != nullptr) {
       return problem(place(use), not_in_sets(parts_.bindings, path.front(), machine_here()).data());
@@ -381,8 +373,8 @@ class SourceCheck final : public SourceListener {
     problem(place(use), "m.vars has no '" + path[1] + "'" + hint_text(path[1], vars_) + ": declare it in vars = { }");
   }
 
-  void event(const std::vector<SourceToken>& tokens, std::size_t at) {
-    if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
+  void event(const Tokens& tokens, std::size_t at) {
+    if (at == 0 || tokens[at].kind != TokenKind::text) return;
     if (tokens[at - 1].is("(") && !tokens[at + 1].is(")")) return;  // a part of it
     const EventId id = parts_.chart.find_event(tokens[at].text);
     if (reserved_for_reports(tokens[at].text)) {

@@ -74,7 +74,7 @@ struct ChartFunctions {
 ChartFunctions chart_functions(Behavior::Parts& parts);
 
 // The token of the only function that begins in this line; 0: there are several, or none.
-std::size_t function_in_line(const std::vector<SourceToken>& tokens, int line);
+std::size_t function_in_line(const Tokens& tokens, int line);
 
 // Finds guards and actions that read data of an event where there is none, or a field that may be missing as if it
 // were always there.

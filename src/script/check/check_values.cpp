@@ -12,9 +12,6 @@
 namespace kadans {
 namespace {
 
-using TokenKind = SourceToken::Kind;
-using Tokens = std::vector<SourceToken>;
-
 bool compares(const SourceToken& token) { return token.is_any({"==", "~=", "<", ">", "<=", ">="}); }
 bool calculates(const SourceToken& token) { return token.is_any({"+", "-", "*", "/", "%", "^"}); }
 // Whether the token makes another value of what stands beside it.
@@ -27,9 +24,6 @@ const SourceToken& before(const Tokens& tokens, std::size_t at, std::size_t step
 }
 
 bool is_truth(const SourceToken& token) { return token.is("true") || token.is("false"); }
-bool is_literal(const SourceToken& token) {
-  return token.kind == TokenKind::text || token.kind == TokenKind::number || is_truth(token);
-}
 
 // Lua takes "1" for 1 where it calculates.
 bool is_numeral(const std::string& text) {
@@ -161,14 +155,15 @@ void ValueCheck::operands(const SourceUse& use, const Type& type, const Tokens& 
       tell(name + " goes by names, not by numbers: for name, one in pairs(" + name + ") do");
     return;
   }
-  if (compares(right) && is_literal(tokens[use.next + 1]) && !goes_on(tokens[use.next + 2])) {
+  if (compares(right) && tokens[use.next + 1].is_literal() && !goes_on(tokens[use.next + 2])) {
     if (left.is("not") && type.kind != Kind::flag) {
       tell("not binds closer than " + right.text + ": write " + name + (right.is("==") ? " ~= ..." : " == ..."));
     } else if (!changes(left)) {
       tell(compared(use, type, tokens, use.next + 1, right));
     }
   }
-  if (compares(left) && is_literal(before(tokens, use.at, 2)) && !changes(before(tokens, use.at, 3)) && !changes(right))
+  if (compares(left) && before(tokens, use.at, 2).is_literal() && !changes(before(tokens, use.at, 3)) &&
+      !changes(right))
     tell(compared(use, type, tokens, use.at - 2, left));
   if (type.kind == Kind::number) return;
   const bool flag = type.kind == Kind::flag;
@@ -265,7 +260,7 @@ std::string ValueCheck::machine_call(const SourceUse& use, const Tokens& tokens)
   if (use.method != "wait") return "";
   const SourceToken& first = tokens[use.arguments];
   if (first.is(")") && bracket) return "m:wait needs seconds: m:wait(1)";
-  if (is_literal(first) && first.kind != TokenKind::number && !goes_on(tokens[use.arguments + 1]))
+  if (first.is_literal() && first.kind != TokenKind::number && !goes_on(tokens[use.arguments + 1]))
     return "m:wait takes seconds, a number without quotes: m:wait(1)";
   if (first.is("{") || first.is("function") || first.is("nil")) return "m:wait takes seconds: m:wait(1)";
   if (first.is("-") && tokens[use.arguments + 1].kind == TokenKind::number && tokens[use.arguments + 2].is(")"))
@@ -309,7 +304,7 @@ std::string ValueCheck::armed(const SourceUse& use, const Tokens& tokens) const 
   const std::size_t done_end = given.size() > 2 ? given[2] - 1 : end;
   bool acts = false;  // m.posture:hold() in place of the function
   for (std::size_t i = done; i < done_end && !tokens[done].is("function"); ++i) acts = acts || tokens[i].is(":");
-  if (given.size() < 2 || acts || is_literal(tokens[done]) || tokens[done].is("{"))
+  if (given.size() < 2 || acts || tokens[done].is_literal() || tokens[done].is("{"))
     return "m:on needs a function that says what to do: function(c) c.posture:hold() end";
   for (std::size_t i = done; tokens[done].is("function") && i < done_end; ++i) {
     if (tokens[i].is(":") && tokens[i + 1].text == "wait")

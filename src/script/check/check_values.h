@@ -14,7 +14,6 @@ namespace kadans {
 
 class ValueCheck {
  public:
-  using Tokens = std::vector<SourceToken>;
   explicit ValueCheck(const Behavior::Parts& parts);
 
   // What is wrong with what stands around one use of a name.
@@ -48,8 +47,8 @@ class ValueCheck {
 
 // Compares the formats of string.format and k.log with the values behind them, as far as they are written out. `at` is
 // the first token in the brackets of the call. "" when nothing is wrong.
-std::string format_mistake(const std::vector<SourceToken>& tokens, std::size_t at, const std::string& called);
+std::string format_mistake(const Tokens& tokens, std::size_t at, const std::string& called);
 // print("x %d", 1)
-std::string print_mistake(const std::vector<SourceToken>& tokens, std::size_t at);
+std::string print_mistake(const Tokens& tokens, std::size_t at);
 
 }  // namespace kadans

@@ -8,8 +8,6 @@ namespace {
 
 constexpr int steps_max = 16;  // more of them: tables that hold one another
 
-using TokenKind = SourceToken::Kind;
-
 // Whether the expression before the token is over there.
 bool ends_value(const SourceToken& after) {
   return after.kind == TokenKind::name || after.is(",") || after.is(")") || after.is("}") || after.is(";") ||
@@ -288,8 +286,6 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
 
 namespace {
 
-using TokenKind = SourceToken::Kind;
-
 // Keys of functions that are over within their tick.
 bool is_at_once(const std::string& key) {
   return key == "enter" || key == "exit" || key == "during" || key == "action" || key == "result";
@@ -319,7 +315,7 @@ void learn_facts(const std::vector<SourceScopes*>& files, SourceFacts& facts) {
   }
 }
 
-SourceScopes::SourceScopes(std::vector<SourceToken> tokens, std::size_t file, SourceFacts& facts)
+SourceScopes::SourceScopes(Tokens tokens, std::size_t file, SourceFacts& facts)
     : tokens_(std::move(tokens)), file_(file), facts_(&facts) {
   tokens_.resize(tokens_.size() + 4, SourceToken{TokenKind::end, "", tokens_.empty() ? 1 : tokens_.back().line});
   for (const SourceToken& token : tokens_) {

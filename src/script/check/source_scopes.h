@@ -144,7 +144,7 @@ struct SourceFunction {
 class SourceListener {
  public:
   virtual ~SourceListener() = default;
-  virtual void used(const SourceUse& use, const std::vector<SourceToken>& tokens) = 0;
+  virtual void used(const SourceUse& use, const Tokens& tokens) = 0;
 };
 
 class SourceScopes {
@@ -154,7 +154,7 @@ class SourceScopes {
   using ChartStates = std::map<int, std::set<std::uint16_t>>;  // the states whose functions these are
 
   // `file` is its number among the files that share `facts`. `facts` must outlive this object.
-  SourceScopes(std::vector<SourceToken> tokens, std::size_t file, SourceFacts& facts);
+  SourceScopes(Tokens tokens, std::size_t file, SourceFacts& facts);
   // Gives the functions of the chart: only these are guards, end within their tick, or get `m` and `s`. Without this
   // call, every function counts as what its key says.
   void know_functions(ChartFunctions chart, ChartStates states) {
@@ -167,7 +167,7 @@ class SourceScopes {
 
   // After tell(): all functions; the first is the file itself.
   std::vector<SourceFunction> functions() const;
-  const std::vector<SourceToken>& tokens() const noexcept { return tokens_; }
+  const Tokens& tokens() const noexcept { return tokens_; }
   std::size_t file() const noexcept { return file_; }
 
  private:
@@ -216,7 +216,7 @@ class SourceScopes {
 
   Function& function(std::size_t token) { return facts_->functions[{file_, token}]; }
 
-  std::vector<SourceToken> tokens_;
+  Tokens tokens_;
   std::size_t file_ = 0;
   SourceFacts* facts_;
   std::optional<ChartFunctions> chart_;

@@ -11,6 +11,7 @@
 #include "kadans/signal/nearest_name.h"
 #include "script/bindings/bindings.h"
 #include "script/bindings/snapshot_tables.h"
+#include "script/check/source_lexer.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/number_text.h"
@@ -330,18 +331,6 @@ std::vector<std::string> console_names(Console::Parts& parts, const std::string&
 
 namespace {
 
-std::vector<std::string> parameter_names(const ParameterTable& table) {
-  std::vector<std::string> names;
-  for (ParameterId id = 0; id < table.size(); ++id) names.push_back(table.info(id).name);
-  return names;
-}
-
-std::vector<std::string> signal_names(const SignalTable& table) {
-  std::vector<std::string> names;
-  for (SignalId id = 0; id < table.size(); ++id) names.push_back(table.info(id).name);
-  return names;
-}
-
 Chart console_chart() {
   Chart chart;
   chart.name = "console";
@@ -450,9 +439,7 @@ std::vector<std::string> command_names() {
   return names;
 }
 
-bool continues_word(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == ':';
-}
+bool continues_word(char c) { return in_name(c) || c == '.' || c == ':'; }
 
 Console::Reply run_for(const std::string& argument) {
   const std::optional<double> seconds = number_of<double>(argument);
@@ -474,8 +461,8 @@ Console::Parts::Parts(const Settings& wanted, const Catalog& offered, ScriptHost
            .limits = wanted.limits,
            .voice = this}),
       chart(console_chart()),
-      signals(signal_names(offered.signals)),
-      parameters(parameter_names(offered.parameters)) {
+      signals(offered.signals.names()),
+      parameters(offered.parameters.names()) {
   bindings.catalog = &catalog;
   lua.core().bindings = &bindings;
 }
