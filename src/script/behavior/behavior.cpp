@@ -213,8 +213,6 @@ int open_bindings(lua_State* state) {
   return 0;
 }
 
-InputProblem problem_of(const ScriptError& error) { return {error.file.data(), error.line, 0, error.message.data()}; }
-
 }  // namespace
 
 Behavior::Parts::Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to)
@@ -611,9 +609,8 @@ bool Behavior::set_parameter(const std::string& name, double value) noexcept {
   return false;
 }
 
-void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
+void open_lua(Behavior::Parts& parts) {
   const Behavior::Settings& settings = parts.settings;
-  if (instructions == 0) instructions = settings.limits.load_instructions;
   parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = settings.root,
                                                             .folder = settings.file.parent_path(),
                                                             .name = settings.file.stem().string(),
@@ -621,12 +618,16 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
                                                             .limits = settings.limits,
                                                             .voice = &parts});
   parts.bindings.catalog = &parts.catalog;
+}
+
+void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
+  const Behavior::Settings& settings = parts.settings;
+  if (instructions == 0) instructions = settings.limits.load_instructions;
+  open_lua(parts);
   parts.bindings.inputs = settings.limits.inputs;
   parts.bindings.folders = settings.folders.project_file.empty() ? nullptr : &settings.folders;
   parts.lua->core().bindings = &parts.bindings;
-  if (!parts.lua->call(read_file, &parts, instructions, settings.limits.load_wall_ns)) {
-    throw InputError(problem_of(parts.lua->error()));
-  }
+  parts.lua->call_or_throw(read_file, &parts, instructions, settings.limits.load_wall_ns);
   find_transition_lines(parts.lua->sources(), parts.chart);
   for (const ScriptEvent& event : parts.lua->core().events) parts.chart.intern(event.name);
   parts.chart.resolve(parts.problems);
@@ -640,9 +641,7 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   give_robot_values(parts);
   give_arguments(parts, instructions);
   for (ScriptParameter& parameter : parts.lua->core().parameters) parameter.loaded = parameter.value;
-  if (!parts.lua->call(open_bindings, &parts, instructions, settings.limits.load_wall_ns)) {
-    throw InputError(problem_of(parts.lua->error()));
-  }
+  parts.lua->call_or_throw(open_bindings, &parts, instructions, settings.limits.load_wall_ns);
   make_room_for_calls(parts.lua->core(), parts.chart, parts.bindings);
   parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);
   parts.bindings.runner = parts.runner.get();

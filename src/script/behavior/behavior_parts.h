@@ -80,6 +80,8 @@ struct Behavior::Past {
   std::string complaint;                     // the last logged complaint, so that it is not repeated
 };
 
+// Makes the Lua state in which the file will be read.
+void open_lua(Behavior::Parts& parts);
 // Reads the file, makes the chart and the bindings. `instructions` 0: the limit for loading. Throws InputError.
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
 

@@ -13,7 +13,6 @@
 #include <lua.hpp>
 
 #include "bindings.h"
-#include "kadans/signal/input_error.h"
 #include "script/chart/chart_arguments.h"
 #include "script/chart/chart_reader.h"
 #include "script/chart/chart_skills.h"
@@ -478,10 +477,7 @@ int read_skills(lua_State* state) {
 std::string module_reference(const std::filesystem::path& root, const std::filesystem::path& file) {
   LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string()});
   SkillReading reading{lua, file};
-  if (!lua.call(read_skills, &reading, lua.settings().limits.load_instructions, 0)) {
-    const ScriptError& error = lua.error();
-    throw InputError({error.file.data(), error.line, 0, error.message.data()});
-  }
+  lua.call_or_throw(read_skills, &reading, lua.settings().limits.load_instructions, 0);
   const std::string module = file.stem().string();
   std::string text;
   for (const auto& [field, skill] : reading.skills) {

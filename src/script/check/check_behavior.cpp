@@ -128,7 +128,7 @@ void check_loaded(Looked& looked) {
 std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
                                          const Catalog& catalog) {
   BehaviorLog silence;
-  const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
+  const Behavior::Settings settings{.root = root, .file = root / file};
   Behavior::Parts parts(settings, catalog, silence);
   std::vector<InputProblem> problems;
   try {
@@ -155,22 +155,14 @@ void tell_once(std::vector<InputProblem>& problems) {
 
 CheckedScript check_script(const fs::path& root, const fs::path& file, const Catalog* catalog) {
   BehaviorLog silence;
-  const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
+  const Behavior::Settings settings{.root = root, .file = root / file};
   Behavior::Parts parts(settings, catalog == nullptr ? no_robot : *catalog, silence);
-  parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = root,
-                                                            .folder = settings.file.parent_path(),
-                                                            .name = settings.file.stem().string(),
-                                                            .limits = settings.limits});
-  parts.bindings.catalog = &parts.catalog;
+  open_lua(parts);
   if (catalog != nullptr) parts.lua->core().bindings = &parts.bindings;
   Looked looked{parts};
   looked.found.kind = file.string().ends_with("_test.lua") ? ScriptKind::test : ScriptKind::module;
-  if (!parts.lua->call(look_at_file, &looked, settings.limits.load_instructions, 0)) {
-    const ScriptError& error = parts.lua->error();
-    looked.found.problems = {{error.file.data(), error.line, 0, error.message.data()}};
-    return looked.found;
-  }
   try {
+    parts.lua->call_or_throw(look_at_file, &looked, settings.limits.load_instructions, 0);
     if (looked.found.kind == ScriptKind::behavior) {
       if (catalog != nullptr) looked.found.problems = check_behavior(root, file, *catalog);
     } else {

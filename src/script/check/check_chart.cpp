@@ -417,9 +417,7 @@ void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, 
 
 void check_vars(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
   Looking looking{parts, problems};
-  if (parts.lua->call(look, &looking, parts.settings.limits.load_instructions, 0)) return;
-  const ScriptError& error = parts.lua->error();
-  throw InputError({error.file.data(), error.line, 0, error.message.data()});
+  parts.lua->call_or_throw(look, &looking, parts.settings.limits.load_instructions, 0);
 }
 
 }  // namespace kadans

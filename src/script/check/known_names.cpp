@@ -2,7 +2,6 @@
 
 #include <string_view>
 
-#include "kadans/signal/input_error.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/sandbox.h"
 
@@ -160,10 +159,7 @@ std::vector<std::string> KnownNames::Shape::names() const {
 KnownNames read_known_names(Behavior::Parts& parts) {
   KnownNames known;
   Reading reading{&parts, &known};
-  if (!parts.lua->call(read, &reading, parts.settings.limits.load_instructions, 0)) {
-    const ScriptError& error = parts.lua->error();
-    throw InputError({error.file.data(), error.line, 0, error.message.data()});
-  }
+  parts.lua->call_or_throw(read, &reading, parts.settings.limits.load_instructions, 0);
   known.motion_fields = {"cancel", "done", "outcome", "reason", "wait"};
   known.armed_fields = {"cancel", "fired", "outcome"};
   for (const ScriptParameter& parameter : parts.lua->core().parameters) {

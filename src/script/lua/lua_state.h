@@ -65,6 +65,8 @@ class LuaState {
   // dropped. Errors unwind through the function, so it must not hold objects that need a destructor.
   [[nodiscard]] bool call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
                           std::int64_t wall_ns) noexcept;
+  // The same; throws InputError in place of false.
+  void call_or_throw(int (*function)(lua_State*), void* argument, std::uint64_t instructions, std::int64_t wall_ns);
 
   // Compiles a text file and leaves the function on the stack of `state`. False: the error message is on the stack.
   bool load_file(lua_State* state, const std::filesystem::path& path);

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <cstring>
 
-#include "kadans/signal/input_error.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_core.h"
@@ -310,10 +309,7 @@ std::vector<TestOutcome> run_behavior_tests(const std::filesystem::path& root, c
   LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string(), .limits = limits});
   Testing testing{lua, stages, root, file, {}, {}, LUA_NOREF, {}, {}, {}};
   testing.played.reserve(stages_max);
-  if (!lua.call(run_file, &testing, load_instructions_max, 0)) {
-    const ScriptError& error = lua.error();
-    throw InputError({error.file.data(), error.line, 0, error.message.data()});
-  }
+  lua.call_or_throw(run_file, &testing, load_instructions_max, 0);
   std::vector<TestOutcome> outcomes;
   for (const Testing::Test& test : testing.tests) {
     if (test.name.find(only) == std::string::npos) continue;
