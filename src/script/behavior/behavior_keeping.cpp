@@ -285,10 +285,9 @@ void put_event_data(Behavior::Parts& parts, ByteWriter& bytes) {
     if (events[i].place < 0) continue;
     bytes.put<std::uint8_t>(1);
     bytes.put(events[i].place);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.event_data);
-    lua_rawgeti(state, -1, events[i].place + 1);
+    push_entry(state, parts.tables.event_data, events[i].place + 1);
     ByteWriter value;
-    if (put_value(state, top + 2, value, why))
+    if (put_value(state, top + 1, value, why))
       bytes.put(value.bytes());
     else
       bytes.put<std::uint8_t>(tag_nil);  // m:emit checked it; a script that got hold of it has changed it
@@ -301,11 +300,9 @@ void take_event_data(lua_State* state, const Behavior::Parts& parts, ByteReader&
   luaL_checkstack(state, 8, "events");
   while (bytes.take<std::uint8_t>() != 0) {
     const auto place = bytes.take<std::int8_t>();
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.event_data);
     push_value(state, bytes, parts.catalog);
     if (place < 0 || place >= EventQueue::places) luaL_error(state, "an event's data has no place");
-    lua_rawseti(state, -2, place + 1);
-    lua_pop(state, 1);
+    set_entry(state, parts.tables.event_data, place + 1);
   }
 }
 
@@ -316,10 +313,9 @@ void put_results(Behavior::Parts& parts, ByteWriter& bytes) {
   std::string why;
   for (StateIndex i = 0; i < parts.chart.size() && lua_checkstack(state, 8) != 0; ++i) {
     if (!parts.runner->active(i) || parts.chart.states[i].result == Chart::no_function) continue;
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
-    lua_rawgeti(state, -1, i + 1);
+    push_entry(state, parts.tables.results, i + 1);
     ByteWriter value;
-    if (put_value(state, top + 2, value, why)) {  // a script that got hold of it may have changed it
+    if (put_value(state, top + 1, value, why)) {  // a script that got hold of it may have changed it
       bytes.put<std::uint8_t>(1);
       bytes.put_string(parts.chart.states[i].path);
       bytes.put(value.bytes());
@@ -333,10 +329,9 @@ void take_results(lua_State* state, const Behavior::Parts& parts, ByteReader& by
   luaL_checkstack(state, 8, "results");
   while (bytes.take<std::uint8_t>() != 0) {
     const auto found = std::ranges::find(parts.chart.states, bytes.take_text(), &Chart::State::path);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
     push_value(state, bytes, parts.catalog);
     const auto index = static_cast<int>(found - parts.chart.states.begin());
-    if (found != parts.chart.states.end() && lua_istable(state, -1)) lua_rawseti(state, -2, index + 1);
+    if (found != parts.chart.states.end() && lua_istable(state, -1)) set_entry(state, parts.tables.results, index + 1);
     lua_settop(state, 1);
   }
 }

@@ -259,7 +259,8 @@ bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
     if (given.function == Chart::no_function && given.parameter != Chart::no_parameter) continue;
     const int top = lua_gettop(state);
     if (given.function != Chart::no_function) {
-      if (!push_given_by(state, caller, given.function)) return false;
+      push_call(state, given.function, caller);
+      if (!call_recoverably(state, caller, 2, 1)) return false;
     } else {
       lua_pushnumber(state,
                      charged_value(state, static_cast<std::size_t>(given.follows), chart_.states[caller].machine));
@@ -273,12 +274,6 @@ bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
     lua_settop(state, top);
   }
   return true;
-}
-
-// [-0 +1 when true]
-bool ChartRunner::push_given_by(lua_State* state, StateIndex caller, int function) {
-  push_call(state, function, caller);
-  return call_recoverably(state, caller, 2, 1);
 }
 
 void ChartRunner::push_arguments(lua_State* state) const {

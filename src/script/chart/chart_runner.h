@@ -246,13 +246,11 @@ class ChartRunner {
   static void keep_run_error(lua_State* state, lua_State* thread);
   void note_failure(lua_State* state, StateIndex index, const Attempt& attempt);
   void fail(lua_State* state, StateIndex index);
-  void raise_failure(lua_State* state);
   void recover(lua_State* state);
   void recover_late(lua_State* state);
   void enter_no_further(StateIndex index) noexcept;
   // Evaluates what the call of a machine that is being entered gives to it. False: as call().
   bool evaluate_call(lua_State* state, std::uint16_t machine);
-  bool push_given_by(lua_State* state, StateIndex caller, int function);
   void set_time(lua_State* state, StateIndex index);
   // [-0 +3] The function and its arguments, m and s.
   void push_call(lua_State* state, int function, StateIndex index);

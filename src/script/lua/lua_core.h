@@ -45,6 +45,20 @@ inline LuaCore& core_of(lua_State* state) noexcept {
   return *static_cast<LuaCore*>(core);
 }
 
+// [-0 +1] Pushes entry `at` of the table that a registry reference stands for.
+inline void push_entry(lua_State* state, int table, int at) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, table);
+  lua_rawgeti(state, -1, at);
+  lua_remove(state, -2);
+}
+// [-1 +0] Gives it the value at the top of the stack.
+inline void set_entry(lua_State* state, int table, int at) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, table);
+  lua_insert(state, -2);
+  lua_rawseti(state, -2, at);
+  lua_pop(state, 1);
+}
+
 // The CPU time of this thread, without the time of other threads. It asks the kernel, which costs about 0.7 us.
 std::int64_t thread_now_ns() noexcept;
 
