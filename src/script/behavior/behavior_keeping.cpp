@@ -40,7 +40,7 @@ void take_parameters(Behavior::Parts& parts, ByteReader& bytes) {
   }
 }
 
-void put_bindings(const Bindings& bindings, ByteWriter& bytes) {
+void put_sent(const SentSoFar& bindings, ByteWriter& bytes) {
   bytes.put(bindings.sets_sent);
   bytes.put<std::uint8_t>(bindings.sets_lost);
   for (const std::uint32_t sequence : bindings.sent) bytes.put(sequence);
@@ -79,7 +79,7 @@ void take_armed(Behavior::Parts& parts, ByteReader& bytes) {
   }
 }
 
-void take_bindings(Bindings& bindings, ByteReader& bytes) {
+void take_sent(SentSoFar& bindings, ByteReader& bytes) {
   bindings.sets_sent = bytes.take<SetMask>();
   bindings.sets_lost = bytes.take<std::uint8_t>() != 0;
   for (std::uint32_t& sequence : bindings.sent) sequence = bytes.take<std::uint32_t>();
@@ -464,7 +464,7 @@ std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
   bytes.put<std::uint8_t>(parts.reports.queue_full);
   bytes.put(parts.reports.faults_seen);
   bytes.put(std::as_bytes(std::span(&parts.lua->core().random, 1)));
-  put_bindings(parts.bindings, bytes);
+  put_sent(parts.bindings, bytes);
   put_armed(parts, bytes);
   parts.runner->keep(bytes);
   put_event_data(parts, bytes);
@@ -484,7 +484,7 @@ bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snaps
   GoingOn going_on{parts, bytes, core.random, guards_tried};
   const auto kept = bytes.take_bytes(sizeof going_on.random);
   if (!kept.empty()) std::memcpy(static_cast<void*>(&going_on.random), kept.data(), sizeof going_on.random);
-  take_bindings(parts.bindings, bytes);
+  take_sent(parts.bindings, bytes);
   take_armed(parts, bytes);
   if (!parts.runner->restore(bytes)) {
     parts.error.set_message("what was kept does not fit the chart");
@@ -619,7 +619,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
     (void)leave_states(failing, failing.runner->gone_from(*old.runner), snapshot, commands);
   }
   old.runner->enter_again(past_->left);
-  old.bindings.go_on_after(failing.bindings);
+  static_cast<SentSoFar&>(old.bindings) = failing.bindings;
   old.want_sets();
   parts_ = std::move(past_->parts);
   number_states();

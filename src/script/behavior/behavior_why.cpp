@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "behavior_parts.h"
-#include "script/chart/chart_calls.h"
 #include "script/chart/chart_graph.h"
 #include "script/check/source_lexer.h"
 #include "script/lua/lua_core.h"
@@ -195,10 +194,7 @@ std::string why_not(const Behavior::Parts& parts, const Question& question) {
   if (transition.on != no_event && transition.on != run_done_event)
     add(why, "no event '" + parts.chart.events[static_cast<std::size_t>(transition.on)] + "'");
   if (transition.timed) {
-    const double after_s = transition.after_parameter != Chart::no_parameter
-                               ? parameter_value(parts.lua->get(), static_cast<std::size_t>(transition.after_parameter),
-                                                 parts.chart.states[transition.source].machine)
-                               : transition.after_s;
+    const double after_s = parts.runner->after_s(parts.lua->get(), transition);
     const double left_s = after_s - parts.runner->state_time_s(transition.source);
     if (left_s > 0) add(why, printed("%.2f s left of %g s", left_s, after_s));
   }

@@ -42,17 +42,6 @@ bool Bindings::must_wait(std::uint32_t set) const noexcept {
   return dwells;
 }
 
-void Bindings::go_on_after(const Bindings& other) noexcept {
-  sent = other.sent;
-  sent_count = other.sent_count;
-  refusals_seen = other.refusals_seen;
-  refused_last = other.refused_last;
-  switched = other.switched;
-  begun = other.begun;
-  sets_sent = other.sets_sent;
-  sets_lost = other.sets_lost;
-}
-
 const Refusal* Bindings::next_refusal() noexcept {
   const std::uint32_t count = snapshot->transactions_refused;
   if (count - refusals_seen > refusals_shown) refusals_seen = count - refusals_shown;

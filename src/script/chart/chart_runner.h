@@ -127,6 +127,7 @@ class ChartRunner {
   // The active state in `around`, the first when there are several; `around` itself when none in it is.
   StateIndex innermost(StateIndex around = 0) const noexcept;
   double state_time_s(StateIndex state) const noexcept;
+  double after_s(lua_State* state, const Chart::Transition& transition) const noexcept;  // of a timed one
   bool run_done(StateIndex state) const noexcept { return run_[state].run_done; }
   // Its `run` has begun, and is not over.
   bool run_under_way(StateIndex state) const noexcept {
@@ -190,7 +191,6 @@ class ChartRunner {
   bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
   bool happened(std::uint16_t transition, const WaitingEvent* event) const noexcept;
   bool due(lua_State* state, std::uint16_t transition) const;
-  double after_s(lua_State* state, const Chart::Transition& transition) const noexcept;
   bool guard(lua_State* state, std::uint16_t transition);
   bool there_already(const Chart::Transition& transition) const noexcept;
   bool acted(std::uint16_t transition) const noexcept;
