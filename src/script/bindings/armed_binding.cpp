@@ -295,9 +295,8 @@ int cancel_armed(lua_State* state) {
   const ArmedHandle& handle = check_handle(state);
   Bindings& bindings = bindings_of(state);
   if (bindings.recording) return luaL_error(state, "armed:cancel() does not work inside the function of m:on");
-  if (!bindings.send({.kind = CommandKind::disarm, .index = handle.which, .sequence = handle.sequence}))
-    return queue_full(state);
-  return lua_pushboolean(state, 1), 1;
+  return tell_sent(state,
+                   bindings.send({.kind = CommandKind::disarm, .index = handle.which, .sequence = handle.sequence}));
 }
 
 const char* outcome(const ArmedHandle& handle, const ArmedStatus* status, const Snapshot& snapshot) noexcept {

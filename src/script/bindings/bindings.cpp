@@ -138,11 +138,9 @@ constexpr double joint_instructions = 20;
 int budget(lua_State* state) {
   const LuaCore& core = core_of(state);
   lua_createtable(state, 0, 2);
-  lua_pushnumber(state, static_cast<lua_Number>(core.budget.left()));
-  lua_setfield(state, -2, "instructions");
+  set_field(state, "instructions", static_cast<lua_Number>(core.budget.left()));
   const std::size_t used = core.heap.used_bytes(), limit = core.heap.limit_bytes();
-  lua_pushnumber(state, static_cast<lua_Number>(used < limit ? limit - used : 0));
-  lua_setfield(state, -2, "memory_bytes");
+  set_field(state, "memory_bytes", static_cast<lua_Number>(used < limit ? limit - used : 0));
   return 1;
 }
 
@@ -155,10 +153,8 @@ int pose(lua_State* state) {
     if (known.name != name) continue;
     core_of(state).budget.charge(state, joint_instructions * static_cast<double>(known.position_rad.size()));
     lua_newtable(state);
-    for (const auto& [joint, position_rad] : known.position_rad) {
-      lua_pushnumber(state, position_rad);
-      lua_setfield(state, -2, catalog.model->joints[joint].name.c_str());
-    }
+    for (const auto& [joint, position_rad] : known.position_rad)
+      set_field(state, catalog.model->joints[joint].name.c_str(), position_rad);
     return 1;
   }
   const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(catalog.poses); });

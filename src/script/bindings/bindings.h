@@ -165,6 +165,8 @@ void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tab
 
 // [-0 +1] A deep copy of the value at `index` (> 0): plain data only. Raises.
 void push_plain_copy(lua_State* state, int index);
+// [-0 +1] A list of texts.
+void push_texts(lua_State* state, const std::vector<std::string>& texts);
 
 // Helper functions for the methods of a control object: m.<object>:method(...).
 
@@ -180,13 +182,16 @@ int send_away(lua_State* state, const ScriptEvent* declared, const char* name, i
 int send_to(lua_State* state, const ScriptEvent* declared, const char* name, int data, const char* to);
 // [-0 +1] Pushes data of an event from outside as a table.
 void push_event_data(lua_State* state, const PlayedEvent& event);
-// The object on which the method was called; `number` is its index in the catalog. Raises.
-const ObjectInfo& check_object(lua_State* state, std::uint32_t& number);
+// The object on which the method was called. Raises.
+const ObjectInfo& check_object(lua_State* state);
+std::uint32_t object_number(const Catalog& catalog, const ObjectInfo& object) noexcept;  // its place in the catalog
 // The name without the prefix of the object's name.
 const char* short_name(const ObjectInfo& object, const std::string& name) noexcept;
 void check_range(lua_State* state, const char* name, const char* unit, double value, double min, double max);
 // Returns nil, "queue_full" to the script.
 int queue_full(lua_State* state);
+// The same when it was not sent, else true.
+int tell_sent(lua_State* state, bool sent);
 
 // [-0 +0] Adds move, move_through, set and follow to the methods in the table at the top of the stack.
 void open_motion_methods(lua_State* state);

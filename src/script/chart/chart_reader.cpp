@@ -221,14 +221,10 @@ void make_node(lua_State* state, NodeKind kind, const char* name, const ScriptPl
   lua_createtable(state, 0, 5);
   lua_insert(state, -2);
   lua_setfield(state, -2, "body");
-  lua_pushinteger(state, static_cast<int>(kind));
-  lua_setfield(state, -2, "kind");
-  lua_pushstring(state, name);
-  lua_setfield(state, -2, "name");
-  lua_pushstring(state, place.chunk);
-  lua_setfield(state, -2, "chunk");
-  lua_pushinteger(state, place.line);
-  lua_setfield(state, -2, "line");
+  set_field(state, "kind", static_cast<int>(kind));
+  set_field(state, "name", name);
+  set_field(state, "chunk", place.chunk);
+  set_field(state, "line", place.line);
   set_kind(state, node_key);
 }
 

@@ -102,16 +102,11 @@ void ChartRunner::note_failure(lua_State* state, StateIndex index, const Attempt
   core.error.clear();
   core.budget.charge(state, failure_instructions);
   lua_createtable(state, 0, 5);
-  lua_pushstring(state, failure_.message.data());
-  lua_setfield(state, -2, "message");
-  lua_pushstring(state, failure_.file.data());
-  lua_setfield(state, -2, "file");
-  lua_pushinteger(state, failure_.line);
-  lua_setfield(state, -2, "line");
-  lua_pushstring(state, cause_of(chart_, index, core.called));
-  lua_setfield(state, -2, "cause");
-  lua_pushstring(state, chart_.states[index].path.c_str());
-  lua_setfield(state, -2, "state");
+  set_field(state, "message", failure_.message.data());
+  set_field(state, "file", failure_.file.data());
+  set_field(state, "line", failure_.line);
+  set_field(state, "cause", cause_of(chart_, index, core.called));
+  set_field(state, "state", chart_.states[index].path.c_str());
   set_entry(state, tables_.event_data, failure_slot);
 }
 

@@ -315,7 +315,7 @@ class SourceCheck final : public SourceListener {
   // In a function of the chart, or one that such functions call, when all these states run without the object.
   void in_sets(const SourceUse& use, const ObjectInfo& object) {
     const auto& acting = use.states;
-    const auto number = static_cast<std::uint32_t>(&object - parts_.catalog.objects.data());
+    const std::uint32_t number = object_number(parts_.catalog, object);
     const auto lacks = [&](StateIndex index) {
       const SetMask sets = parts_.chart.states[index].sets;
       return sets != 0 && (parts_.bindings.partition->objects(sets) >> number & 1U) == 0;

@@ -138,27 +138,17 @@ void push_new_content(lua_State* state, Console::Parts& parts) {
 
 // [-0 +1] { name = { state =, active =, outcome =, error =, parameters = } }
 void push_behaviors(lua_State* state, const std::vector<ConsoleBehavior>& behaviors) {
-  const auto text = [&](const char* name, const std::string& value) {
-    lua_pushlstring(state, value.data(), value.size());
-    lua_setfield(state, -2, name);
-  };
   lua_newtable(state);
   for (const ConsoleBehavior& behavior : behaviors) {
     lua_newtable(state);
-    text("state", behavior.state);
-    text("outcome", behavior.outcome);
-    text("error", behavior.error);
-    lua_createtable(state, static_cast<int>(behavior.active.size()), 0);
-    for (std::size_t i = 0; i < behavior.active.size(); ++i) {
-      lua_pushlstring(state, behavior.active[i].data(), behavior.active[i].size());
-      lua_rawseti(state, -2, static_cast<int>(i + 1));
-    }
+    set_field(state, "state", behavior.state.c_str());
+    set_field(state, "outcome", behavior.outcome.c_str());
+    set_field(state, "error", behavior.error.c_str());
+    push_texts(state, behavior.active);
     lua_setfield(state, -2, "active");
     lua_newtable(state);
-    for (const ScriptParameter& parameter : behavior.parameters) {
-      lua_pushnumber(state, parameter.value);
-      lua_setfield(state, -2, parameter.name.c_str());
-    }
+    for (const ScriptParameter& parameter : behavior.parameters)
+      set_field(state, parameter.name.c_str(), parameter.value);
     make_read_only(state, "parameters");
     lua_setfield(state, -2, "parameters");
     make_read_only(state, "a behavior");

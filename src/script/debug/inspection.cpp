@@ -55,8 +55,7 @@ bool Inspection::guarded(Work work) {
   LuaCore& core = behavior_.parts().lua->core();
   core.depth = core.coroutines = 0;
   core.budget.begin(lua_, instructions_max, 0);
-  const bool well = lua_cpcall(lua_, call, &work) == 0;
-  return well;
+  return lua_cpcall(lua_, call, &work) == 0;
 }
 
 Inspection::Inspection(Behavior& behavior, lua_State* running) : behavior_(behavior), lua_(nullptr) {
@@ -320,10 +319,8 @@ void Inspection::push_names(const Spot& spot) {
   }
   for (int i = 1; const char* name = push_local(spot, i); ++i) lua_setfield(lua_, names, name);
   lua_newtable(lua_);
-  each_param(spot, [&](const ScriptParameter& parameter, double value) {
-    lua_pushnumber(lua_, value);
-    lua_setfield(lua_, -2, parameter.name.c_str());
-  });
+  each_param(spot,
+             [&](const ScriptParameter& parameter, double value) { set_field(lua_, parameter.name.c_str(), value); });
   lua_setfield(lua_, names, "params");
 }
 

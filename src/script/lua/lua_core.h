@@ -59,6 +59,16 @@ inline void set_entry(lua_State* state, int table, int at) {
   lua_pop(state, 1);
 }
 
+// [-0 +0] Sets a field of the table at the top of the stack.
+inline void set_field(lua_State* state, const char* key, const char* text) {
+  lua_pushstring(state, text);
+  lua_setfield(state, -2, key);
+}
+inline void set_field(lua_State* state, const char* key, double number) {
+  lua_pushnumber(state, number);
+  lua_setfield(state, -2, key);
+}
+
 // The CPU time of this thread, without the time of other threads. It asks the kernel, which costs about 0.7 us.
 std::int64_t thread_now_ns() noexcept;
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "script/bindings/bindings.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_core.h"
@@ -126,11 +127,7 @@ bool read_text(Testing& testing, const TestStage& stage, const char* key) noexce
 // [-0 +1] { "act.arm.wave", "act.leg.step" }
 void push_active(lua_State* state, Testing& testing, const TestStage& stage) {
   testing.texts = stage.active();
-  lua_createtable(state, static_cast<int>(testing.texts.size()), 0);
-  for (std::size_t i = 0; i < testing.texts.size(); ++i) {
-    lua_pushlstring(state, testing.texts[i].data(), testing.texts[i].size());
-    lua_rawseti(state, -2, static_cast<int>(i + 1));
-  }
+  push_texts(state, testing.texts);
 }
 
 std::optional<bool> look_for(Testing& testing, const TestStage& stage, const char* path) {
