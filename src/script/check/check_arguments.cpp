@@ -1,7 +1,6 @@
 #include "check_arguments.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -9,6 +8,7 @@
 #include "script/bindings/bindings.h"
 #include "script/motion/motion_options.h"
 #include "script/motion/task_targets.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -28,10 +28,8 @@ bool number_at(const Tokens& tokens, std::size_t at, double& value) {
 }
 
 std::string outside(const std::string& name, double value, double min, double max, const std::string& unit) {
-  char text[256];
-  std::snprintf(text, sizeof text, "%s = %.14g is outside its range %.14g..%.14g %s", name.c_str(), value, min, max,
-                unit.c_str());
-  return text + std::string(degree_hint(unit, value, min, max).data());
+  return printed("%s = %.14g is outside its range %.14g..%.14g %s", name.c_str(), value, min, max, unit.c_str()) +
+         degree_hint(unit, value, min, max).data();
 }
 
 // A text that is the whole argument.
@@ -51,13 +49,11 @@ std::vector<std::size_t> keys_of_table(const Tokens& tokens, std::size_t at) {
 }
 
 bool has_key(const Tokens& tokens, std::size_t at, std::string_view name) {
-  const auto keys = keys_of_table(tokens, at);
-  return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) { return tokens[key].text == name; });
+  return std::ranges::any_of(keys_of_table(tokens, at), [&](std::size_t key) { return tokens[key].text == name; });
 }
 
 bool has_value(const Tokens& tokens, std::size_t at, std::string_view name, std::string_view text) {
-  const auto keys = keys_of_table(tokens, at);
-  return std::any_of(keys.begin(), keys.end(), [&](std::size_t key) {
+  return std::ranges::any_of(keys_of_table(tokens, at), [&](std::size_t key) {
     return tokens[key].text == name && tokens[key + 2].kind == TokenKind::text && tokens[key + 2].text == text;
   });
 }
@@ -76,20 +72,15 @@ std::string literal_type(const Tokens& tokens, std::size_t at) {
   return tokens[at].is_any({"true", "false"}) ? "boolean" : "number";
 }
 
-// What a literal option must be when it is something else.
+// What a literal option must be when it is something else; nullptr: it is that.
 const char* other_type(const Tokens& tokens, std::size_t at, const MotionOption& option) {
-  const std::string type = literal_type(tokens, at);
-  switch (option.type) {
-    case MotionOption::Type::number:
-      return type == "number" ? nullptr : " must be a number, without quotes";
-    case MotionOption::Type::flag:
-      return type == "boolean" ? nullptr : " must be true or false";
-    case MotionOption::Type::text:
-      return type == "string" ? nullptr : " must be a text";
-    case MotionOption::Type::list:
-      return " must be a list { ... }";
-  }
-  return nullptr;
+  constexpr std::pair<const char*, const char*> types[] = {// as MotionOption::Type
+                                                           {"number", " must be a number, without quotes"},
+                                                           {"string", " must be a text"},
+                                                           {"boolean", " must be true or false"},
+                                                           {"table", " must be a list { ... }"}};
+  const auto& [type, wanted] = types[static_cast<std::size_t>(option.type)];
+  return literal_type(tokens, at) == type ? nullptr : wanted;
 }
 
 // One `name = value` of a motion's options, as the bindings will see it.
@@ -140,36 +131,31 @@ Mistakes motion_table(const Tokens& tokens, std::size_t at, MotionOption::Method
 }  // namespace
 
 const ObjectInfo* ArgumentCheck::object(const std::string& name) const noexcept {
-  const auto found = std::find_if(catalog_.objects.begin(), catalog_.objects.end(),
-                                  [&](const ObjectInfo& object) { return object.name == name; });
+  const auto found = std::ranges::find(catalog_.objects, name, &ObjectInfo::name);
   return found == catalog_.objects.end() ? nullptr : &*found;
 }
 
 Mistakes ArgumentCheck::pose_name(const Tokens& tokens, std::size_t at) const {
   if (catalog_.model == nullptr || !whole_text(tokens, at)) return {};  // of no robot
-  std::vector<std::string> names;
-  for (const PoseInfo& pose : catalog_.poses) {
-    if (pose.name == tokens[at].text) return {};
-    names.push_back(pose.name);
-  }
+  const std::vector<std::string> names = names_of(catalog_.poses);
+  if (std::ranges::find(names, tokens[at].text) != names.end()) return {};
   return {{tokens[at].line, "unknown pose '" + tokens[at].text + "'" + hint_text(tokens[at].text, names)}};
+}
+
+template <typename Named>
+ArgumentCheck::Range ArgumentCheck::range_of(const ObjectInfo& object, const Named& one) {
+  return {short_name(object, one.name), one.unit, one.min, one.max};
 }
 
 std::vector<ArgumentCheck::Range> ArgumentCheck::setpoints(const ObjectInfo& object) const {
   std::vector<Range> all;
-  for (const SetpointId id : object.setpoints) {
-    const Setpoint& setpoint = catalog_.setpoints[id];
-    all.push_back({short_name(object, setpoint.name), setpoint.unit, setpoint.min, setpoint.max});
-  }
+  for (const SetpointId id : object.setpoints) all.push_back(range_of(object, catalog_.setpoints[id]));
   return all;
 }
 
 std::vector<ArgumentCheck::Range> ArgumentCheck::parameters(const ObjectInfo& object) const {
   std::vector<Range> all;
-  for (const ParameterId id : object.parameters) {
-    const Parameter& parameter = catalog_.parameters.info(id);
-    all.push_back({short_name(object, parameter.name), parameter.unit, parameter.min, parameter.max});
-  }
+  for (const ParameterId id : object.parameters) all.push_back(range_of(object, catalog_.parameters.info(id)));
   return all;
 }
 
@@ -199,8 +185,7 @@ Mistakes ArgumentCheck::pose_table(const ObjectInfo& object, const Tokens& token
   if (has_tasks(catalog_, object)) return task_table(object, ranges, tokens, at);
   for (const std::size_t key : keys_of_table(tokens, at)) {
     const std::string& name = tokens[key].text;
-    const auto range = std::find_if(ranges.begin(), ranges.end(),
-                                    [&](const Range& known) { return known.name == name + ".position_rad"; });
+    const auto range = std::ranges::find(ranges, name + ".position_rad", &Range::name);
     double value = 0;
     if (range == ranges.end()) {
       problems.push_back(
@@ -233,11 +218,8 @@ Mistakes ArgumentCheck::preset(const ObjectInfo& object, const Tokens& tokens, s
   if (tokens[at].is("{") || (!whole_text(tokens, at) && whole_literal(tokens, at)))
     return {{tokens[at].line, "set_gains takes the name of gains; one number goes by set_parameter(name, value)"}};
   if (!whole_text(tokens, at)) return {};
-  std::vector<std::string> names;
-  for (const Preset& known : object.presets) {
-    if (known.name == tokens[at].text) return {};
-    names.push_back(known.name);
-  }
+  const std::vector<std::string> names = names_of(object.presets);
+  if (std::ranges::find(names, tokens[at].text) != names.end()) return {};
   return {{tokens[at].line,
            "'" + object.name + "' has no gains '" + tokens[at].text + "'" + hint_text(tokens[at].text, names)}};
 }

@@ -45,6 +45,8 @@ class ArgumentCheck {
   std::vector<ArgumentProblem> points(const ObjectInfo& object, const Tokens& tokens, std::size_t at,
                                       bool offsets) const;
   std::vector<ArgumentProblem> preset(const ObjectInfo& object, const Tokens& tokens, std::size_t at) const;
+  template <typename Named>
+  static Range range_of(const ObjectInfo& object, const Named& one);  // of a Setpoint or a Parameter
   std::vector<Range> setpoints(const ObjectInfo& object) const;
   std::vector<Range> parameters(const ObjectInfo& object) const;
 

@@ -64,8 +64,7 @@ bool uses_value(const Tokens& tokens, std::size_t at) {
   return before.is_any({"=", "(", ",", "{", "return", "and", "or", "not", "..", "=="});
 }
 
-}  // namespace
-
+// Tells the facts which file each name in `require` means.
 void name_modules(const std::vector<ReadSource>& read, const LuaState& lua, const KnownNames& known,
                   SourceFacts& facts) {
   for (const auto& [name, ignored] : known.modules) {
@@ -73,6 +72,8 @@ void name_modules(const std::vector<ReadSource>& read, const LuaState& lua, cons
   }
 }
 
+// Adds all fields to a module that are assigned to it anywhere. A module that is filled by computed names may have any
+// field.
 void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, const SourceFacts& facts,
                    KnownNames& known) {
   known.given_somewhere = facts.given_somewhere();
@@ -85,6 +86,7 @@ void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, con
   }
 }
 
+// Finds modules whose value is used although they return nothing.
 void check_module_values(const std::vector<ReadSource>& read, const LuaState& lua,
                          std::vector<InputProblem>& problems) {
   for (const ReadSource& one : read) {
@@ -101,6 +103,7 @@ void check_module_values(const std::vector<ReadSource>& read, const LuaState& lu
   }
 }
 
+// Finds guards that return no value, in any file.
 void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& known,
                         std::vector<InputProblem>& problems) {
   for (const ReadSource& one : read) {
@@ -123,8 +126,6 @@ void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& k
     }
   }
 }
-
-namespace {
 
 constexpr std::array<const char*, 3> always_there{"vars", "args", "*"};
 
@@ -258,9 +259,7 @@ class SourceCheck final : public SourceListener {
   }
 
   // `m` and `s` stand in the wrong order, or the field's name is wrong.
-  std::string field_hint(const SourceUse& use, std::size_t field, const std::string& shown,
-                         const KnownNames::Shape& at) const {
-    const std::string& name = use.meaning.path[field];
+  std::string field_hint(const std::string& name, const std::string& shown, const KnownNames::Shape& at) const {
     const bool object = shown == "s" && machine_.fields.contains(name) && arguments_.object(name) != nullptr;
     const std::string_view foreign = object ? order_hint : foreign_field_hint(shown, name);
     return foreign.empty() ? hint_text(name, at.names()) : std::string(foreign);
@@ -275,7 +274,7 @@ class SourceCheck final : public SourceListener {
       const auto found = at->fields.find(path[i]);
       if (found == at->fields.end()) {
         if (i + use.written >= path.size() && !at->fields.empty()) {
-          problem(use.lines[i], shown + " has no '" + path[i] + "'" + field_hint(use, i, shown, *at));
+          problem(use.lines[i], shown + " has no '" + path[i] + "'" + field_hint(path[i], shown, *at));
         }
         return;
       }
@@ -289,9 +288,7 @@ class SourceCheck final : public SourceListener {
     if (machine_.open) return;
     if (path.empty()) {
       if (!use.method.empty() && !machine_.fields.contains(use.method)) {
-        const std::string_view foreign = foreign_field_hint("m", use.method);
-        const std::string hint = foreign.empty() ? hint_text(use.method, machine_.names()) : std::string(foreign);
-        problem(use.line, "m has no '" + use.method + "'" + hint);
+        problem(use.line, "m has no '" + use.method + "'" + field_hint(use.method, "m", machine_));
       }
       if (use.method == "emit") event(tokens, use.arguments);
       return;
