@@ -57,7 +57,7 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
     std::int64_t now_ns = 0;
     int function = LUA_NOREF;
   } rehearsal;
-  struct Reports {  // what is going to be an event in the next step of the chart (chart_reports.h)
+  struct Reports {  // what is going to be an event in the next step of the chart (chart.h)
     std::array<Refusal, refusals_shown> refused{};
     std::uint32_t refused_count = 0;
     void note(const Refusal& refusal) noexcept {

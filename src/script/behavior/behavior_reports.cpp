@@ -1,4 +1,4 @@
-// What happened to a behavior becomes events of its chart: refused transactions and faults (chart_reports.h).
+// What happened to a behavior becomes events of its chart: refused transactions and faults (chart.h).
 #include <algorithm>
 
 #include "behavior_parts.h"

@@ -6,7 +6,6 @@
 #include "bindings.h"
 #include "engine/behavior_inputs.h"
 #include "machine_sets.h"
-#include "script/chart/chart_reports.h"
 #include "script/check/hint.h"
 #include "script/motion/motion_options.h"
 #include "script/sandbox/handle.h"

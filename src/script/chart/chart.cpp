@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "chart_reports.h"
 #include "script/check/hint.h"
 
 namespace kadans {
@@ -319,7 +318,7 @@ void Chart::resolve(std::vector<InputProblem>& problems) {
     if (states[i].kind == Kind::history) resolver.history(i);
   }
   for (std::size_t i = 0; i < transitions.size() && !enough(); ++i) resolver.transition(transitions[i]);
-  find_reports(*this, problems);
+  find_reports(problems);
   for (const State& state : states) {
     if (state.outcome != no_event) ends_[static_cast<std::size_t>(state.outcome)] = true;
   }

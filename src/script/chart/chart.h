@@ -24,6 +24,11 @@ inline constexpr EventId no_event = -1;
 inline constexpr EventId run_done_event = 0;  // "run.done"
 inline constexpr EventId done_event = 1;      // "done"
 
+// Reports: events that tell what happened to a behavior. "error" when one of its functions raised (chart_recovery.cpp),
+// "refused" when the control engine refused one of its transactions, "fault.NAME" when the safety layer noted a fault.
+// Nobody can send them. Where no active state waits for them they are no events at all.
+bool reserved_for_reports(std::string_view event) noexcept;
+
 struct Chart {
   enum class Kind : std::uint8_t { state, parallel, region, final_state, history };
   static constexpr int no_function = -2;  // the same as LUA_NOREF
@@ -110,8 +115,7 @@ struct Chart {
   std::vector<Machine> machines;
   std::vector<std::string> events{"run.done", "done"};
   std::vector<Pattern> patterns;
-  // Reports, events that tell what happened to the behavior: errors, refused transactions, faults. no_event: no
-  // transition waits for them.
+  // Reports; no_event: no transition waits for them.
   EventId error_event = no_event, refused_event = no_event;
   std::vector<std::pair<FaultCode, EventId>> fault_events;
   bool waits_for_reports = false;  // for refusals or faults
@@ -159,6 +163,10 @@ struct Chart {
  private:
   std::vector<bool> ends_{true, true};  // by event
   std::size_t late_ = 0;                // names learnt
+
+  // Finds the reports that transitions wait for; faults that do not exist are mistakes, and so are final states whose
+  // outcome has such a name.
+  void find_reports(std::vector<InputProblem>& problems);
 };
 
 }  // namespace kadans

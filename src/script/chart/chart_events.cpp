@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "chart_reader.h"
-#include "chart_reports.h"
 #include "config/scenario/event_text.h"
 #include "script/bindings/bindings.h"
 #include "script/check/foreign_words.h"

@@ -10,7 +10,6 @@
 #include "foreign_words.h"
 #include "hint.h"
 #include "script/bindings/machine_sets.h"
-#include "script/chart/chart_reports.h"
 #include "source_scopes.h"
 
 namespace kadans {
