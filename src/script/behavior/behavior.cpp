@@ -379,15 +379,11 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   }
   const bool over = finished();
   parts.tell_dropped(over);
-  if (over) tell_result(snapshot.time_ns);
+  if (const std::string text = result(); !text.empty())
+    parts.log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(), "result " + text);
   publish_status();
   tell_active(snapshot.time_ns);
   return !over;
-}
-
-void Behavior::tell_result(std::int64_t time_ns) noexcept {
-  const std::string text = result();
-  if (!text.empty()) parts_->log.message(time_ns, BehaviorLog::Severity::info, name(), "result " + text);
 }
 
 void Behavior::publish_status() noexcept {
@@ -403,11 +399,11 @@ void Behavior::publish_status() noexcept {
   store(status_->heap_bytes, parts.lua->used_bytes());
   // Decisions stay where they ended; a behavior that is over is in no state any more.
   const StateIndex ended = parts.chart.decides ? parts.runner->finished_by() : no_state;
-  store(status_->state, number_of(ended == no_state ? parts.runner->innermost() : ended));
+  store(status_->state, numbers_[ended == no_state ? parts.runner->innermost() : ended]);
   for (std::size_t i = 0; i < region_states_.size(); ++i) {
     const StateIndex region = region_states_[i];
     const bool active = region != no_state && parts.runner->active(region);
-    store(status_->regions[i], active ? number_of(parts.runner->innermost(region)) : 0);
+    store(status_->regions[i], active ? numbers_[parts.runner->innermost(region)] : 0);
   }
 }
 
@@ -566,8 +562,6 @@ void Behavior::number_states() {
   told_.assign(1, no_state);  // equals nothing that is active, not even nothing
   told_paths_.reserve(ActiveStates::told_max);
 }
-
-std::uint32_t Behavior::number_of(StateIndex state) const noexcept { return numbers_[state]; }
 
 SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets; }
 

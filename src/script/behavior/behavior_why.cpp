@@ -151,15 +151,10 @@ std::vector<Seen> fields_read(const std::string& text) {
 
 std::string shown_lines(const std::string& text, int first, int last) {
   std::vector<std::string> lines;
-  std::size_t at = 0, common = std::string::npos;
-  for (int line = 1; line <= last && at <= text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    if (line >= first && lines.size() < GuardSource::lines_max) {
-      lines.push_back(text.substr(at, end - at));
-      const std::size_t indent = lines.back().find_first_not_of(" \t");
-      if (indent != std::string::npos) common = std::min(common, indent);
-    }
-    at = end + 1;
+  std::size_t common = std::string::npos;
+  for (int line = first; line <= last && lines.size() < GuardSource::lines_max; ++line) {
+    lines.emplace_back(line_of_text(text, line));
+    common = std::min(common, lines.back().find_first_not_of(" \t"));
   }
   std::string all;
   for (std::string& line : lines) {

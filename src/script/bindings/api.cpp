@@ -536,8 +536,8 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("kadans", known.module.names());
   add("m", known.machine.names());
   add("object", known.object_methods);
-  add("motion", known.motion_fields);
-  add("armed", known.armed_fields);
+  add("motion", {"cancel", "done", "outcome", "reason", "wait"});
+  add("armed", {"cancel", "fired", "outcome"});
   add("s", known.snapshot.names());
   for (const char* part : {"event", "base", "support", "odometry", "safety", "joystick", "seen"})
     add(part, s[part].names());

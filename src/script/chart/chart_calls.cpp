@@ -80,9 +80,7 @@ struct CallReader {
   Chart::Given& add(const char* name, std::int32_t parameter) {
     auto& all = chart.machines[number].calls_with;
     if (all.size() >= given_max) raise_at(state, place, name, "k.call gives more than %d values", given_max);
-    const LuaState& owner = *core_of(state).owner;
-    core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
-    const int line = owner.line_of(place.chunk, place.line, name);
+    const int line = find_line(state, place, name);
     Chart::Given& given = all.emplace_back();
     given.name = name;
     given.parameter = parameter;

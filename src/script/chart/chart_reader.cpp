@@ -342,6 +342,12 @@ ScriptPlace node_place(lua_State* state, int index) {
   return place;
 }
 
+int find_line(lua_State* state, const ScriptPlace& place, const char* text) {
+  const LuaState& owner = *core_of(state).owner;
+  core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
+  return owner.line_of(place.chunk, place.line, text);
+}
+
 std::vector<std::string> transition_key_names() {
   return {std::begin(transition_keys), std::prev(std::end(transition_keys))};
 }
@@ -403,12 +409,7 @@ struct Reader {
     lua_pop(state, 1);
   }
 
-  // Both look through what is there already.
-  int find_line(const ScriptPlace& place, const char* text) const {
-    const LuaState& owner = *core_of(state).owner;
-    core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
-    return owner.line_of(place.chunk, place.line, text);
-  }
+  // Looks through what is there already.
   EventId intern(const char* event) const {
     core_of(state).budget.charge(state, static_cast<double>(chart.events.size()));
     return chart.intern(event);
@@ -438,9 +439,10 @@ struct Reader {
     Chart::Transition& made = chart.transitions.emplace_back();
     made.source = source;
     read_names(table, "to", made.target_names);
-    made.line = find_line(place, !made.target_names.empty() ? made.target_names.front().c_str()
-                                 : *on != '\0'              ? on
-                                                            : "action");
+    made.line = find_line(state, place,
+                          !made.target_names.empty() ? made.target_names.front().c_str()
+                          : *on != '\0'              ? on
+                                                     : "action");
     made.when = reference(table, "when");
     made.action = reference(table, "action");
     made.internal = flag_of(state, table, "internal");

@@ -42,6 +42,9 @@ void open_events(lua_State* state);
 // True when the value at `index` is a parameter; then `number` is its index in LuaCore::parameters.
 bool is_parameter(lua_State* state, int index, std::size_t* number);
 
+// The line of the file on which this text stands first from the place on, charged for the search. Raises.
+int find_line(lua_State* state, const ScriptPlace& place, const char* text);
+
 std::vector<std::string> transition_key_names();
 
 // Reads the behavior or the decisions at `index` of the stack and all that it calls into `chart`. Functions and tables

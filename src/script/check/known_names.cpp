@@ -160,8 +160,6 @@ KnownNames read_known_names(Behavior::Parts& parts) {
   KnownNames known;
   Reading reading{&parts, &known};
   parts.lua->call_or_throw(read, &reading, parts.settings.limits.load_instructions, 0);
-  known.motion_fields = {"cancel", "done", "outcome", "reason", "wait"};
-  known.armed_fields = {"cancel", "fired", "outcome"};
   for (const ScriptParameter& parameter : parts.lua->core().parameters) {
     known.parameters[parameter.chunk].push_back(parameter.name);
   }
