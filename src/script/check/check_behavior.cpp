@@ -6,7 +6,6 @@
 
 #include "check_source.h"
 #include "hint.h"
-#include "known_names.h"
 #include "script/behavior/behavior_parts.h"
 #include "script/chart/chart_reader.h"
 #include "script/lua/lua_core.h"
@@ -110,8 +109,7 @@ void check_loaded(Looked& looked) {
   Behavior::Parts& parts = looked.parts;
   std::vector<InputProblem>& problems = looked.found.problems;
   const LuaState::Source& own = parts.lua->sources().front();
-  KnownNames known = read_known_names(parts);
-  check_sources(parts, known, problems);
+  check_sources(parts, problems);
   if (looked.found.kind == ScriptKind::test) {
     TestCalls(own, parts.settings, problems).run();
   } else if (looked.unfinished) {
@@ -137,8 +135,7 @@ std::vector<InputProblem> check_behavior(const std::filesystem::path& root, cons
     check_vars(parts, problems);
     check_livelocks(parts, problems);
     check_event_data(parts, problems);
-    KnownNames known = read_known_names(parts);
-    check_sources(parts, known, problems);
+    check_sources(parts, problems);
   } catch (const InputError& error) {
     return error.problems();
   }

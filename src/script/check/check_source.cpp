@@ -415,7 +415,8 @@ class SourceCheck final : public SourceListener {
 
 }  // namespace
 
-void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<InputProblem>& problems) {
+void check_sources(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
+  KnownNames known = read_known_names(parts);
   SourceFacts facts;
   std::vector<ReadSource> read;
   for (const LuaState::Source& source : parts.lua->sources()) {

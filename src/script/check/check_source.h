@@ -22,9 +22,8 @@ struct ReadSource {
 // Finds mistakes by reading the text of a behavior, in every branch: unknown names (fields of m and s, control objects,
 // set-points, presets, parameters, poses, vars, globals, own modules), values out of range, guards that write or return
 // nothing, waits in places that cannot wait, and events that are never emitted.
-// Checks the file of a loaded behavior and all files that it requires and calls. Fields that the files assign to
-// modules are added to `known`.
-void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<InputProblem>& problems);
+// Checks the file of a loaded behavior, or a module, and all files that it requires and calls.
+void check_sources(Behavior::Parts& parts, std::vector<InputProblem>& problems);
 
 // Finds mistakes in the shape of a chart that could still run: states that cannot be reached, states without a way out,
 // final states without an outcome, transitions that can never be taken.

@@ -57,8 +57,7 @@ class Lexer {
     const std::size_t start = at_;
     while (in_name(here())) ++at_;
     const std::string_view word = text_.substr(start, at_ - start);
-    const bool key = std::find(keywords.begin(), keywords.end(), word) != keywords.end();
-    add(key ? TokenKind::keyword : TokenKind::name, word);
+    add(is_keyword(word) ? TokenKind::keyword : TokenKind::name, word);
   }
 
   void number() {
@@ -129,6 +128,8 @@ bool may_end_value(const SourceToken& token) {
 }
 
 }  // namespace
+
+bool is_keyword(std::string_view word) noexcept { return std::ranges::find(keywords, word) != keywords.end(); }
 
 std::string_view line_of_text(std::string_view text, int line) noexcept {
   for (int i = 1; i < line; ++i) {

@@ -15,6 +15,8 @@ namespace kadans {
 inline bool starts_name(char c) noexcept { return c == '_' || std::isalpha(static_cast<unsigned char>(c)) != 0; }
 inline bool in_name(char c) noexcept { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
+bool is_keyword(std::string_view word) noexcept;
+
 struct SourceToken {
   enum class Kind : std::uint8_t { name, keyword, text, number, symbol, end };
   Kind kind = Kind::end;

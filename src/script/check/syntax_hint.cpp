@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "foreign_words.h"
 #include "source_lexer.h"
 
 namespace kadans {
@@ -40,28 +41,14 @@ constexpr ForeignSign foreign_signs[] = {
 constexpr std::string_view assigning[] = {"+", "-", "*", "/", "%", "^", ".."};  // += and its kin
 
 // Words at the begin of a statement of another language; another name follows.
-struct ForeignStart {
-  std::string_view word, hint;
-};
-constexpr ForeignStart foreign_starts[] = {
-    {"var", "Lua writes local x = ..."},
-    {"let", "Lua writes local x = ..."},
-    {"const", "Lua writes local x = ..."},
-    {"int", "Lua writes local x = ..."},
-    {"float", "Lua writes local x = ..."},
-    {"double", "Lua writes local x = ..."},
-    {"bool", "Lua writes local x = ..."},
-    {"auto", "Lua writes local x = ..."},
-    {"def", "Lua writes local function f(m) ... end"},
-    {"func", "Lua writes local function f(m) ... end"},
-    {"fn", "Lua writes local function f(m) ... end"},
-    {"lambda", "Lua writes function(m) return ... end"},
-    {"import", "Lua writes local name = require \"name\""},
-    {"from", "Lua writes local name = require \"name\""},
-    {"elif", "Lua writes elseif ... then"},
-    {"elsif", "Lua writes elseif ... then"},
-    {"case", "Lua has no switch: write if ... elseif ... end"},
-    {"try", "Lua has no try: an error is raised by error(text)"},
+const ForeignWords foreign_starts[] = {
+    {{"var", "let", "const", "int", "float", "double", "bool", "auto"}, "Lua writes local x = ..."},
+    {{"def", "func", "fn"}, "Lua writes local function f(m) ... end"},
+    {{"lambda"}, "Lua writes function(m) return ... end"},
+    {{"import", "from"}, "Lua writes local name = require \"name\""},
+    {{"elif", "elsif"}, "Lua writes elseif ... then"},
+    {{"case"}, "Lua has no switch: write if ... elseif ... end"},
+    {{"try"}, "Lua has no try: an error is raised by error(text)"},
 };
 
 constexpr std::size_t look_back_max = 500;  // tokens: a line may be as long as a file
@@ -196,10 +183,8 @@ class Explainer {
       const bool goes_on = tokens_[i + 1].kind == TokenKind::name || tokens_[i + 1].kind == TokenKind::text ||
                            tokens_[i + 1].kind == TokenKind::number || tokens_[i + 1].is("{");
       if (tokens_[i + 1].line != tokens_[i].line || !goes_on) return false;
-      for (const ForeignStart& one : foreign_starts) {
-        if (tokens_[i].text == one.word) return tell(i, one.hint);
-      }
-      return false;
+      const std::string_view hint = text_of(foreign_starts, tokens_[i].text);
+      return !hint.empty() && tell(i, hint);
     });
   }
 
