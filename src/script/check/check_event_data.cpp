@@ -19,19 +19,11 @@ struct EventReader {
 
 class EventDataCheck {
  public:
-  EventDataCheck(const Behavior::Parts& parts, std::vector<InputProblem>& problems)
-      : chart_(parts.chart), events_(parts.lua->core().events), problems_(problems) {
-    for (const LuaState::Source& source : parts.lua->sources()) {
-      tokens_[source.chunk] = lex_source(source.text);
-      tokens_[source.chunk].resize(tokens_[source.chunk].size() + 8, {.line = 0});  // what is looked at ahead
-    }
-  }
+  EventDataCheck(const Behavior::Parts& parts, const ChartFunctions& functions, std::vector<InputProblem>& problems)
+      : chart_(parts.chart), events_(parts.lua->core().events), functions_(functions), problems_(problems) {}
 
   void look(const EventReader& reader) {
-    const auto file = tokens_.find(reader.function.chunk);
-    if (file == tokens_.end()) return;
-    const Tokens& tokens = file->second;
-    const std::size_t function = function_in_line(tokens, reader.function.line);
+    const auto& [tokens, function] = functions_.begin_of(reader.function);
     if (function == 0) return;
     const std::string snapshot = argument(tokens, function, reader.guard ? 0 : 1);
     if (snapshot.empty()) return;
@@ -94,8 +86,8 @@ class EventDataCheck {
 
   const Chart& chart_;
   const std::vector<ScriptEvent>& events_;
+  const ChartFunctions& functions_;
   std::vector<InputProblem>& problems_;
-  std::map<std::string, Tokens> tokens_;
 };
 
 }  // namespace
@@ -113,7 +105,7 @@ void check_event_data(Behavior::Parts& parts, std::vector<InputProblem>& problem
       reader.transitions.push_back(&one);
     }
   }
-  EventDataCheck check(parts, problems);
+  EventDataCheck check(parts, functions, problems);
   for (const auto& [identity, reader] : readers) check.look(reader);
 }
 

@@ -43,16 +43,22 @@ struct ChartFunction {
   int line = 0;
 };
 
-// What states enter with, and the guards and actions of transitions, by their references.
+// What states enter with, and the guards and actions of transitions, by their references; and the tokens of all files,
+// with some behind their end to look ahead.
 struct ChartFunctions {
+  // Where a function begins in its tokens; at 0: it is not the only one that begins in its line, or none.
+  struct Begin {
+    const Tokens& tokens;
+    std::size_t at;
+  };
+  Begin begin_of(const ChartFunction& function) const;
+
   const Chart& chart;
   bool known = false;  // all were read
   std::map<int, ChartFunction> by_reference{};
+  std::map<std::string, Tokens> files{};
 };
 ChartFunctions chart_functions(Behavior::Parts& parts);
-
-// The token of the only function that begins in this line; 0: there are several, or none.
-std::size_t function_in_line(const Tokens& tokens, int line);
 
 // Finds guards and actions that read data of an event where there is none, or a field that may be missing as if it
 // were always there.
