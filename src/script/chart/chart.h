@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -123,6 +124,13 @@ struct Chart {
 
   bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // true also for the ancestor itself
     return state >= ancestor && state < states[ancestor].end;
+  }
+  // The transitions of a state: those without its `always`, and all of them, which stand together.
+  std::span<const Transition> ordinary(const State& state) const {
+    return std::span(transitions).subspan(state.first_transition, state.transition_count);
+  }
+  std::span<const Transition> transitions_of(const State& state) const {
+    return std::span(transitions).subspan(state.first_transition, state.transition_count + state.always_count);
   }
   // The states directly inside, first to last.
   template <typename Visit>

@@ -56,10 +56,7 @@ class Graph {
   // What a state does without being left, a line each: UML's internal transitions.
   std::vector<std::string> actions_alone(StateIndex state) const {
     std::vector<std::string> lines;
-    const Chart::State& s = chart_.states[state];
-    const std::size_t first = s.first_transition, count = std::size_t{s.transition_count} + s.always_count;
-    for (std::size_t i = first; i < first + count; ++i) {
-      const Chart::Transition& one = chart_.transitions[i];
+    for (const Chart::Transition& one : chart_.transitions_of(chart_.states[state])) {
       if (one.target == no_state) lines.push_back(whole_label(one) + " / action");
     }
     return lines;

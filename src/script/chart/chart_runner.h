@@ -183,10 +183,7 @@ class ChartRunner {
   void push_guard(lua_State* state, std::uint16_t transition);
   template <typename Takes>
   bool has_transition_for(StateIndex index, Takes takes) const noexcept {
-    const Chart::State& at = chart_.states[index];
-    const auto begin = chart_.transitions.begin();
-    return std::any_of(begin + at.first_transition, begin + at.first_transition + at.transition_count, takes) ||
-           std::any_of(begin + at.first_always, begin + at.first_always + at.always_count, takes);
+    return std::ranges::any_of(chart_.transitions_of(chart_.states[index]), takes);
   }
   bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
   bool happened(std::uint16_t transition, const WaitingEvent* event) const noexcept;
@@ -195,7 +192,7 @@ class ChartRunner {
   bool there_already(const Chart::Transition& transition) const noexcept;
   bool acted(std::uint16_t transition) const noexcept;
   bool lets_pass(StepMeter& meter, std::uint16_t transition, const WaitingEvent* event);
-  void add_selected(std::uint16_t transition) noexcept;
+  void add_selected(StepMeter& meter, std::uint16_t transition);
   bool passes_over(std::uint16_t taken, std::uint16_t due) const noexcept;
   bool conflict(std::uint16_t one, std::uint16_t other) const noexcept;
 

@@ -24,8 +24,8 @@ class ChartCheck {
       never_entered(i);
       if (reached_[i] && state.kind != Chart::Kind::history) {
         no_way_out(i);
-        shadowed(state, transitions(state.first_transition, state.transition_count));
-        shadowed(state, transitions(state.first_always, state.always_count));
+        shadowed(state, chart_.ordinary(state));
+        shadowed(state, chart_.transitions_of(state).subspan(state.transition_count));
         run_done_without_run(i);
       }
       if (state.kind == Chart::Kind::final_state && !state.outcome_given) {
@@ -37,10 +37,6 @@ class ChartCheck {
  private:
   void problem(const Chart::State& state, int line, std::string message) {
     problems_.push_back({state.chunk, line, 0, std::move(message)});
-  }
-
-  std::span<const Chart::Transition> transitions(std::size_t first, std::size_t count) const {
-    return std::span(chart_.transitions).subspan(first, count);
   }
 
   void find_reached() {
@@ -94,12 +90,10 @@ class ChartCheck {
     for (StateIndex around = index; around != no_state; around = chart_.states[around].parent) {
       const Chart::State& at = chart_.states[around];
       if (at.endless) return;
-      for (const Chart::Transition& one : transitions(at.first_transition, at.transition_count)) {
-        if (one.target != no_state) return;
-      }
-      for (const Chart::Transition& one : transitions(at.first_always, at.always_count)) {
-        if (one.target != no_state && one.target != index) return;
-      }
+      const auto leads = [](const Chart::Transition& one) { return one.target != no_state; };
+      const auto elsewhere = [&](const Chart::Transition& one) { return leads(one) && one.target != index; };
+      if (std::ranges::any_of(chart_.ordinary(at), leads)) return;
+      if (std::ranges::any_of(chart_.transitions_of(at), elsewhere)) return;
     }
     const std::string shown = state.name.empty() ? chart_.name : state.name;
     problem(state, state.line, "state '" + shown + "' has no way out: give it a transition, or say endless = true");
@@ -134,7 +128,7 @@ class ChartCheck {
 
   void run_done_without_run(StateIndex index) {
     const Chart::State& state = chart_.states[index];
-    for (const Chart::Transition& transition : transitions(state.first_transition, state.transition_count)) {
+    for (const Chart::Transition& transition : chart_.ordinary(state)) {
       if (transition.on != run_done_event || state.run != Chart::no_function) continue;
       problem(state, transition.line,
               "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");
