@@ -218,38 +218,39 @@ int open_bindings(lua_State* state) {
 Behavior::Parts::Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to)
     : settings(wanted), catalog(offered), log(to) {}
 
+void Behavior::Parts::note(BehaviorLog::Severity severity, std::string_view text) noexcept {
+  log.message(bindings.engine_ns(), severity, chart.name, text);
+}
+
 void Behavior::Parts::say(const char* text) noexcept { say_with(BehaviorLog::Severity::info, text); }
 
 void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text) noexcept {
-  const std::int64_t now_ns = bindings.engine_ns();
   tell_dropped(false);
-  const LogBound::Answer answer = bound.admit(now_ns);
-  if (answer == LogBound::Answer::say) return log.message(now_ns, severity, chart.name, text);
+  const LogBound::Answer answer = bound.admit(bindings.engine_ns());
+  if (answer == LogBound::Answer::say) return note(severity, text);
   if (answer == LogBound::Answer::drop) return;
-  log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
-              "says more than " + std::to_string(LogBound::lines_max) + " lines in a second; the rest is dropped");
+  note(BehaviorLog::Severity::warning,
+       "says more than " + std::to_string(LogBound::lines_max) + " lines in a second; the rest is dropped");
 }
 
 void Behavior::Parts::tell_dropped(bool at_once) noexcept {
-  const std::int64_t now_ns = bindings.engine_ns();
-  const std::uint64_t dropped = bound.take_dropped(now_ns, at_once);
+  const std::uint64_t dropped = bound.take_dropped(bindings.engine_ns(), at_once);
   if (dropped == 0) return;
-  log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
-              std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
+  note(BehaviorLog::Severity::warning,
+       std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
 }
 
 void Behavior::Parts::tell_refused() noexcept {
   while (const Refusal* refusal = bindings.next_refusal()) {
     const std::string why = refusal_text(*refusal, catalog);
     if (bindings.was_armed(refusal->sequence)) {  // tell_armed() counted it; the states' sets are as they were
-      log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name, "all its commands: " + why);
+      note(BehaviorLog::Severity::warning, "all its commands: " + why);
       continue;
     }
     ++transactions_refused;
     bindings.sets_lost = true;
     reports.note(*refusal);
-    log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
-                "refused by the control engine, all commands of that tick: " + why);
+    note(BehaviorLog::Severity::warning, "refused by the control engine, all commands of that tick: " + why);
     bindings.forget_armed(refusal->sequence);
   }
 }
@@ -260,15 +261,13 @@ void Behavior::Parts::tell_armed() noexcept {
   while (bindings.look_at_armed(armed, status)) {
     const std::string of = "what " + (armed.owner == 0 ? chart.name : chart.states[armed.owner].path) + " armed ";
     if (status.fired != armed.fired) {
-      log.message(bindings.engine_ns(), BehaviorLog::Severity::info, chart.name,
-                  of + "acted in tick " + std::to_string(status.fired_tick));
+      note(BehaviorLog::Severity::info, of + "acted in tick " + std::to_string(status.fired_tick));
       if (armed.event != no_event) (void)runner->post(armed.event);
     }
     if (status.state == ArmedState::refused) {
       ++transactions_refused;
       reports.note({.reason = status.reason});
-      log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
-                  of + "was refused when its condition was true");
+      note(BehaviorLog::Severity::warning, of + "was refused when its condition was true");
     }
   }
 }
@@ -374,13 +373,11 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   if (!bindings.commit()) {
     ++parts.transactions_refused;
     parts.reports.queue_full = true;
-    parts.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
-                      "queue_full: the commands of this tick were refused, all of them");
+    parts.note(BehaviorLog::Severity::warning, "queue_full: the commands of this tick were refused, all of them");
   }
   const bool over = finished();
   parts.tell_dropped(over);
-  if (const std::string text = result(); !text.empty())
-    parts.log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(), "result " + text);
+  if (const std::string text = result(); !text.empty()) parts.note(BehaviorLog::Severity::info, "result " + text);
   publish_status();
   tell_active(snapshot.time_ns);
   return !over;

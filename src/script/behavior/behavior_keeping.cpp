@@ -596,8 +596,7 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
     past_->left = old.runner->gone_from(*fresh->runner);
     fresh->runner->report_gone(*old.runner, past_->left);
     if (!leave_states(old, past_->left, snapshot, commands)) {
-      old.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
-                      "a state that is gone could not be left: " + old.lua->error().text());
+      old.note(BehaviorLog::Severity::warning, "a state that is gone could not be left: " + old.lua->error().text());
     }
     past_->swapped_ns = clock_ns(snapshot);
     past_->parts = std::move(parts_);
@@ -605,8 +604,7 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
   parts_ = std::move(fresh);
   number_states();
   status_->reloads.fetch_add(1, std::memory_order_relaxed);
-  parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(),
-                      "reloaded " + parts_->lua->sources().front().chunk);
+  parts_->note(BehaviorLog::Severity::info, "reloaded " + parts_->lua->sources().front().chunk);
 }
 
 bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noexcept {

@@ -26,6 +26,7 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
+  void note(BehaviorLog::Severity severity, std::string_view text) noexcept;  // logs it as said in the present tick
   void say(const char* text) noexcept override;
   void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
   void tell_dropped(bool at_once) noexcept;  // logs how many lines were dropped

@@ -13,8 +13,6 @@
 namespace kadans {
 namespace {
 
-using Mistakes = std::vector<ArgumentProblem>;
-
 // A number with nothing behind it that would change it: `1.5` or `-1.5` before a comma or a bracket.
 bool number_at(const Tokens& tokens, std::size_t at, double& value) {
   const bool negative = tokens[at].is("-");

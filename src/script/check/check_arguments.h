@@ -16,15 +16,16 @@ struct ArgumentProblem {
   std::string message;
 };
 
+using Mistakes = std::vector<ArgumentProblem>;
+
 class ArgumentCheck {
  public:
   explicit ArgumentCheck(const Behavior::Parts& parts) : catalog_(parts.catalog) {}
 
   const ObjectInfo* object(const std::string& name) const noexcept;
   // `at` is the index of the first token of the arguments.
-  std::vector<ArgumentProblem> pose_name(const Tokens& tokens, std::size_t at) const;
-  std::vector<ArgumentProblem> of_method(const ObjectInfo& object, const std::string& method, const Tokens& tokens,
-                                         std::size_t at) const;
+  Mistakes pose_name(const Tokens& tokens, std::size_t at) const;
+  Mistakes of_method(const ObjectInfo& object, const std::string& method, const Tokens& tokens, std::size_t at) const;
 
  private:
   struct Range {
@@ -32,19 +33,15 @@ class ArgumentCheck {
     double min = 0, max = 0;
   };
   // `offsets`: the numbers are relative to values that are unknown here.
-  std::vector<ArgumentProblem> pose(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const;
-  std::vector<ArgumentProblem> pose_table(const ObjectInfo& object, const Tokens& tokens, std::size_t at,
-                                          bool offsets) const;
-  static std::vector<ArgumentProblem> task_table(const ObjectInfo& object, const std::vector<Range>& ranges,
-                                                 const Tokens& tokens, std::size_t at);
-  std::vector<ArgumentProblem> named_value(const ObjectInfo& object, const std::vector<Range>& ranges,
-                                           const std::string& kind, const Tokens& tokens, std::size_t at,
-                                           bool offset = false) const;
-  std::vector<ArgumentProblem> of_motion(const ObjectInfo& object, const MotionMethod& method, const Tokens& tokens,
-                                         std::size_t at) const;
-  std::vector<ArgumentProblem> points(const ObjectInfo& object, const Tokens& tokens, std::size_t at,
-                                      bool offsets) const;
-  std::vector<ArgumentProblem> preset(const ObjectInfo& object, const Tokens& tokens, std::size_t at) const;
+  Mistakes pose(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const;
+  Mistakes pose_table(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const;
+  static Mistakes task_table(const ObjectInfo& object, const std::vector<Range>& ranges, const Tokens& tokens,
+                             std::size_t at);
+  Mistakes named_value(const ObjectInfo& object, const std::vector<Range>& ranges, const std::string& kind,
+                       const Tokens& tokens, std::size_t at, bool offset = false) const;
+  Mistakes of_motion(const ObjectInfo& object, const MotionMethod& method, const Tokens& tokens, std::size_t at) const;
+  Mistakes points(const ObjectInfo& object, const Tokens& tokens, std::size_t at, bool offsets) const;
+  Mistakes preset(const ObjectInfo& object, const Tokens& tokens, std::size_t at) const;
   template <typename Named>
   static Range range_of(const ObjectInfo& object, const Named& one);  // of a Setpoint or a Parameter
   std::vector<Range> setpoints(const ObjectInfo& object) const;

@@ -299,7 +299,7 @@ void FlowCheck::enter_token(const Tokens& tokens, std::size_t at) {
   if (change < 0 && !blocks_.empty()) blocks_.pop_back();
 }
 
-std::vector<ArgumentProblem> FlowCheck::run(const Tokens& tokens) {
+Mistakes FlowCheck::run(const Tokens& tokens) {
   for (std::size_t at = 0; at + 4 < tokens.size() && tokens[at].kind != TokenKind::end; ++at) {
     enter_token(tokens, at);
     const SourceUse* const use = use_at(at);

@@ -25,7 +25,7 @@ class FlowCheck {
     if (use.assigned) assigned_.insert(use.declared);
     uses_.emplace(use.at, use);
   }
-  std::vector<ArgumentProblem> run(const Tokens& tokens);
+  Mistakes run(const Tokens& tokens);
 
  private:
   enum class Call { harmless, waits, unknown };
@@ -73,7 +73,7 @@ class FlowCheck {
   std::set<std::size_t> assigned_;  // the names that get a value anywhere but where they are declared
   std::vector<Block> blocks_;
   std::set<std::size_t> locals_of_file_;  // the tokens that declare them with a plain value
-  std::vector<ArgumentProblem> found_;
+  Mistakes found_;
 };
 
 }  // namespace kadans

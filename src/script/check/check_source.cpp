@@ -201,7 +201,7 @@ class SourceCheck final : public SourceListener {
  private:
   static int place(const SourceUse& use) { return use.lines.empty() ? use.line : use.lines.back(); }
   void problem(int line, std::string message) { problems_.push_back({source_.chunk, line, 0, std::move(message)}); }
-  void tell(const std::vector<ArgumentProblem>& found) {
+  void tell(const Mistakes& found) {
     for (const ArgumentProblem& wrong : found) problem(wrong.line, wrong.message);
   }
 

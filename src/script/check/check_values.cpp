@@ -141,8 +141,7 @@ std::string ValueCheck::compared(const SourceUse& use, const Type& type, const T
          all_of_them(type.texts);
 }
 
-void ValueCheck::operands(const SourceUse& use, const Type& type, const Tokens& tokens,
-                          std::vector<ArgumentProblem>& found) const {
+void ValueCheck::operands(const SourceUse& use, const Type& type, const Tokens& tokens, Mistakes& found) const {
   const SourceToken& left = before(tokens, use.at);
   const SourceToken& right = tokens[use.next];
   const std::string name = as_written(tokens, use.at, use.next);
@@ -173,8 +172,8 @@ void ValueCheck::operands(const SourceUse& use, const Type& type, const Tokens& 
     tell(name + " is true or false, which .. does not join: write tostring(" + name + ")");
 }
 
-std::vector<ArgumentProblem> ValueCheck::of_use(const SourceUse& use, const Tokens& tokens) const {
-  std::vector<ArgumentProblem> found;
+Mistakes ValueCheck::of_use(const SourceUse& use, const Tokens& tokens) const {
+  Mistakes found;
   if (use.assigned) return found;
   const std::string wrong = call(use, tokens);
   if (!wrong.empty()) found.push_back({use.line, wrong});
@@ -324,8 +323,8 @@ std::string ValueCheck::armed(const SourceUse& use, const Tokens& tokens) const 
   return timed ? "" : "m:on needs within_s = seconds: for how long it may wait";
 }
 
-std::vector<ArgumentProblem> ValueCheck::of_literals(const Tokens& tokens) const {
-  std::vector<ArgumentProblem> found;
+Mistakes ValueCheck::of_literals(const Tokens& tokens) const {
+  Mistakes found;
   for (std::size_t i = 1; i + 1 < tokens.size(); ++i) {
     const SourceToken& token = tokens[i];
     const SourceToken& left = tokens[i - 1];

@@ -17,9 +17,9 @@ class ValueCheck {
   explicit ValueCheck(const Behavior::Parts& parts);
 
   // What is wrong with what stands around one use of a name.
-  std::vector<ArgumentProblem> of_use(const SourceUse& use, const Tokens& tokens) const;
+  Mistakes of_use(const SourceUse& use, const Tokens& tokens) const;
   // What is wrong with values that are written out: "a" + 1, x .. nil.
-  std::vector<ArgumentProblem> of_literals(const Tokens& tokens) const;
+  Mistakes of_literals(const Tokens& tokens) const;
 
  private:
   // What a name stands for; `texts` are all that a choice may be.
@@ -33,8 +33,7 @@ class ValueCheck {
   Type field_of(StatusField::Part part, const std::string& name, std::size_t index = 0) const;
   std::string compared(const SourceUse& use, const Type& type, const Tokens& tokens, std::size_t value,
                        const SourceToken& sign) const;
-  void operands(const SourceUse& use, const Type& type, const Tokens& tokens,
-                std::vector<ArgumentProblem>& found) const;
+  void operands(const SourceUse& use, const Type& type, const Tokens& tokens, Mistakes& found) const;
   std::string other_unit(const SourceUse& use, const Tokens& tokens) const;
   std::string call(const SourceUse& use, const Tokens& tokens) const;
   std::string machine_call(const SourceUse& use, const Tokens& tokens) const;
