@@ -438,8 +438,7 @@ struct GoingOn {
 };
 
 // With guards that are tried it takes the machines twice: guards may write vars, which they should not.
-int take_machines(lua_State* state) {
-  const GoingOn& going_on = *static_cast<const GoingOn*>(lua_touserdata(state, 1));
+void take_machines(lua_State* state, const GoingOn& going_on) {
   Behavior::Parts& parts = going_on.parts;
   take_event_data(state, parts, going_on.bytes);
   take_results(state, parts, going_on.bytes);
@@ -448,11 +447,10 @@ int take_machines(lua_State* state) {
   renew_machines(state, parts, going_on.bytes);
   parts.runner->be_at(parts.bindings.now_ns);
   parts.runner->start_runs(state);
-  if (!going_on.guards_tried) return 0;
+  if (!going_on.guards_tried) return;
   parts.lua->core().random = going_on.random;
   parts.runner->try_guards(state);
   renew_machines(state, parts, again);
-  return 0;
 }
 
 }  // namespace
@@ -491,7 +489,8 @@ bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snaps
     return false;
   }
   parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const bool taken = parts.lua->call(take_machines, &going_on, instructions, parts.settings.limits.load_wall_ns);
+  const bool taken = parts.lua->call([&](lua_State* state) { take_machines(state, going_on); }, instructions,
+                                     parts.settings.limits.load_wall_ns);
   commands.discard();  // a guard that commands
   core.random = going_on.random;
   if (taken && parts.runner->started()) parts.want_sets();
@@ -515,26 +514,15 @@ bool holds(const std::filesystem::path& first, const std::vector<LuaState::Sourc
   return !sources.empty() && first.parent_path() == sources.front().path.parent_path();
 }
 
-struct Leaving {
-  Behavior::Parts& parts;
-  const std::vector<bool>& marks;
-};
-
-int leave(lua_State* state) {
-  const Leaving& leaving = *static_cast<const Leaving*>(lua_touserdata(state, 1));
-  Behavior::Parts& parts = leaving.parts;
-  parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
-  parts.runner->leave_marked(state, leaving.marks, parts.bindings.now_ns);
-  return 0;
-}
-
 // Leaves the marked states in a transaction of its own. False: an `exit` raised.
 bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
                   CommandSender& commands) noexcept {
-  Leaving leaving{parts, marks};
+  const auto leave = [&](lua_State* state) {
+    parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
+    parts.runner->leave_marked(state, marks, parts.bindings.now_ns);
+  };
   parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const Behavior::Settings& settings = parts.settings;
-  if (parts.lua->call(leave, &leaving, settings.limits.tick_instructions, settings.limits.tick_wall_ns)) {
+  if (parts.run(leave)) {
     (void)parts.bindings.commit();
     return true;
   }

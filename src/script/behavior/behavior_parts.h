@@ -39,8 +39,11 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void tell_armed() noexcept;    // logs what became of armed transactions since the last call, and posts their events
   // Asks in the next tick for the control sets of the active states that are not active.
   void want_sets() noexcept;
-  // Runs a function under the tick's budget, with the parts or with another argument.
-  bool run(int (*function)(lua_State*), void* argument = nullptr) noexcept;
+  // Runs work(state) under the tick's budget.
+  template <typename Work>
+  bool run(Work work) noexcept {
+    return lua->call(work, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
+  }
 
   Settings settings;
   const Catalog& catalog;

@@ -83,8 +83,7 @@ int ask_guard(lua_State* state) {
   return 0;
 }
 
-int ask_guards(lua_State* state) {
-  Asking& asking = *static_cast<Asking*>(lua_touserdata(state, 1));
+void ask_guards(lua_State* state, Asking& asking) {
   const auto attempt = [&](lua_CFunction function) {
     lua_pushcfunction(state, function);
     lua_pushlightuserdata(state, &asking);
@@ -106,7 +105,6 @@ int ask_guards(lua_State* state) {
     std::snprintf(question.value.data(), question.value.size(), "raises: %s", raised != nullptr ? raised : "an error");
     lua_settop(state, 1);
   }
-  return 0;
 }
 
 // The names of the function's arguments, s and m as a rule.
@@ -244,8 +242,8 @@ std::vector<TransitionReason> Behavior::why(const Snapshot& snapshot) const {
     for (Seen& seen : question.seen) seen.fields = std::string_view(seen.path).substr(seen.path.find('.') + 1);
   }
   const ScriptLimits& limits = copy.settings.limits;
-  const bool asked =
-      copy.lua->call(ask_guards, &asking, limits.tick_instructions, limits.tick_wall_ns > 0 ? asking_wall_ns : 0);
+  const bool asked = copy.lua->call([&](lua_State* state) { ask_guards(state, asking); }, limits.tick_instructions,
+                                    limits.tick_wall_ns > 0 ? asking_wall_ns : 0);
   sender.discard();
 
   std::vector<TransitionReason> reasons;

@@ -421,12 +421,6 @@ std::string lua_stubs(const Catalog& catalog) {
 
 namespace {
 
-struct SkillReading {
-  LuaState& lua;
-  std::filesystem::path file;
-  std::map<std::string, std::string> skills{};  // by field: as Markdown
-};
-
 std::string default_text(const ScriptArgument& argument) {
   if (!argument.initial) return "a table";
   if (const auto* number = std::get_if<double>(&*argument.initial)) return number_text(*number);
@@ -459,28 +453,28 @@ std::string skill_text(lua_State* state, int skill) {
   return text;
 }
 
-// Nothing here raises but the module, before a string is made.
-int read_skills(lua_State* state) {
-  auto& reading = *static_cast<SkillReading*>(lua_touserdata(state, 1));
-  if (!reading.lua.load_file(state, reading.file)) return lua_error(state);
+// By field, as Markdown. Nothing here raises but the module, before a string is made.
+void read_skills(lua_State* state, LuaState& lua, const std::filesystem::path& file,
+                 std::map<std::string, std::string>& skills) {
+  if (!lua.load_file(state, file)) lua_error(state);
   lua_call(state, 0, 1);
   const int module = lua_gettop(state);
   luaL_checkstack(state, 16, "skills");
-  if (!lua_istable(state, module)) return 0;
+  if (!lua_istable(state, module)) return;
   for (lua_pushnil(state); lua_next(state, module) != 0; lua_settop(state, module + 1)) {
     if (lua_type(state, module + 1) != LUA_TSTRING || !push_skill(state, module + 2)) continue;
-    reading.skills[lua_tostring(state, module + 1)] = skill_text(state, lua_gettop(state));
+    skills[lua_tostring(state, module + 1)] = skill_text(state, lua_gettop(state));
   }
-  return 0;
 }
 
 std::string module_reference(const std::filesystem::path& root, const std::filesystem::path& file) {
   LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string()});
-  SkillReading reading{lua, file};
-  lua.call_or_throw(read_skills, &reading, lua.settings().limits.load_instructions, 0);
+  std::map<std::string, std::string> skills;
+  lua.call_or_throw([&](lua_State* state) { read_skills(state, lua, file, skills); },
+                    lua.settings().limits.load_instructions, 0);
   const std::string module = file.stem().string();
   std::string text;
-  for (const auto& [field, skill] : reading.skills) {
+  for (const auto& [field, skill] : skills) {
     text += "\n### `" + module + "." + field + "`\n\n" + skill;
   }
   return text;

@@ -33,23 +33,21 @@ struct Looked {
 };
 
 // Runs the file and looks at what it returns.
-int look_at_file(lua_State* state) {
-  auto& looked = *static_cast<Looked*>(lua_touserdata(state, 1));
+void look_at_file(lua_State* state, Looked& looked) {
   if (looked.found.kind == ScriptKind::test) {
-    if (luaL_loadbuffer(state, test_stubs, sizeof test_stubs - 1, "=kadans test") != 0) return lua_error(state);
+    if (luaL_loadbuffer(state, test_stubs, sizeof test_stubs - 1, "=kadans test") != 0) lua_error(state);
     push_environment(state);
     lua_setfenv(state, -2);
     lua_call(state, 0, 5);
     open_test_names(state);
   }
-  if (!looked.parts.lua->load_file(state, looked.parts.settings.file)) return lua_error(state);
+  if (!looked.parts.lua->load_file(state, looked.parts.settings.file)) lua_error(state);
   lua_call(state, 0, 1);
   NodeKind kind{};
   looked.returned = !lua_isnil(state, -1);
   looked.unfinished = lua_iscfunction(state, -1) != 0;
   if (is_node(state, lua_gettop(state), &kind) && (kind == NodeKind::behavior || kind == NodeKind::decisions))
     looked.found.kind = ScriptKind::behavior;
-  return 0;
 }
 
 // expect(x).to_equal, k.play "file" { options }: what is written out.
@@ -159,7 +157,8 @@ CheckedScript check_script(const fs::path& root, const fs::path& file, const Cat
   Looked looked{parts};
   looked.found.kind = file.string().ends_with("_test.lua") ? ScriptKind::test : ScriptKind::module;
   try {
-    parts.lua->call_or_throw(look_at_file, &looked, settings.limits.load_instructions, 0);
+    parts.lua->call_or_throw([&](lua_State* state) { look_at_file(state, looked); }, settings.limits.load_instructions,
+                             0);
     if (looked.found.kind == ScriptKind::behavior) {
       if (catalog != nullptr) looked.found.problems = check_behavior(root, file, *catalog);
     } else {

@@ -324,8 +324,7 @@ void look_at_defaults(lua_State* state, Looking& looking, int declared) {
   lua_settop(state, all - 1);
 }
 
-int look(lua_State* state) {
-  auto& looking = *static_cast<Looking*>(lua_touserdata(state, 1));
+void look(lua_State* state, Looking& looking) {
   const Chart& chart = looking.parts.chart;
   for (const Chart::Machine& machine : chart.machines) {
     looking.chunk = chart.states[machine.root].chunk;
@@ -336,7 +335,6 @@ int look(lua_State* state) {
     looking.line = machine.call_line;
     if (!machine.call_chunk.empty()) look_at(state, looking, machine.given, "args");
   }
-  return 0;
 }
 
 }  // namespace
@@ -411,7 +409,7 @@ void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, 
 
 void check_vars(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
   Looking looking{parts, problems};
-  parts.lua->call_or_throw(look, &looking, parts.settings.limits.load_instructions, 0);
+  parts.lua->call_or_throw([&](lua_State* state) { look(state, looking); }, parts.settings.limits.load_instructions, 0);
 }
 
 }  // namespace kadans

@@ -15,8 +15,7 @@
 namespace kadans {
 namespace {
 
-int read_chart_functions(lua_State* state) {
-  auto& reading = *static_cast<ChartFunctions*>(lua_touserdata(state, 1));
+void read_chart_functions(lua_State* state, ChartFunctions& reading) {
   const auto read = [&](int reference) {
     if (reference == Chart::no_function) return;
     lua_Debug function;
@@ -27,7 +26,6 @@ int read_chart_functions(lua_State* state) {
   };
   for (const Chart::State& one : reading.chart.states) read(one.enter);
   for (const Chart::Transition& one : reading.chart.transitions) read(one.when), read(one.action);
-  return 0;
 }
 
 }  // namespace
@@ -38,7 +36,8 @@ ChartFunctions chart_functions(Behavior::Parts& parts) {
     Tokens& tokens = functions.files[source.chunk] = lex_source(source.text);
     tokens.resize(tokens.size() + 8, {.line = 0});
   }
-  functions.known = parts.lua->call(read_chart_functions, &functions, parts.settings.limits.load_instructions, 0);
+  functions.known = parts.lua->call([&](lua_State* state) { read_chart_functions(state, functions); },
+                                    parts.settings.limits.load_instructions, 0);
   return functions;
 }
 

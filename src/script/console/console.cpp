@@ -191,8 +191,7 @@ void add_names(lua_State* state, Naming& naming) {
   }
 }
 
-int find_names(lua_State* state) {
-  Naming& naming = *static_cast<Naming*>(lua_touserdata(state, 1));
+void find_names(lua_State* state, Naming& naming) {
   for (const int root : {naming.parts.environment, naming.parts.content}) {
     lua_settop(state, 1);
     lua_rawgeti(state, LUA_REGISTRYINDEX, root);
@@ -204,7 +203,6 @@ int find_names(lua_State* state) {
     }
     if (lua_istable(state, -1)) add_names(state, naming);
   }
-  return 0;
 }
 
 }  // namespace
@@ -267,9 +265,8 @@ void ValueTree::refill(lua_State* state, std::span<const double> values) const {
   lua_settop(state, top);
 }
 
-// Makes the environment. The argument on the stack is the Parts. Raises.
-int open_console(lua_State* state) {
-  auto& parts = *static_cast<Console::Parts*>(lua_touserdata(state, 1));
+// Makes the environment. Raises.
+void open_console(lua_State* state, Console::Parts& parts) {
   push_new_content(state, parts);
   lua_pushvalue(state, -1);
   parts.content = luaL_ref(state, LUA_REGISTRYINDEX);
@@ -289,7 +286,6 @@ int open_console(lua_State* state) {
   lua_setfenv(state, -2);
   lua_call(state, 0, 1);
   parts.show = luaL_ref(state, LUA_REGISTRYINDEX);
-  return 0;
 }
 
 // [-0 +0] Refills s, signals, parameters and behaviors.
@@ -312,7 +308,8 @@ std::vector<std::string> console_names(Console::Parts& parts, const std::string&
     from = at + 1;
   }
   naming.begin = path.substr(from);
-  (void)parts.lua.call(find_names, &naming, parts.settings.limits.tick_instructions, 0);
+  (void)parts.lua.call([&](lua_State* state) { find_names(state, naming); }, parts.settings.limits.tick_instructions,
+                       0);
   std::ranges::sort(naming.found);
   naming.found.erase(std::unique(naming.found.begin(), naming.found.end()), naming.found.end());
   for (std::string& name : naming.found) name.insert(0, path, 0, from);
@@ -356,20 +353,18 @@ void push_line(lua_State* state, Evaluation& evaluation) {
   lua_setfenv(state, -2);
 }
 
-int evaluate_line(lua_State* state) {
-  Evaluation& evaluation = *static_cast<Evaluation*>(lua_touserdata(state, 1));
+void evaluate_line(lua_State* state, Evaluation& evaluation) {
   push_line(state, evaluation);
   refill_console(state, evaluation.parts, evaluation.view);
   const int before = lua_gettop(state) - 1;
   lua_call(state, 0, LUA_MULTRET);
   const int results = lua_gettop(state) - before;
-  if (results == 0) return 0;
+  if (results == 0) return;
   luaL_checkstack(state, results + 2, "too many values");
   lua_rawgeti(state, LUA_REGISTRYINDEX, evaluation.parts.show);
   lua_insert(state, before + 1);
   lua_call(state, results, 1);
   evaluation.text = lua_tostring(state, -1);
-  return 0;
 }
 
 std::vector<ConsoleBehavior> behaviors_of(const ScriptHost& host) {
@@ -459,7 +454,8 @@ Console::Parts::Parts(const Settings& wanted, const Catalog& offered, ScriptHost
 
 Console::Console(const Settings& settings, const Catalog& catalog, ScriptHost& host)
     : parts_(std::make_unique<Parts>(settings, catalog, host)) {
-  if (!parts_->lua.call(open_console, parts_.get(), settings.limits.load_instructions, settings.limits.load_wall_ns))
+  const auto open = [this](lua_State* state) { open_console(state, *parts_); };
+  if (!parts_->lua.call(open, settings.limits.load_instructions, settings.limits.load_wall_ns))
     throw InputError({.message = "the console: " + parts_->lua.error().text()});
 }
 
@@ -496,7 +492,8 @@ Console::Reply Console::run_lua(const View& view) noexcept {
   const std::uint32_t nothing_sent = parts.nowhere.last_sequence();
   parts.bindings.begin(sender, view.snapshot, view.snapshot.time_ns);
   const ScriptLimits& limits = parts.settings.limits;
-  const bool done = parts.lua.call(evaluate_line, &evaluation, limits.tick_instructions, limits.tick_wall_ns);
+  const bool done = parts.lua.call([&](lua_State* state) { evaluate_line(state, evaluation); },
+                                   limits.tick_instructions, limits.tick_wall_ns);
   Reply reply;
   if (evaluation.incomplete) return sender.discard(), Reply{.text = {}, .incomplete = true};
   parts.pending.clear();

@@ -137,11 +137,9 @@ bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t i
   return status == 0 && !core_->budget.breached();
 }
 
-void LuaState::call_or_throw(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
-                             std::int64_t wall_ns) {
-  if (!call(function, argument, instructions, wall_ns))
-    throw InputError({error().file.data(), error().line, 0, error().message.data()});
-}
+void* LuaState::argument_of(lua_State* state) noexcept { return lua_touserdata(state, 1); }
+
+void LuaState::throw_error() const { throw InputError({error().file.data(), error().line, 0, error().message.data()}); }
 
 bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   Source source;

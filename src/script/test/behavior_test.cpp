@@ -40,7 +40,6 @@ struct Testing {
     int function = LUA_NOREF;
   };
   std::vector<Test> tests;
-  int running = LUA_NOREF;           // the function of the test that runs
   std::array<char, 1024> message{};  // of what went wrong where nothing may raise
   std::string text;                  // given to Lua; a member, since Lua may raise
   std::vector<std::string> texts;    // likewise
@@ -211,21 +210,19 @@ int add_test(lua_State* state) {
 }
 
 // What the last one played is gone.
-int run_test(lua_State* state) {
-  auto& testing = *static_cast<Testing*>(lua_touserdata(state, 1));
+void run_test(lua_State* state, int function) {
   lua_gc(state, LUA_GCCOLLECT, 0);
   lua_gc(state, LUA_GCSTOP, 0);
   core_of(state).heap.forgive();
-  lua_rawgeti(state, LUA_REGISTRYINDEX, testing.running);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, function);
   lua_call(state, 0, 0);
-  return 0;
 }
 
 // What went wrong in it, "" when nothing did.
 std::string problem_of(Testing& testing, const Testing::Test& test) {
   testing.played.clear();
-  testing.running = test.function;
-  if (testing.lua.call(run_test, &testing, test_instructions_max, 0)) return "";
+  const auto run = [&](lua_State* state) { run_test(state, test.function); };
+  if (testing.lua.call(run, test_instructions_max, 0)) return "";
   const ScriptError& error = testing.lua.error();
   if (error.breach != ScriptBreach::instructions) return error.text();
   ScriptError stopped = error;
@@ -251,9 +248,8 @@ void set_in_module(lua_State* state, const char* name) {
   lua_pop(state, 4);
 }
 
-int run_file(lua_State* state) {
-  auto& testing = *static_cast<Testing*>(lua_touserdata(state, 1));
-  if (luaL_loadbuffer(state, test_prelude, sizeof test_prelude - 1, "=kadans test") != 0) return lua_error(state);
+void run_file(lua_State* state, Testing& testing) {
+  if (luaL_loadbuffer(state, test_prelude, sizeof test_prelude - 1, "=kadans test") != 0) lua_error(state);
   push_environment(state);
   lua_setfenv(state, -2);
   for (const lua_CFunction function : {play, advance, read, change, add_test, is_in}) {
@@ -262,9 +258,8 @@ int run_file(lua_State* state) {
   }
   lua_call(state, 6, 5);
   open_test_names(state);
-  if (!testing.lua.load_file(state, testing.file)) return lua_error(state);
+  if (!testing.lua.load_file(state, testing.file)) lua_error(state);
   lua_call(state, 0, 0);
-  return 0;
 }
 
 }  // namespace
@@ -278,9 +273,9 @@ std::vector<TestOutcome> run_behavior_tests(const std::filesystem::path& root, c
                                             TestStages& stages, const std::string& only) {
   const ScriptLimits limits{.memory_bytes = memory_max_bytes};
   LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string(), .limits = limits});
-  Testing testing{lua, stages, root, file, {}, {}, LUA_NOREF, {}, {}, {}};
+  Testing testing{lua, stages, root, file, {}, {}, {}, {}, {}};
   testing.played.reserve(stages_max);
-  lua.call_or_throw(run_file, &testing, load_instructions_max, 0);
+  lua.call_or_throw([&](lua_State* state) { run_file(state, testing); }, load_instructions_max, 0);
   std::vector<TestOutcome> outcomes;
   for (const Testing::Test& test : testing.tests) {
     if (test.name.find(only) == std::string::npos) continue;
