@@ -128,19 +128,7 @@ void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& k
 
 constexpr std::array<const char*, 3> always_there{"vars", "args", "*"};
 
-// Fields that scripts write themselves: `m.vars.x = `, in one file.
-class Writes final : public SourceListener {
- public:
-  void used(const SourceUse& use, const Tokens& /*tokens*/) override {
-    const auto& path = use.meaning.path;
-    if (use.assigned && use.meaning.role == SourceRole::machine && path.size() >= 2 && path[0] == "vars") {
-      vars.push_back(path[1]);
-    }
-  }
-  std::vector<std::string> vars;
-};
-
-class SourceCheck final : public SourceListener {
+class SourceCheck {
  public:
   SourceCheck(const Behavior::Parts& parts, const KnownNames& known, const LuaState::Source& source,
               std::vector<InputProblem>& problems)
@@ -159,16 +147,19 @@ class SourceCheck final : public SourceListener {
   }
 
   void run(SourceScopes& scopes) {
-    Writes writes;
-    scopes.tell(writes);
-    vars_.insert(vars_.end(), writes.vars.begin(), writes.vars.end());
+    scopes.tell([this](const SourceUse& use, const Tokens&) {  // fields that the script writes itself
+      const auto& path = use.meaning.path;
+      if (use.assigned && use.meaning.role == SourceRole::machine && path.size() >= 2 && path[0] == "vars")
+        vars_.push_back(path[1]);
+    });
     std::sort(vars_.begin(), vars_.end());
-    scopes.tell(*this);
+    scopes.tell([this](const SourceUse& use, const Tokens& tokens) { used(use, tokens); });
     tell(values_.of_literals(scopes.tokens()));
     tell(flow_.run(scopes.tokens()));
   }
 
-  void used(const SourceUse& use, const Tokens& tokens) override {
+ private:
+  void used(const SourceUse& use, const Tokens& tokens) {
     flow_.note(use);
     tell(values_.of_use(use, tokens));
     if (!use.known) return unknown(use);
@@ -198,7 +189,6 @@ class SourceCheck final : public SourceListener {
     }
   }
 
- private:
   static int place(const SourceUse& use) { return use.lines.empty() ? use.line : use.lines.back(); }
   void problem(int line, std::string message) { problems_.push_back({source_.chunk, line, 0, std::move(message)}); }
   void tell(const Mistakes& found) {

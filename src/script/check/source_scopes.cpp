@@ -323,7 +323,7 @@ SourceScopes::SourceScopes(Tokens tokens, std::size_t file, SourceFacts& facts)
   }
 }
 
-void SourceScopes::walk(SourceListener* listener) {
+void SourceScopes::walk(const SourceListener& listener) {
   listener_ = listener;
   blocks_.assign(1, {});
   braces_.clear();
@@ -536,7 +536,7 @@ std::size_t SourceScopes::name_at(std::size_t at) {
   if (use.assigned && use.known) assign(use, at);
   look_through(use);
   if (const std::optional<SourcePlace> callee = callee_of(use)) hand_on(use, *callee);
-  if (listener_ != nullptr) listener_->used(use, tokens_);
+  if (listener_) listener_(use, tokens_);
   return use.next;
 }
 
