@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "check_values.h"
+#include "check_source.h"
 
 namespace kadans {
 namespace {

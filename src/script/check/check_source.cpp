@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <array>
 
-#include "check_arguments.h"
-#include "check_flow.h"
-#include "check_values.h"
 #include "foreign_words.h"
 #include "hint.h"
 #include "script/bindings/machine_sets.h"
@@ -132,14 +129,7 @@ class SourceCheck {
  public:
   SourceCheck(const Behavior::Parts& parts, const KnownNames& known, const LuaState::Source& source,
               std::vector<InputProblem>& problems)
-      : parts_(parts),
-        known_(known),
-        source_(source),
-        problems_(problems),
-        machine_(known.machine),
-        arguments_(parts),
-        values_(parts),
-        flow_(parts.catalog, known, known.vars.contains(source.chunk)) {
+      : parts_(parts), known_(known), source_(source), problems_(problems), machine_(known.machine) {
     const auto vars = known.vars.find(source.chunk);
     has_behavior_ = vars != known.vars.end();
     if (const auto own = known.machines.find(source.chunk); own != known.machines.end()) machine_ = own->second;
@@ -154,14 +144,13 @@ class SourceCheck {
     });
     std::sort(vars_.begin(), vars_.end());
     scopes.tell([this](const SourceUse& use, const Tokens& tokens) { used(use, tokens); });
-    tell(values_.of_literals(scopes.tokens()));
-    tell(flow_.run(scopes.tokens()));
+    tell(value_mistakes(parts_, uses_, scopes.tokens()));
+    tell(flow_mistakes(parts_.catalog, known_, has_behavior_, uses_, scopes.tokens()));
   }
 
  private:
   void used(const SourceUse& use, const Tokens& tokens) {
-    flow_.note(use);
-    tell(values_.of_use(use, tokens));
+    uses_.push_back(use);
     if (!use.known) return unknown(use);
     if (use.guard) guard(use);
     if (!use.at_once.empty() && waits(use, tokens)) {
@@ -177,7 +166,7 @@ class SourceCheck {
       case SourceRole::module:
         fields(use, known_.module, "kadans");
         if (use.meaning.path == std::vector<std::string>{"pose"} && use.arguments != 0) {
-          tell(arguments_.pose_name(tokens, use.arguments));
+          tell(pose_mistakes(parts_.catalog, tokens, use.arguments));
         }
         return;
       case SourceRole::parameters:
@@ -189,10 +178,14 @@ class SourceCheck {
     }
   }
 
+  const ObjectInfo* object_of(const std::string& name) const noexcept {
+    const auto found = std::ranges::find(parts_.catalog.objects, name, &ObjectInfo::name);
+    return found == parts_.catalog.objects.end() ? nullptr : &*found;
+  }
   static int place(const SourceUse& use) { return use.lines.empty() ? use.line : use.lines.back(); }
   void problem(int line, std::string message) { problems_.push_back({source_.chunk, line, 0, std::move(message)}); }
   void tell(const Mistakes& found) {
-    for (const ArgumentProblem& wrong : found) problem(wrong.line, wrong.message);
+    for (const Mistake& wrong : found) problem(wrong.line, wrong.message);
   }
 
   void unknown(const SourceUse& use) {
@@ -203,7 +196,7 @@ class SourceCheck {
     }
     const std::string_view foreign = foreign_name_hint(use.name);
     if (!foreign.empty()) return problem(use.line, "unknown name '" + use.name + "'" + std::string(foreign));
-    const bool object = machine_.fields.contains(use.name) && arguments_.object(use.name) != nullptr;
+    const bool object = machine_.fields.contains(use.name) && object_of(use.name) != nullptr;
     const std::string here =
         object ? ": it is a field of m: m." + use.name : hint_text(use.name, known_.globals.names());
     problem(use.line, "unknown name '" + use.name + "'" + here);
@@ -215,7 +208,7 @@ class SourceCheck {
     const auto& path = use.meaning.path;
     const bool machine = use.meaning.role == SourceRole::machine;
     if ((machine || use.meaning.role == SourceRole::motion) && path.empty()) return use.method == "wait";
-    if (!machine || path.size() != 1 || arguments_.object(path.front()) == nullptr) return false;
+    if (!machine || path.size() != 1 || object_of(path.front()) == nullptr) return false;
     const std::size_t after = end_of_call(tokens, use.arguments);
     return tokens[after].is(":") && tokens[after + 1].text == "wait";
   }
@@ -249,7 +242,7 @@ class SourceCheck {
 
   // `m` and `s` stand in the wrong order, or the field's name is wrong.
   std::string field_hint(const std::string& name, const std::string& shown, const KnownNames::Shape& at) const {
-    const bool object = shown == "s" && machine_.fields.contains(name) && arguments_.object(name) != nullptr;
+    const bool object = shown == "s" && machine_.fields.contains(name) && object_of(name) != nullptr;
     const std::string_view foreign = object ? order_hint : foreign_field_hint(shown, name);
     return foreign.empty() ? hint_text(name, at.names()) : std::string(foreign);
   }
@@ -282,7 +275,7 @@ class SourceCheck {
       if (use.method == "emit") event(tokens, use.arguments);
       return;
     }
-    const ObjectInfo* object = arguments_.object(path.front());
+    const ObjectInfo* object = object_of(path.front());
     if (object == nullptr || !machine_.fields.contains(path.front())) return machine_field(use, object, tokens);
     if (use.assigned) return problem(use.line, "m is read-only: '" + path.front() + "' cannot be set");
     const std::string method = path.size() > 1 ? path[1] : use.method;
@@ -295,7 +288,7 @@ class SourceCheck {
       return problem(place(use), "call it with a colon: m." + path.front() + ":" + method + "(...)");
     }
     if (use.arguments != 0) in_sets(use, *object);
-    if (use.arguments != 0) tell(arguments_.of_method(*object, method, tokens, use.arguments));
+    if (use.arguments != 0) tell(argument_mistakes(parts_.catalog, *object, method, tokens, use.arguments));
   }
 
   // In a function of the chart, or one that such functions call, when all these states run without the object.
@@ -396,9 +389,7 @@ class SourceCheck {
   const LuaState::Source& source_;
   std::vector<InputProblem>& problems_;
   KnownNames::Shape machine_;
-  ArgumentCheck arguments_;
-  ValueCheck values_;
-  FlowCheck flow_;
+  std::vector<SourceUse> uses_;
   std::vector<std::string> vars_;
   bool has_behavior_ = false;
 };

@@ -19,6 +19,29 @@ struct ReadSource {
   SourceScopes scopes;
 };
 
+// A mistake in the text of one file.
+struct Mistake {
+  int line = 0;
+  std::string message;
+};
+using Mistakes = std::vector<Mistake>;
+
+// Checks a literal argument that is the name of a pose, and the literal arguments of an object's method. `at` is the
+// first token of the arguments.
+Mistakes pose_mistakes(const Catalog& catalog, const Tokens& tokens, std::size_t at);
+Mistakes argument_mistakes(const Catalog& catalog, const ObjectInfo& object, const std::string& method,
+                           const Tokens& tokens, std::size_t at);
+// Checks what stands around the uses of names, and values that are written out.
+Mistakes value_mistakes(const Behavior::Parts& parts, const std::vector<SourceUse>& uses, const Tokens& tokens);
+// Compares the formats of string.format and k.log with the values behind them, as far as they are written out. `at` is
+// the first token in the brackets of the call. "" when nothing is wrong.
+std::string format_mistake(const Tokens& tokens, std::size_t at, const std::string& called);
+// print("x %d", 1)
+std::string print_mistake(const Tokens& tokens, std::size_t at);
+// Checks how a script goes on. `of_behavior`: the file is a behavior's own, no module.
+Mistakes flow_mistakes(const Catalog& catalog, const KnownNames& known, bool of_behavior,
+                       const std::vector<SourceUse>& uses, const Tokens& tokens);
+
 // Finds mistakes by reading the text of a behavior, in every branch: unknown names (fields of m and s, control objects,
 // set-points, presets, parameters, poses, vars, globals, own modules), values out of range, guards that write or return
 // nothing, waits in places that cannot wait, and events that are never emitted.
