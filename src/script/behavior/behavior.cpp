@@ -82,14 +82,6 @@ std::string set(ScriptParameter& parameter, double value, const std::string& beh
                        parameter.unit);
 }
 
-}  // namespace
-
-const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk) {
-  return chunk == parts.lua->sources().front().chunk ? parts.settings.chunk : chunk;
-}
-
-namespace {
-
 // What is wrong with it, or "".
 std::string give(Behavior::Parts& parts, const BehaviorValue& given) {
   std::vector<std::string> names;
@@ -121,6 +113,10 @@ std::string give_parameter(Giving& giving) {
 }
 
 }  // namespace
+
+const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk) {
+  return chunk == parts.lua->sources().front().chunk ? parts.settings.chunk : chunk;
+}
 
 void give_robot_values(Behavior::Parts& parts) {
   if (parts.settings.chunk.empty()) parts.settings.chunk = parts.lua->sources().front().chunk;

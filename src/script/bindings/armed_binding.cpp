@@ -45,60 +45,6 @@ std::string_view part_of(std::string_view name, std::size_t from) noexcept {
   return name.substr(from, name.find('.', from) - from);
 }
 
-}  // namespace
-
-SignalName condition_signal(const Bindings& bindings, std::string_view name) noexcept {
-  constexpr std::size_t foot_at = 5;  // behind "foot."
-  SignalName text{};
-  std::string_view foot = name.starts_with("foot.") ? part_of(name, foot_at) : std::string_view{}, link = foot;
-  const auto known = std::ranges::find(bindings.catalog->feet, foot, &FootInfo::name);
-  if (known != bindings.catalog->feet.end()) link = known->link;
-  const std::string_view rest = foot.empty() ? name : name.substr(foot_at + foot.size());
-  std::snprintf(text.data(), text.size(), "%s%.*s%.*s", foot.empty() ? "" : "foot.", static_cast<int>(link.size()),
-                link.data(), static_cast<int>(rest.size()), rest.data());
-  return text;
-}
-
-bool is_truth_of_simulation(std::string_view name) noexcept {
-  return name.starts_with("plant.") || name.starts_with("reference.") || name.starts_with("world.");
-}
-
-// Of the same topic: those of the same owner, and those of the same quantity.
-std::vector<std::string> signals_near(const Bindings& bindings, std::string_view wanted) {
-  const std::string_view topic = part_of(wanted, 0);
-  const std::string_view owner = part_of(wanted, std::min(wanted.size(), topic.size() + 1));
-  const std::string_view quantity = wanted.substr(std::min(wanted.rfind('.'), wanted.size()));
-  std::vector<std::string> names;
-  for (SignalId id = 0; id < bindings.catalog->signals.size() && names.size() < hints_max; ++id) {
-    const std::string& other = bindings.catalog->signals.info(id).name;
-    if (part_of(other, 0) != topic || other.size() == topic.size()) continue;
-    const bool near = part_of(other, topic.size() + 1) == owner || std::string_view(other).ends_with(quantity);
-    if (near) names.push_back(other);
-  }
-  return names;
-}
-
-ConditionText read_condition_text(std::string_view text) noexcept {
-  text = trimmed(text);
-  ConditionText read{.signal = text};
-  const std::size_t sign = text.find_first_of("<>");
-  if (text.find('=') != std::string_view::npos) {
-    read.wrong = "a condition compares with < or >, not with =";
-  } else if (sign != std::string_view::npos) {
-    const std::optional<double> number = number_of<double>(trimmed(text.substr(sign + 1)));
-    if (!number) read.wrong = "behind < or > stands a number";
-    read.value = number.value_or(0);
-    read.below = text[sign] == '<';
-    read.signal = trimmed(text.substr(0, sign));
-  } else if (text.starts_with("not ")) {
-    read.below = true;
-    read.signal = trimmed(text.substr(4));
-  }
-  return read;
-}
-
-namespace {
-
 // The key of a signal that behaviors may know. The text is at the top of the stack.
 std::int64_t check_signal(lua_State* state, std::string_view name) {
   const Bindings& bindings = bindings_of(state);
@@ -319,6 +265,56 @@ int read_armed_field(lua_State* state) {
 }
 
 }  // namespace
+
+SignalName condition_signal(const Bindings& bindings, std::string_view name) noexcept {
+  constexpr std::size_t foot_at = 5;  // behind "foot."
+  SignalName text{};
+  std::string_view foot = name.starts_with("foot.") ? part_of(name, foot_at) : std::string_view{}, link = foot;
+  const auto known = std::ranges::find(bindings.catalog->feet, foot, &FootInfo::name);
+  if (known != bindings.catalog->feet.end()) link = known->link;
+  const std::string_view rest = foot.empty() ? name : name.substr(foot_at + foot.size());
+  std::snprintf(text.data(), text.size(), "%s%.*s%.*s", foot.empty() ? "" : "foot.", static_cast<int>(link.size()),
+                link.data(), static_cast<int>(rest.size()), rest.data());
+  return text;
+}
+
+bool is_truth_of_simulation(std::string_view name) noexcept {
+  return name.starts_with("plant.") || name.starts_with("reference.") || name.starts_with("world.");
+}
+
+// Of the same topic: those of the same owner, and those of the same quantity.
+std::vector<std::string> signals_near(const Bindings& bindings, std::string_view wanted) {
+  const std::string_view topic = part_of(wanted, 0);
+  const std::string_view owner = part_of(wanted, std::min(wanted.size(), topic.size() + 1));
+  const std::string_view quantity = wanted.substr(std::min(wanted.rfind('.'), wanted.size()));
+  std::vector<std::string> names;
+  for (SignalId id = 0; id < bindings.catalog->signals.size() && names.size() < hints_max; ++id) {
+    const std::string& other = bindings.catalog->signals.info(id).name;
+    if (part_of(other, 0) != topic || other.size() == topic.size()) continue;
+    const bool near = part_of(other, topic.size() + 1) == owner || std::string_view(other).ends_with(quantity);
+    if (near) names.push_back(other);
+  }
+  return names;
+}
+
+ConditionText read_condition_text(std::string_view text) noexcept {
+  text = trimmed(text);
+  ConditionText read{.signal = text};
+  const std::size_t sign = text.find_first_of("<>");
+  if (text.find('=') != std::string_view::npos) {
+    read.wrong = "a condition compares with < or >, not with =";
+  } else if (sign != std::string_view::npos) {
+    const std::optional<double> number = number_of<double>(trimmed(text.substr(sign + 1)));
+    if (!number) read.wrong = "behind < or > stands a number";
+    read.value = number.value_or(0);
+    read.below = text[sign] == '<';
+    read.signal = trimmed(text.substr(0, sign));
+  } else if (text.starts_with("not ")) {
+    read.below = true;
+    read.signal = trimmed(text.substr(4));
+  }
+  return read;
+}
 
 const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, std::uint32_t which) noexcept {
   for (const ArmedStatus& status : snapshot.armed) {

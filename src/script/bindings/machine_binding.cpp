@@ -157,10 +157,6 @@ int wait(lua_State* state) {
   return lua_yield(state, 0);
 }
 
-// m:emit(event, data?, { to = }?) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the
-// next. With `to` it goes to other behaviors, which get it in their next tick.
-int emit(lua_State* state);  // upvalue: the chart
-
 // Reading what m does not have; upvalues: its content, its number.
 int refuse_read(lua_State* state) {
   const Bindings& bindings = bindings_of(state);
@@ -268,42 +264,8 @@ void push_event_data(lua_State* state, int index, int depth, int& fields) {
   }
 }
 
-}  // namespace
-
-void push_plain_copy(lua_State* state, int index) { push_copy(state, index, 0); }
-
-void push_texts(lua_State* state, const std::vector<std::string>& texts) {
-  lua_createtable(state, static_cast<int>(texts.size()), 0);
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    lua_pushlstring(state, texts[i].data(), texts[i].size());
-    lua_rawseti(state, -2, static_cast<int>(i) + 1);
-  }
-}
-
-void push_event_data(lua_State* state, const PlayedEvent& event) {
-  lua_createtable(state, 0, static_cast<int>(event.data.size()));
-  for (const PlayArgument& field : event.data) {
-    if (const auto* number = std::get_if<double>(&field.value)) lua_pushnumber(state, *number);
-    if (const auto* flag = std::get_if<bool>(&field.value)) lua_pushboolean(state, *flag ? 1 : 0);
-    if (const auto* text = std::get_if<std::string>(&field.value)) lua_pushlstring(state, text->data(), text->size());
-    lua_setfield(state, -2, field.name.c_str());
-  }
-}
-
-EventId check_event(lua_State* state, Chart& chart, const char* name) {
-  if (reserved_for_reports(name))
-    luaL_error(state, "'%s' reports what happened to the behavior, it cannot be emitted: give the event another name",
-               name);
-  const EventId event = chart.find_or_learn(name);
-  if (event == no_event) luaL_error(state, "nothing in this behavior waits for the event '%s'", name);
-  if (Chart::is_pattern(name)) luaL_error(state, "'%s' stands for several events: emit one of them", name);
-  if (chart.made_by_runner(event))
-    luaL_error(state, "'%s' says how a state or a run ended, it cannot be emitted: give the event another name", name);
-  return event;
-}
-
-namespace {
-
+// m:emit(event, data?, { to = }?) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the
+// next. With `to` it goes to other behaviors, which get it in their next tick.
 int emit(lua_State* state) {
   if (bindings_of(state).recording)
     return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
@@ -361,6 +323,38 @@ void push_machine_content(lua_State* state, const Chart& chart, const Bindings& 
 }
 
 }  // namespace
+
+void push_plain_copy(lua_State* state, int index) { push_copy(state, index, 0); }
+
+void push_texts(lua_State* state, const std::vector<std::string>& texts) {
+  lua_createtable(state, static_cast<int>(texts.size()), 0);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    lua_pushlstring(state, texts[i].data(), texts[i].size());
+    lua_rawseti(state, -2, static_cast<int>(i) + 1);
+  }
+}
+
+void push_event_data(lua_State* state, const PlayedEvent& event) {
+  lua_createtable(state, 0, static_cast<int>(event.data.size()));
+  for (const PlayArgument& field : event.data) {
+    if (const auto* number = std::get_if<double>(&field.value)) lua_pushnumber(state, *number);
+    if (const auto* flag = std::get_if<bool>(&field.value)) lua_pushboolean(state, *flag ? 1 : 0);
+    if (const auto* text = std::get_if<std::string>(&field.value)) lua_pushlstring(state, text->data(), text->size());
+    lua_setfield(state, -2, field.name.c_str());
+  }
+}
+
+EventId check_event(lua_State* state, Chart& chart, const char* name) {
+  if (reserved_for_reports(name))
+    luaL_error(state, "'%s' reports what happened to the behavior, it cannot be emitted: give the event another name",
+               name);
+  const EventId event = chart.find_or_learn(name);
+  if (event == no_event) luaL_error(state, "nothing in this behavior waits for the event '%s'", name);
+  if (Chart::is_pattern(name)) luaL_error(state, "'%s' stands for several events: emit one of them", name);
+  if (chart.made_by_runner(event))
+    luaL_error(state, "'%s' says how a state or a run ended, it cannot be emitted: give the event another name", name);
+  return event;
+}
 
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables) {
   open_objects(state);

@@ -1,7 +1,6 @@
 #include "chart_graph.h"
 
-#include <array>
-#include <cstdio>
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -18,12 +17,6 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-std::string seconds(double time_s) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g s", time_s);
-  return text.data();
-}
-
 class Graph {
  public:
   Graph(const Chart& chart, const std::vector<ScriptParameter>& parameters) : chart_(chart), parameters_(parameters) {}
@@ -35,7 +28,7 @@ class Graph {
     if (transition.timed && transition.after_parameter != Chart::no_parameter) {
       add("after " + parameters_.at(static_cast<std::size_t>(transition.after_parameter)).name);
     } else if (transition.timed) {
-      add("after " + seconds(transition.after_s));
+      add(printed("after %g s", transition.after_s));
     }
     if (transition.when != Chart::no_function) add("[when]");
     const bool told =

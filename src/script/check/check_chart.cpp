@@ -337,12 +337,6 @@ void look(lua_State* state, Looking& looking) {
   }
 }
 
-}  // namespace
-
-void check_chart(const Chart& chart, std::vector<InputProblem>& problems) { ChartCheck(chart, problems).run(); }
-
-namespace {
-
 // What comes with the events that the runner makes.
 constexpr const char* runner_fields[] = {"message", "file",  "line",  "cause", "state",  "reason",
                                          "what",    "joint", "value", "limit", "result", "results"};
@@ -369,6 +363,8 @@ void check_event_fields(const std::vector<ScriptEvent>& declared, const ReadSour
 }
 
 }  // namespace
+
+void check_chart(const Chart& chart, std::vector<InputProblem>& problems) { ChartCheck(chart, problems).run(); }
 
 void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, const std::vector<ReadSource>& read,
                   std::vector<InputProblem>& problems) {

@@ -28,33 +28,6 @@ void read_chart_functions(lua_State* state, ChartFunctions& reading) {
   for (const Chart::Transition& one : reading.chart.transitions) read(one.when), read(one.action);
 }
 
-}  // namespace
-
-ChartFunctions chart_functions(Behavior::Parts& parts) {
-  ChartFunctions functions{parts.chart};
-  for (const LuaState::Source& source : parts.lua->sources()) {
-    Tokens& tokens = functions.files[source.chunk] = lex_source(source.text);
-    tokens.resize(tokens.size() + 8, {.line = 0});
-  }
-  functions.known = parts.lua->call([&](lua_State* state) { read_chart_functions(state, functions); },
-                                    parts.settings.limits.load_instructions, 0);
-  return functions;
-}
-
-ChartFunctions::Begin ChartFunctions::begin_of(const ChartFunction& function) const {
-  static const Tokens nothing;
-  const auto file = files.find(function.chunk);
-  Begin begin{file == files.end() ? nothing : file->second, 0};
-  for (std::size_t i = 0; i < begin.tokens.size(); ++i) {
-    if (begin.tokens[i].line != function.line || !begin.tokens[i].is("function")) continue;
-    if (begin.at != 0) return {begin.tokens, 0};
-    begin.at = i;
-  }
-  return begin;
-}
-
-namespace {
-
 class LivelockCheck {
  public:
   LivelockCheck(const Behavior::Parts& parts, const ChartFunctions& functions, std::vector<InputProblem>& problems)
@@ -210,6 +183,29 @@ class LivelockCheck {
 };
 
 }  // namespace
+
+ChartFunctions chart_functions(Behavior::Parts& parts) {
+  ChartFunctions functions{parts.chart};
+  for (const LuaState::Source& source : parts.lua->sources()) {
+    Tokens& tokens = functions.files[source.chunk] = lex_source(source.text);
+    tokens.resize(tokens.size() + 8, {.line = 0});
+  }
+  functions.known = parts.lua->call([&](lua_State* state) { read_chart_functions(state, functions); },
+                                    parts.settings.limits.load_instructions, 0);
+  return functions;
+}
+
+ChartFunctions::Begin ChartFunctions::begin_of(const ChartFunction& function) const {
+  static const Tokens nothing;
+  const auto file = files.find(function.chunk);
+  Begin begin{file == files.end() ? nothing : file->second, 0};
+  for (std::size_t i = 0; i < begin.tokens.size(); ++i) {
+    if (begin.tokens[i].line != function.line || !begin.tokens[i].is("function")) continue;
+    if (begin.at != 0) return {begin.tokens, 0};
+    begin.at = i;
+  }
+  return begin;
+}
 
 void check_livelocks(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
   const ChartFunctions functions = chart_functions(parts);
