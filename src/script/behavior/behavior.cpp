@@ -179,8 +179,8 @@ void read_file(lua_State* state, Behavior::Parts& parts) {
   if (!parts.lua->load_file(state, parts.settings.file)) lua_error(state);
   lua_call(state, 0, 1);
   const int result = lua_gettop(state);
-  NodeKind kind{};
-  if (!is_node(state, result, &kind) || (kind != NodeKind::behavior && kind != NodeKind::decisions)) {
+  const std::optional<NodeKind> kind = node_kind(state, result);
+  if (kind != NodeKind::behavior && kind != NodeKind::decisions) {
     luaL_error(state, "%s:1: the file must return k.behavior \"name\" { ... }",
                parts.lua->sources().front().chunk.c_str());
   }

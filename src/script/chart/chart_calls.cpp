@@ -63,13 +63,13 @@ struct CallReader {
     const std::int32_t its = declared_parameter(core_of(state), chart.states[machine().root].chunk, name);
     if (!argument && its == Chart::no_parameter) refuse_name(name);
     const int value = lua_gettop(state);
-    std::size_t followed = 0;
-    const bool follows = is_parameter(state, value, &followed);
-    if (follows) check_followed(name, argument ? value - 1 : 0, its, followed);
-    if (!follows && !lua_isfunction(state, value)) return take_constant(name, argument, its);
+    const std::size_t* followed = to_parameter(state, value);
+    if (followed != nullptr) check_followed(name, argument ? value - 1 : 0, its, *followed);
+    if (followed == nullptr && !lua_isfunction(state, value)) return take_constant(name, argument, its);
     Chart::Given& given = add(name, argument ? Chart::no_parameter : its);
-    if (follows) given.follows = static_cast<std::int32_t>(followed);
-    if (!follows) {
+    if (followed != nullptr) {
+      given.follows = static_cast<std::int32_t>(*followed);
+    } else {
       lua_pushvalue(state, value);
       const int function = luaL_ref(state, LUA_REGISTRYINDEX);
       chart.machines[number].calls_with.back().function = function;

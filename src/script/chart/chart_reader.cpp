@@ -86,9 +86,8 @@ void check_types(lua_State* state, int table, const ScriptPlace& place, const ch
     const auto known = std::ranges::find(key_types, *names, &KeyType::key);
     const char* wanted = known == std::end(key_types) ? nullptr : known->type;
     if (!lua_isnil(state, -1) && wanted != nullptr && std::strcmp(luaL_typename(state, -1), wanted) != 0) {
-      std::size_t number = 0;
-      const char* given = is_parameter(state, lua_gettop(state), &number) ? "parameter: ask it in a function"
-                                                                          : luaL_typename(state, -1);
+      const char* given =
+          to_parameter(state, -1) != nullptr ? "parameter: ask it in a function" : luaL_typename(state, -1);
       const bool quoted = lua_type(state, -1) == LUA_TSTRING && std::strcmp(wanted, "boolean") == 0;
       raise_at(state, place, *names, "'%s' must be a %s, not a %s%s", *names, wanted, given,
                quoted ? ": true has no quotes" : "");
@@ -145,8 +144,7 @@ void check_targets(lua_State* state, int table, const ScriptPlace& place, const 
 
 void check_after(lua_State* state, int table, const ScriptPlace& place) {
   lua_getfield(state, table, "after");
-  std::size_t number = 0;
-  if (!lua_isnil(state, -1) && !is_parameter(state, -1, &number)) {
+  if (!lua_isnil(state, -1) && to_parameter(state, -1) == nullptr) {
     const bool good =
         lua_type(state, -1) == LUA_TNUMBER && lua_tonumber(state, -1) >= 0 && std::isfinite(lua_tonumber(state, -1));
     if (!good) raise_at(state, place, "after", "'after' must be seconds >= 0, or a parameter from k.params");
@@ -200,10 +198,9 @@ void check_transitions(lua_State* state, int list, const ScriptPlace& place, boo
   for (int i = 1; i <= count; ++i) {
     lua_rawgeti(state, list, i);
     const int entry = lua_gettop(state);
-    NodeKind kind{};
-    if (is_node(state, entry, &kind)) {
+    if (const std::optional<NodeKind> kind = node_kind(state, entry)) {
       if (!nodes_too)
-        raise_at(state, place, node_name(state, entry), "only transitions belong here, not a %s", node_word(kind));
+        raise_at(state, place, node_name(state, entry), "only transitions belong here, not a %s", node_word(*kind));
     } else if (lua_isfunction(state, entry)) {
       raise_at(state, place, nullptr, "%d: a k.state, k.call or other part without its { ... }?", i);
     } else if (!lua_istable(state, entry)) {
@@ -305,9 +302,7 @@ int make_call(lua_State* state) {
 }
 
 int take_arguments(lua_State* state) {  // (node, arguments)
-  NodeKind kind{};
-  const bool call = is_node(state, 1, &kind) && kind == NodeKind::call;
-  if (!call || !lua_istable(state, 2))
+  if (node_kind(state, 1) != NodeKind::call || !lua_istable(state, 2))
     return luaL_error(state, "only k.call takes arguments, in a table { ... }; is a comma missing before this table?");
   lua_settop(state, 2);
   lua_setfield(state, 1, "body");
@@ -318,13 +313,13 @@ int take_arguments(lua_State* state) {  // (node, arguments)
 
 const char* node_word(NodeKind kind) noexcept { return node_words[static_cast<std::size_t>(kind)].word; }
 
-bool is_node(lua_State* state, int index, NodeKind* kind) {
-  if (!lua_istable(state, index) || !is_kind(state, index, node_key)) return false;
+std::optional<NodeKind> node_kind(lua_State* state, int index) {
+  if (!lua_istable(state, index) || !is_kind(state, index, node_key)) return std::nullopt;
   lua_pushvalue(state, index);
   lua_getfield(state, -1, "kind");
-  *kind = static_cast<NodeKind>(lua_tointeger(state, -1));
+  const auto kind = static_cast<NodeKind>(lua_tointeger(state, -1));
   lua_pop(state, 2);
-  return true;
+  return kind;
 }
 
 const char* node_name(lua_State* state, int index) {
@@ -453,11 +448,10 @@ struct Reader {
         raise_at(state, place, on, "more than %d different names with '*'", static_cast<int>(Chart::patterns_max));
     }
     lua_getfield(state, table, "after");
-    std::size_t number = 0;
     made.timed = !lua_isnil(state, -1);
-    if (is_parameter(state, -1, &number)) {
-      made.after_parameter = static_cast<std::int32_t>(number);
-      made.after_name = core_of(state).parameters[number].name;
+    if (const std::size_t* number = to_parameter(state, -1)) {
+      made.after_parameter = static_cast<std::int32_t>(*number);
+      made.after_name = core_of(state).parameters[*number].name;
     } else if (made.timed) {
       made.after_s = lua_tonumber(state, -1);
     }
@@ -472,8 +466,7 @@ struct Reader {
     const int count = static_cast<int>(lua_objlen(state, list));
     for (int i = 1; i <= count; ++i) {
       lua_rawgeti(state, list, i);
-      NodeKind kind{};
-      if (!is_node(state, -1, &kind)) read_transition(lua_gettop(state), source, place);
+      if (!node_kind(state, -1)) read_transition(lua_gettop(state), source, place);
       lua_pop(state, 1);
     }
     return static_cast<std::uint16_t>(chart.transitions.size() - before);
@@ -536,8 +529,7 @@ struct Reader {
     const int count = static_cast<int>(lua_objlen(state, body));
     for (int i = 1; i <= count; ++i) {
       lua_rawgeti(state, body, i);
-      NodeKind kind{};
-      if (is_node(state, -1, &kind)) read_node(lua_gettop(state), kind, index, depth);
+      if (const auto kind = node_kind(state, -1)) read_node(lua_gettop(state), *kind, index, depth);
       lua_settop(state, body);
     }
   }
@@ -569,9 +561,8 @@ struct Reader {
       raise_at(state, place, name, "k.call: %s", text != nullptr ? text : "?");
     }
     const int behavior = lua_gettop(state);
-    NodeKind kind{};
     const NodeKind wanted = chart.decides ? NodeKind::decisions : NodeKind::behavior;
-    if (!is_node(state, behavior, &kind) || kind != wanted) {
+    if (node_kind(state, behavior) != wanted) {
       raise_at(state, place, name, "k.call: '%s' does not return a %s%s", name, node_word(wanted),
                chart.decides ? ": decisions m:play() behaviors" : "");
     }
@@ -638,8 +629,7 @@ void charge_resolving(lua_State* state, const Chart& chart) {
 
 void read_chart(lua_State* state, int index, Chart& chart) {
   Reader reader{state, chart};
-  NodeKind kind{};
-  chart.decides = is_node(state, index, &kind) && kind == NodeKind::decisions;
+  chart.decides = node_kind(state, index) == NodeKind::decisions;
   chart.name = node_name(state, index);
   reader.read_machine(index, no_state, 0);
   charge_resolving(state, chart);

@@ -43,11 +43,10 @@ void look_at_file(lua_State* state, Looked& looked) {
   }
   if (!looked.parts.lua->load_file(state, looked.parts.settings.file)) lua_error(state);
   lua_call(state, 0, 1);
-  NodeKind kind{};
+  const std::optional<NodeKind> kind = node_kind(state, -1);
   looked.returned = !lua_isnil(state, -1);
   looked.unfinished = lua_iscfunction(state, -1) != 0;
-  if (is_node(state, lua_gettop(state), &kind) && (kind == NodeKind::behavior || kind == NodeKind::decisions))
-    looked.found.kind = ScriptKind::behavior;
+  if (kind == NodeKind::behavior || kind == NodeKind::decisions) looked.found.kind = ScriptKind::behavior;
 }
 
 // expect(x).to_equal, k.play "file" { options }: what is written out.

@@ -285,8 +285,7 @@ void tell(Looking& looking, const std::string& path, const std::string& key, con
 // [-0 +0] The value at the top. Nothing here raises but for want of memory.
 void look_into(lua_State* state, Looking& looking, const std::string& path, const std::string& key, int depth) {
   const int type = lua_type(state, -1);
-  std::size_t number = 0;
-  if (is_parameter(state, lua_gettop(state), &number))
+  if (to_parameter(state, -1) != nullptr)
     return tell(looking, path, key, " is a parameter, which is read where it is needed");
   if (type == LUA_TFUNCTION || type == LUA_TUSERDATA || type == LUA_TTHREAD)
     return tell(looking, path, key, std::string(" is a ") + lua_typename(state, type));
