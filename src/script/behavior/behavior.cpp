@@ -112,12 +112,8 @@ std::string give_parameter(Giving& giving) {
          hint_text(argument.name, giving.names);
 }
 
-}  // namespace
-
-const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk) {
-  return chunk == parts.lua->sources().front().chunk ? parts.settings.chunk : chunk;
-}
-
+// Sets the parameters of the behavior and of those that it calls to the values in the robot's configuration. Throws
+// InputError.
 void give_robot_values(Behavior::Parts& parts) {
   if (parts.settings.chunk.empty()) parts.settings.chunk = parts.lua->sources().front().chunk;
   std::vector<InputProblem> problems;
@@ -130,6 +126,7 @@ void give_robot_values(Behavior::Parts& parts) {
   if (!problems.empty()) throw InputError(problems);
 }
 
+// Gives the behavior the values of Settings::arguments. Throws InputError.
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions) {
   const Behavior::Settings& settings = parts.settings;
   std::vector<InputProblem> problems;
@@ -144,8 +141,6 @@ void give_arguments(Behavior::Parts& parts, std::uint64_t instructions) {
   }
   if (!problems.empty()) throw InputError(problems);
 }
-
-namespace {
 
 constexpr const char* rehearsal_text =
     "local seen = { inner = { value = 1 } } "
@@ -188,6 +183,10 @@ void read_file(lua_State* state, Behavior::Parts& parts) {
 }
 
 }  // namespace
+
+const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk) {
+  return chunk == parts.lua->sources().front().chunk ? parts.settings.chunk : chunk;
+}
 
 Behavior::Parts::Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to)
     : settings(wanted), catalog(offered), log(to) {}

@@ -92,13 +92,6 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
 // What a robot's file calls it: the chunk, or, when the behavior was reloaded from another file, that of its first one.
 const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk);
 
-// Sets the parameters of the behavior and of those that it calls to the values in the robot's
-// configuration. Throws InputError.
-void give_robot_values(Behavior::Parts& parts);
-
-// Gives the behavior the values of Settings::arguments. Throws InputError.
-void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
-
 // Of a finished behavior: the result of its final state, as text that Lua can read; "" when it has none.
 std::string result_text(const Behavior::Parts& parts);
 

@@ -26,6 +26,14 @@ struct ArmedHandle {
   std::uint16_t which = 0;
 };
 
+// nullptr: its place was taken by another one, or it has not arrived.
+const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, std::uint32_t which) noexcept {
+  for (const ArmedStatus& status : snapshot.armed) {
+    if (status.state != ArmedState::none && status.sequence == sequence && status.which == which) return &status;
+  }
+  return nullptr;
+}
+
 [[noreturn]] void refuse_condition(lua_State* state, const char* why) {
   luaL_error(state,
              "m:on: %s; a condition is \"foot.right.contact\", \"not foot.right.contact\", \"joint.l_knee.position_rad "
@@ -314,13 +322,6 @@ ConditionText read_condition_text(std::string_view text) noexcept {
     read.signal = trimmed(text.substr(4));
   }
   return read;
-}
-
-const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, std::uint32_t which) noexcept {
-  for (const ArmedStatus& status : snapshot.armed) {
-    if (status.state != ArmedState::none && status.sequence == sequence && status.which == which) return &status;
-  }
-  return nullptr;
 }
 
 const ArmedHere& Bindings::note_armed(EventId event) noexcept {

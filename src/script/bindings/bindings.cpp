@@ -161,26 +161,7 @@ int pose(lua_State* state) {
   return luaL_error(state, "unknown pose '%s'%s", name, hint.data());
 }
 
-}  // namespace
-
-void open_kadans_module(lua_State* state) {
-  lua_newtable(state);
-  open_parameters(state);
-  open_events(state);
-  open_arguments(state);
-  open_skills(state);
-  open_nodes(state);
-  lua_pushcfunction(state, budget);
-  lua_setfield(state, -2, "budget");
-  lua_pushcfunction(state, pose);
-  lua_setfield(state, -2, "pose");
-  open_log(state);
-  make_read_only(state, "kadans");
-}
-
 // k.log: lines for people, in the record and on the console, each with its severity.
-
-namespace {
 
 constexpr double charge_instructions = 1000;  // as for print
 
@@ -205,8 +186,7 @@ int log_line(lua_State* state) {
   return 0;
 }
 
-}  // namespace
-
+// [-0 +0] Adds `log` to the module's table at the top of the stack.
 void open_log(lua_State* state) {
   constexpr const char* names[] = {"info", "warning", "error"};  // as BehaviorLog::Severity
   lua_createtable(state, 0, 3);
@@ -217,6 +197,23 @@ void open_log(lua_State* state) {
   }
   make_read_only(state, "kadans.log");
   lua_setfield(state, -2, "log");
+}
+
+}  // namespace
+
+void open_kadans_module(lua_State* state) {
+  lua_newtable(state);
+  open_parameters(state);
+  open_events(state);
+  open_arguments(state);
+  open_skills(state);
+  open_nodes(state);
+  lua_pushcfunction(state, budget);
+  lua_setfield(state, -2, "budget");
+  lua_pushcfunction(state, pose);
+  lua_setfield(state, -2, "pose");
+  open_log(state);
+  make_read_only(state, "kadans");
 }
 
 }  // namespace kadans

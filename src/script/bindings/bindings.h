@@ -137,17 +137,12 @@ struct Bindings : SentSoFar {
 
 inline Bindings& bindings_of(lua_State* state) noexcept { return *static_cast<Bindings*>(core_of(state).bindings); }
 
-void open_log(lua_State* state);  // [-1 +1] adds `log` to the module's table at the top of the stack
-
 // [-0 +0] Adds play, replace, stop and the other words of a k.decisions to the machine's table at the top of the stack.
 void open_decisions(lua_State* state);
 
 // [-0 +1] Pushes the handle of a control object: m.posture.
 void push_object(lua_State* state, std::uint32_t object);
-void open_objects(lua_State* state);
 
-// nullptr: its place was taken by another one, or it has not arrived.
-const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, std::uint32_t which) noexcept;
 // [-0 +0] Adds m:on and m:use to the machine's table at the top of the stack.
 void open_armed(lua_State* state, const Chart& chart);
 void open_armed_handles(lua_State* state);

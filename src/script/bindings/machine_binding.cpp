@@ -125,6 +125,8 @@ void push_object(lua_State* state, std::uint32_t object) {
   set_kind(state, object_key);
 }
 
+namespace {
+
 void open_objects(lua_State* state) {
   const luaL_Reg methods[] = {{"setpoint", setpoint},
                               {"parameter", parameter},
@@ -141,8 +143,6 @@ void open_objects(lua_State* state) {
 }
 
 // `m`: what the functions of a behavior act through. Each machine has its own; the control objects are the same.
-
-namespace {
 
 constexpr double copied_field_instructions = 20;
 

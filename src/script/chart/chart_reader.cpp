@@ -329,14 +329,6 @@ const char* node_name(lua_State* state, int index) {
   return name;  // anchored by the node
 }
 
-ScriptPlace node_place(lua_State* state, int index) {
-  lua_getfield(state, index, "chunk");
-  lua_getfield(state, index, "line");
-  const ScriptPlace place{lua_tostring(state, -2), static_cast<int>(lua_tointeger(state, -1))};
-  lua_pop(state, 2);
-  return place;
-}
-
 int find_line(lua_State* state, const ScriptPlace& place, const char* text) {
   const LuaState& owner = *core_of(state).owner;
   core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
@@ -357,8 +349,6 @@ void push_node_maker(lua_State* state, NodeKind kind, int name, const ScriptPlac
   lua_pushcclosure(state, finish_node, 4);
 }
 
-void push_node_body(lua_State* state, int index) { lua_getfield(state, index, "body"); }
-
 void open_nodes(lua_State* state) {
   const luaL_Reg functions[] = {{"__call", take_arguments}};
   open_kind(state, node_key, functions);
@@ -377,6 +367,14 @@ namespace {
 
 constexpr std::size_t states_max = 4000, transitions_max = 16000;  // what a chart takes is not the script's memory
 constexpr int call_depth_max = 16;
+
+ScriptPlace node_place(lua_State* state, int index) {
+  lua_getfield(state, index, "chunk");
+  lua_getfield(state, index, "line");
+  const ScriptPlace place{lua_tostring(state, -2), static_cast<int>(lua_tointeger(state, -1))};
+  lua_pop(state, 2);
+  return place;
+}
 
 // Nothing here may hold what needs a destructor while it calls Lua: strings go straight into the chart.
 struct Reader {
@@ -544,7 +542,7 @@ struct Reader {
                                      Chart::Kind::region, Chart::Kind::final_state, Chart::Kind::history};
     const StateIndex index =
         add_state(name, kinds[static_cast<int>(kind)], parent, chart.states[parent].machine, place);
-    push_node_body(state, node);
+    lua_getfield(state, node, "body");
     read_body(lua_gettop(state), index, place, depth);
   }
 
@@ -566,7 +564,7 @@ struct Reader {
       raise_at(state, place, name, "k.call: '%s' does not return a %s%s", name, node_word(wanted),
                chart.decides ? ": decisions m:play() behaviors" : "");
     }
-    push_node_body(state, node);
+    lua_getfield(state, node, "body");
     const int given = lua_gettop(state);
     const std::size_t number = chart.machines.size();
     read_machine(behavior, parent, depth + 1);
@@ -592,7 +590,7 @@ struct Reader {
     chart.machines.emplace_back();
     const StateIndex index = add_state(parent == no_state ? "" : name, Chart::Kind::state, parent, number, place);
     chart.states[index].machine_root = true;
-    push_node_body(state, behavior);
+    lua_getfield(state, behavior, "body");
     const int body = lua_gettop(state);
     Chart::Machine& machine = chart.machines[number];
     machine.name = name;

@@ -21,10 +21,7 @@ const char* node_word(NodeKind kind) noexcept;  // "k.state"
 
 // The kind of the node at `index`; nullopt: it is none.
 std::optional<NodeKind> node_kind(lua_State* state, int index);
-// The name, the place and the body of the node at `index`.
 const char* node_name(lua_State* state, int index);
-ScriptPlace node_place(lua_State* state, int index);
-void push_node_body(lua_State* state, int index);  // [-0 +1]
 // [-0 +1] Pushes what makes a node of a body: the name is at `name`, and mistakes are told at `place`.
 void push_node_maker(lua_State* state, NodeKind kind, int name, const ScriptPlace& place);
 // [-0 +0] Raises unless the value at index 1 is a good name of a node.
