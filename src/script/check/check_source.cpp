@@ -185,7 +185,7 @@ class SourceCheck {
   static int place(const SourceUse& use) { return use.lines.empty() ? use.line : use.lines.back(); }
   void problem(int line, std::string message) { problems_.push_back({source_.chunk, line, 0, std::move(message)}); }
   void tell(const Mistakes& found) {
-    for (const Mistake& wrong : found) problem(wrong.line, wrong.message);
+    for (const SourceMistake& wrong : found) problem(wrong.line, wrong.message);
   }
 
   void unknown(const SourceUse& use) {

@@ -20,11 +20,11 @@ struct ReadSource {
 };
 
 // A mistake in the text of one file.
-struct Mistake {
+struct SourceMistake {
   int line = 0;
   std::string message;
 };
-using Mistakes = std::vector<Mistake>;
+using Mistakes = std::vector<SourceMistake>;
 
 // Checks a literal argument that is the name of a pose, and the literal arguments of an object's method. `at` is the
 // first token of the arguments.
