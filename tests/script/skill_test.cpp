@@ -1,7 +1,7 @@
 // Skills: states with arguments that a library offers, and the reference that lists them.
 #include <doctest/doctest.h>
 
-#include "script/bindings/skill_reference.h"
+#include "script/bindings/api.h"
 #include "script/cast.h"
 
 using namespace kadans;

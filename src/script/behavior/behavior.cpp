@@ -37,23 +37,22 @@ void push(lua_State* state, const PlayValue& value) {
 }
 
 // Gives an argument when it is declared and fits.
-int give_declared(lua_State* state) {
-  Giving& giving = *static_cast<Giving*>(lua_touserdata(state, 1));
+void give_declared(lua_State* state, Giving& giving) {
   Chart::Machine& machine = giving.parts.chart.machines.front();
   const char* name = giving.argument->name.c_str();
-  if (machine.arguments == Chart::no_function) return 0;
+  if (machine.arguments == Chart::no_function) return;
   push(state, giving.argument->value);  // 2
   lua_rawgeti(state, LUA_REGISTRYINDEX, machine.arguments);
   lua_getfield(state, 3, name);
   giving.declared = !lua_isnil(state, 4);
   if (giving.declared && push_refusal(state, 4, 2, name, giving.whom.c_str())) {
     giving.wrong = lua_tostring(state, -1);
-    return 0;
+    return;
   }
   if (!giving.declared) {
     for (lua_pushnil(state); lua_next(state, 3) != 0; lua_pop(state, 1))
       giving.names.emplace_back(lua_tostring(state, -2));
-    return 0;
+    return;
   }
   if (machine.given == Chart::no_function) {
     lua_newtable(state);
@@ -62,7 +61,6 @@ int give_declared(lua_State* state) {
   lua_rawgeti(state, LUA_REGISTRYINDEX, machine.given);
   lua_pushvalue(state, 2);
   lua_setfield(state, -2, name);
-  return 0;
 }
 
 ScriptParameter* find_parameter(Behavior::Parts& parts, const std::string& name) {
@@ -83,14 +81,6 @@ std::string set(ScriptParameter& parameter, double value, const std::string& beh
   return outside_range("parameter '" + parameter.name + "' " + who(behavior), value, parameter.min, parameter.max,
                        parameter.unit);
 }
-
-}  // namespace
-
-const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk) {
-  return chunk == parts.lua->sources().front().chunk ? parts.settings.chunk : chunk;
-}
-
-namespace {
 
 // What is wrong with it, or "".
 std::string give(Behavior::Parts& parts, const BehaviorValue& given) {
@@ -122,8 +112,8 @@ std::string give_parameter(Giving& giving) {
          hint_text(argument.name, giving.names);
 }
 
-}  // namespace
-
+// Sets the parameters of the behavior and of those that it calls to the values in the robot's configuration. Throws
+// InputError.
 void give_robot_values(Behavior::Parts& parts) {
   if (parts.settings.chunk.empty()) parts.settings.chunk = parts.lua->sources().front().chunk;
   std::vector<InputProblem> problems;
@@ -136,12 +126,14 @@ void give_robot_values(Behavior::Parts& parts) {
   if (!problems.empty()) throw InputError(problems);
 }
 
+// Gives the behavior the values of Settings::arguments. Throws InputError.
 void give_arguments(Behavior::Parts& parts, std::uint64_t instructions) {
   const Behavior::Settings& settings = parts.settings;
   std::vector<InputProblem> problems;
   for (const PlayArgument& argument : settings.arguments) {
     Giving giving{.parts = parts, .argument = &argument, .whom = "behavior '" + parts.chart.name + "'"};
-    if (!parts.lua->call(give_declared, &giving, instructions, settings.limits.load_wall_ns))
+    const auto give = [&](lua_State* state) { give_declared(state, giving); };
+    if (!parts.lua->call(give, instructions, settings.limits.load_wall_ns))
       throw InputError({.file = settings.source, .message = parts.lua->error().text()});
     if (!giving.declared) giving.wrong = give_parameter(giving);
     if (!giving.wrong.empty())
@@ -150,106 +142,86 @@ void give_arguments(Behavior::Parts& parts, std::uint64_t instructions) {
   if (!problems.empty()) throw InputError(problems);
 }
 
-namespace {
-
 constexpr const char* rehearsal_text =
     "local seen = { inner = { value = 1 } } "
     "local function look(from) return from.inner.value end "
     "return function(on) local sum = 0 for i = 1, 3 do sum = sum + look(seen) * i end "
     "if on and sum > 100 then seen.sum = sum end return sum ~= nil and sum < 0 end";
 
-int tick_chart(lua_State* state) {
-  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+void tick_chart(lua_State* state, Behavior::Parts& parts) {
   parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
   if (parts.chart.waits_for_reports) post_reports(state, parts);
   parts.runner->tick(state, parts.bindings.now_ns);
-  return 0;
 }
 
 // The work of a tick but for the chart: tables filled with what they are going to hold anyway, and a function that uses
 // the interpreter as functions of charts do.
-int rehearse_tick(lua_State* state) {
-  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
+void rehearse_tick(lua_State* state, Behavior::Parts& parts) {
   Behavior::Parts::Rehearsal& rehearsal = parts.rehearsal;
   parts.snapshot_tables.refill(*rehearsal.snapshot, rehearsal.now_ns);
   if (rehearsal.function == LUA_NOREF) {
-    if (luaL_loadstring(state, rehearsal_text) != 0) return lua_error(state);
+    if (luaL_loadstring(state, rehearsal_text) != 0) lua_error(state);
     lua_call(state, 0, 1);
     rehearsal.function = luaL_ref(state, LUA_REGISTRYINDEX);
   }
   lua_rawgeti(state, LUA_REGISTRYINDEX, rehearsal.function);
   lua_pushboolean(state, 1);
   lua_call(state, 1, 1);
-  return 0;
-}
-
-int stop_chart(lua_State* state) {
-  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
-  parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
-  parts.runner->stop(state, parts.bindings.now_ns);
-  return 0;
 }
 
 // Runs the file and reads the chart from what it returns.
-int read_file(lua_State* state) {
-  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
-  if (!parts.lua->load_file(state, parts.settings.file)) return lua_error(state);
+void read_file(lua_State* state, Behavior::Parts& parts) {
+  if (!parts.lua->load_file(state, parts.settings.file)) lua_error(state);
   lua_call(state, 0, 1);
   const int result = lua_gettop(state);
-  NodeKind kind{};
-  if (!is_node(state, result, &kind) || (kind != NodeKind::behavior && kind != NodeKind::decisions)) {
-    return luaL_error(state, "%s:1: the file must return k.behavior \"name\" { ... }",
-                      parts.lua->sources().front().chunk.c_str());
+  const std::optional<NodeKind> kind = node_kind(state, result);
+  if (kind != NodeKind::behavior && kind != NodeKind::decisions) {
+    luaL_error(state, "%s:1: the file must return k.behavior \"name\" { ... }",
+               parts.lua->sources().front().chunk.c_str());
   }
   read_chart(state, result, parts.chart);
-  return 0;
 }
-
-int open_bindings(lua_State* state) {
-  auto& parts = *static_cast<Behavior::Parts*>(lua_touserdata(state, 1));
-  open_machines(state, parts.chart, parts.bindings, parts.tables);
-  parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, true);
-  parts.tables.event = parts.snapshot_tables.event();
-  return 0;
-}
-
-InputProblem problem_of(const ScriptError& error) { return {error.file.data(), error.line, 0, error.message.data()}; }
 
 }  // namespace
+
+const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk) {
+  return chunk == parts.lua->sources().front().chunk ? parts.settings.chunk : chunk;
+}
 
 Behavior::Parts::Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to)
     : settings(wanted), catalog(offered), log(to) {}
 
+void Behavior::Parts::note(BehaviorLog::Severity severity, std::string_view text) noexcept {
+  log.message(bindings.engine_ns(), severity, chart.name, text);
+}
+
 void Behavior::Parts::say_with(BehaviorLog::Severity severity, const char* text) noexcept {
-  const std::int64_t now_ns = bindings.engine_ns();
   tell_dropped(false);
-  const LogBound::Answer answer = bound.admit(now_ns);
-  if (answer == LogBound::Answer::say) return log.message(now_ns, severity, chart.name, text);
+  const LogBound::Answer answer = bound.admit(bindings.engine_ns());
+  if (answer == LogBound::Answer::say) return note(severity, text);
   if (answer == LogBound::Answer::drop) return;
-  log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
-              "says more than " + std::to_string(LogBound::lines_max) + " lines in a second; the rest is dropped");
+  note(BehaviorLog::Severity::warning,
+       "says more than " + std::to_string(LogBound::lines_max) + " lines in a second; the rest is dropped");
 }
 
 void Behavior::Parts::tell_dropped(bool at_once) noexcept {
-  const std::int64_t now_ns = bindings.engine_ns();
-  const std::uint64_t dropped = bound.take_dropped(now_ns, at_once);
+  const std::uint64_t dropped = bound.take_dropped(bindings.engine_ns(), at_once);
   if (dropped == 0) return;
-  log.message(now_ns, BehaviorLog::Severity::warning, chart.name,
-              std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
+  note(BehaviorLog::Severity::warning,
+       std::to_string(dropped) + (dropped == 1 ? " line was dropped" : " lines were dropped"));
 }
 
 void Behavior::Parts::tell_refused() noexcept {
   while (const Refusal* refusal = bindings.next_refusal()) {
     const std::string why = refusal_text(*refusal, catalog);
     if (bindings.was_armed(refusal->sequence)) {  // tell_armed() counted it; the states' sets are as they were
-      log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name, "all its commands: " + why);
+      note(BehaviorLog::Severity::warning, "all its commands: " + why);
       continue;
     }
     ++transactions_refused;
     bindings.sets_lost = true;
     reports.note(*refusal);
-    log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
-                "refused by the control engine, all commands of that tick: " + why);
+    note(BehaviorLog::Severity::warning, "refused by the control engine, all commands of that tick: " + why);
     bindings.forget_armed(refusal->sequence);
   }
 }
@@ -260,15 +232,13 @@ void Behavior::Parts::tell_armed() noexcept {
   while (bindings.look_at_armed(armed, status)) {
     const std::string of = "what " + (armed.owner == 0 ? chart.name : chart.states[armed.owner].path) + " armed ";
     if (status.fired != armed.fired) {
-      log.message(bindings.engine_ns(), BehaviorLog::Severity::info, chart.name,
-                  of + "acted in tick " + std::to_string(status.fired_tick));
+      note(BehaviorLog::Severity::info, of + "acted in tick " + std::to_string(status.fired_tick));
       if (armed.event != no_event) (void)runner->post(armed.event);
     }
     if (status.state == ArmedState::refused) {
       ++transactions_refused;
       reports.note({.reason = status.reason});
-      log.message(bindings.engine_ns(), BehaviorLog::Severity::warning, chart.name,
-                  of + "was refused when its condition was true");
+      note(BehaviorLog::Severity::warning, of + "was refused when its condition was true");
     }
   }
 }
@@ -314,11 +284,6 @@ void Behavior::Parts::recovered(const ScriptError& taken) noexcept {
   say_with(BehaviorLog::Severity::warning, ("error taken as an event: " + taken.text()).c_str());
 }
 
-bool Behavior::Parts::run(int (*function)(lua_State*), void* argument) noexcept {
-  return lua->call(function, argument != nullptr ? argument : this, settings.limits.tick_instructions,
-                   settings.limits.tick_wall_ns);
-}
-
 Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
     : parts_(std::make_unique<Parts>(settings, catalog, log)), past_(std::make_unique<Past>()) {
   load_behavior(*parts_);
@@ -338,7 +303,7 @@ void Behavior::prepare(const Snapshot& newest) noexcept {
   if (failed() || finished()) return;
   parts_->rehearsal.snapshot = &newest;
   parts_->rehearsal.now_ns = clock_ns(newest);
-  (void)parts_->run(rehearse_tick);
+  (void)parts_->run([this](lua_State* state) { rehearse_tick(state, *parts_); });
 }
 
 bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -359,7 +324,7 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
     parts.want_sets();
   }
   if (bindings.wanted != 0) bindings.bring_in_again();
-  if (!parts.run(tick_chart)) {
+  if (!parts.run([&](lua_State* state) { tick_chart(state, parts); })) {
     commands.discard();
     bindings.sent_events.clear();
     bindings.decided.clear();
@@ -374,20 +339,14 @@ bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept 
   if (!bindings.commit()) {
     ++parts.transactions_refused;
     parts.reports.queue_full = true;
-    parts.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
-                      "queue_full: the commands of this tick were refused, all of them");
+    parts.note(BehaviorLog::Severity::warning, "queue_full: the commands of this tick were refused, all of them");
   }
   const bool over = finished();
   parts.tell_dropped(over);
-  if (over) tell_result(snapshot.time_ns);
+  if (const std::string text = result(); !text.empty()) parts.note(BehaviorLog::Severity::info, "result " + text);
   publish_status();
   tell_active(snapshot.time_ns);
   return !over;
-}
-
-void Behavior::tell_result(std::int64_t time_ns) noexcept {
-  const std::string text = result();
-  if (!text.empty()) parts_->log.message(time_ns, BehaviorLog::Severity::info, name(), "result " + text);
 }
 
 void Behavior::publish_status() noexcept {
@@ -403,11 +362,11 @@ void Behavior::publish_status() noexcept {
   store(status_->heap_bytes, parts.lua->used_bytes());
   // Decisions stay where they ended; a behavior that is over is in no state any more.
   const StateIndex ended = parts.chart.decides ? parts.runner->finished_by() : no_state;
-  store(status_->state, number_of(ended == no_state ? parts.runner->innermost() : ended));
+  store(status_->state, numbers_[ended == no_state ? parts.runner->innermost() : ended]);
   for (std::size_t i = 0; i < region_states_.size(); ++i) {
     const StateIndex region = region_states_[i];
     const bool active = region != no_state && parts.runner->active(region);
-    store(status_->regions[i], active ? number_of(parts.runner->innermost(region)) : 0);
+    store(status_->regions[i], active ? numbers_[parts.runner->innermost(region)] : 0);
   }
 }
 
@@ -418,10 +377,14 @@ void Behavior::stop(const Snapshot& snapshot, CommandSender& commands) noexcept 
   // tick.
   const bool wall = parts.settings.limits.tick_wall_ns > 0;
   const std::int64_t end_ns = wall ? WallClock{}.now_ns() + parts.settings.limits.tick_wall_ns : 0;
+  const auto leave_all = [&](lua_State* state) {
+    parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
+    parts.runner->stop(state, parts.bindings.now_ns);
+  };
   for (std::uint64_t left = parts.settings.limits.tick_instructions; left > 0;) {
     const std::int64_t left_ns = wall ? std::max<std::int64_t>(end_ns - WallClock{}.now_ns(), 1) : 0;
     parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-    if (parts.lua->call(stop_chart, &parts, left, left_ns)) {
+    if (parts.lua->call(leave_all, left, left_ns)) {
       (void)parts.bindings.commit();
       publish_status();
       tell_active(snapshot.time_ns);
@@ -466,26 +429,6 @@ std::vector<SentEvent>& Behavior::sent_events() noexcept { return parts_->bindin
 std::vector<PlayOrder>& Behavior::decided() noexcept { return parts_->bindings.decided; }
 void Behavior::show_plays(const PlayReport* report) noexcept { parts_->bindings.plays = report; }
 
-namespace {
-
-struct Posting {
-  Behavior::Parts& parts;
-  const PlayedEvent& event;
-  EventId id;
-  bool with_data = false;  // the event declares fields: its data is a table, also when none of them is given
-  bool taken = false;
-};
-
-int post_event(lua_State* state) {
-  Posting& posting = *static_cast<Posting*>(lua_touserdata(state, 1));
-  ChartRunner& runner = *posting.parts.runner;
-  if (posting.with_data) push_event_data(state, posting.event);
-  posting.taken = posting.with_data ? runner.post_with_data(state, posting.id) : runner.post(posting.id);
-  return 0;
-}
-
-}  // namespace
-
 std::string Behavior::post(const PlayedEvent& event) {
   Parts& parts = *parts_;
   const ScriptEvent* declared = find_event(events(), event.name);
@@ -493,9 +436,14 @@ std::string Behavior::post(const PlayedEvent& event) {
   if (failed() || finished() || declared == nullptr) return "'" + name() + "' does not declare it";
   if (id == no_event) return "nothing in '" + name() + "' waits for it";
   if (WrongData wrong = wrong_data(*declared, event); !wrong.why.empty()) return wrong.why;
-  Posting posting{parts, event, id, !declared->fields.empty()};
-  if (!parts.run(post_event, &posting)) return "'" + name() + "' has no memory for it";
-  return posting.taken ? "" : "'" + name() + "' has as many events waiting as a tick may have";
+  bool taken = false;
+  const auto post_it = [&](lua_State* state) {  // where fields are declared its data is a table, also without them
+    const bool with_data = !declared->fields.empty();
+    if (with_data) push_event_data(state, event);
+    taken = with_data ? parts.runner->post_with_data(state, id) : parts.runner->post(id);
+  };
+  if (!parts.run(post_it)) return "'" + name() + "' has no memory for it";
+  return taken ? "" : "'" + name() + "' has as many events waiting as a tick may have";
 }
 
 const std::string& Behavior::name() const noexcept { return parts_->chart.name; }
@@ -567,8 +515,6 @@ void Behavior::number_states() {
   told_paths_.reserve(ActiveStates::told_max);
 }
 
-std::uint32_t Behavior::number_of(StateIndex state) const noexcept { return numbers_[state]; }
-
 SetMask Behavior::control_sets() const noexcept { return parts_->bindings.all_sets; }
 
 ObjectMask Behavior::objects() const noexcept {
@@ -583,21 +529,17 @@ std::vector<ScriptParameter> Behavior::parameters() const {
 }
 
 std::vector<ScriptArgument> Behavior::arguments() const {
-  struct Asked {
-    int declared;
-    std::vector<ScriptArgument> arguments{};
-  } asked{parts_->chart.machines.front().arguments};
-  if (asked.declared == Chart::no_function) return {};
-  const auto read = [](lua_State* state) {
-    Asked& to = *static_cast<Asked*>(lua_touserdata(state, 1));
-    lua_rawgeti(state, LUA_REGISTRYINDEX, to.declared);
-    to.arguments = read_declarations(state, 2);
-    return 0;
+  const int declared = parts_->chart.machines.front().arguments;
+  if (declared == Chart::no_function) return {};
+  std::vector<ScriptArgument> all;
+  const auto read = [&](lua_State* state) {
+    lua_rawgeti(state, LUA_REGISTRYINDEX, declared);
+    all = read_declarations(state, 2);
   };
   const ScriptLimits& limits = parts_->settings.limits;
-  if (!parts_->lua->call(read, &asked, limits.load_instructions, limits.load_wall_ns))
+  if (!parts_->lua->call(read, limits.load_instructions, limits.load_wall_ns))
     throw InputError({.message = parts_->lua->error().text()});
-  return asked.arguments;
+  return all;
 }
 
 bool Behavior::set_parameter(const std::string& name, double value) noexcept {
@@ -609,9 +551,8 @@ bool Behavior::set_parameter(const std::string& name, double value) noexcept {
   return false;
 }
 
-void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
+void open_lua(Behavior::Parts& parts) {
   const Behavior::Settings& settings = parts.settings;
-  if (instructions == 0) instructions = settings.limits.load_instructions;
   parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = settings.root,
                                                             .folder = settings.file.parent_path(),
                                                             .name = settings.file.stem().string(),
@@ -619,12 +560,17 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
                                                             .limits = settings.limits,
                                                             .voice = &parts});
   parts.bindings.catalog = &parts.catalog;
+}
+
+void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
+  const Behavior::Settings& settings = parts.settings;
+  if (instructions == 0) instructions = settings.limits.load_instructions;
+  open_lua(parts);
   parts.bindings.inputs = settings.limits.inputs;
   parts.bindings.folders = settings.folders.project_file.empty() ? nullptr : &settings.folders;
   parts.lua->core().bindings = &parts.bindings;
-  if (!parts.lua->call(read_file, &parts, instructions, settings.limits.load_wall_ns)) {
-    throw InputError(problem_of(parts.lua->error()));
-  }
+  parts.lua->call_or_throw([&](lua_State* state) { read_file(state, parts); }, instructions,
+                           settings.limits.load_wall_ns);
   find_transition_lines(parts.lua->sources(), parts.chart);
   for (const ScriptEvent& event : parts.lua->core().events) parts.chart.intern(event.name);
   parts.chart.resolve(parts.problems);
@@ -638,9 +584,12 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   give_robot_values(parts);
   give_arguments(parts, instructions);
   for (ScriptParameter& parameter : parts.lua->core().parameters) parameter.loaded = parameter.value;
-  if (!parts.lua->call(open_bindings, &parts, instructions, settings.limits.load_wall_ns)) {
-    throw InputError(problem_of(parts.lua->error()));
-  }
+  const auto open_bindings = [&](lua_State* state) {
+    open_machines(state, parts.chart, parts.bindings, parts.tables);
+    parts.tables.snapshot = parts.snapshot_tables.open(state, parts.catalog, true);
+    parts.tables.event = parts.snapshot_tables.event();
+  };
+  parts.lua->call_or_throw(open_bindings, instructions, settings.limits.load_wall_ns);
   make_room_for_calls(parts.lua->core(), parts.chart, parts.bindings);
   parts.runner = std::make_unique<ChartRunner>(parts.chart, parts.tables, parts);
   parts.bindings.runner = parts.runner.get();

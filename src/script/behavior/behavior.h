@@ -144,8 +144,6 @@ class Behavior {
   void publish_status() noexcept;
   void tell_active(std::int64_t time_ns) noexcept;
   void number_states();
-  std::uint32_t number_of(StateIndex state) const noexcept;
-  void tell_result(std::int64_t time_ns) noexcept;
 
   std::unique_ptr<Parts> parts_;
   std::unique_ptr<Past> past_;

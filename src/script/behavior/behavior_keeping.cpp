@@ -40,7 +40,7 @@ void take_parameters(Behavior::Parts& parts, ByteReader& bytes) {
   }
 }
 
-void put_bindings(const Bindings& bindings, ByteWriter& bytes) {
+void put_sent(const SentSoFar& bindings, ByteWriter& bytes) {
   bytes.put(bindings.sets_sent);
   bytes.put<std::uint8_t>(bindings.sets_lost);
   for (const std::uint32_t sequence : bindings.sent) bytes.put(sequence);
@@ -79,7 +79,7 @@ void take_armed(Behavior::Parts& parts, ByteReader& bytes) {
   }
 }
 
-void take_bindings(Bindings& bindings, ByteReader& bytes) {
+void take_sent(SentSoFar& bindings, ByteReader& bytes) {
   bindings.sets_sent = bytes.take<SetMask>();
   bindings.sets_lost = bytes.take<std::uint8_t>() != 0;
   for (std::uint32_t& sequence : bindings.sent) sequence = bytes.take<std::uint32_t>();
@@ -285,10 +285,9 @@ void put_event_data(Behavior::Parts& parts, ByteWriter& bytes) {
     if (events[i].place < 0) continue;
     bytes.put<std::uint8_t>(1);
     bytes.put(events[i].place);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.event_data);
-    lua_rawgeti(state, -1, events[i].place + 1);
+    push_entry(state, parts.tables.event_data, events[i].place + 1);
     ByteWriter value;
-    if (put_value(state, top + 2, value, why))
+    if (put_value(state, top + 1, value, why))
       bytes.put(value.bytes());
     else
       bytes.put<std::uint8_t>(tag_nil);  // m:emit checked it; a script that got hold of it has changed it
@@ -301,11 +300,9 @@ void take_event_data(lua_State* state, const Behavior::Parts& parts, ByteReader&
   luaL_checkstack(state, 8, "events");
   while (bytes.take<std::uint8_t>() != 0) {
     const auto place = bytes.take<std::int8_t>();
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.event_data);
     push_value(state, bytes, parts.catalog);
     if (place < 0 || place >= EventQueue::places) luaL_error(state, "an event's data has no place");
-    lua_rawseti(state, -2, place + 1);
-    lua_pop(state, 1);
+    set_entry(state, parts.tables.event_data, place + 1);
   }
 }
 
@@ -316,10 +313,9 @@ void put_results(Behavior::Parts& parts, ByteWriter& bytes) {
   std::string why;
   for (StateIndex i = 0; i < parts.chart.size() && lua_checkstack(state, 8) != 0; ++i) {
     if (!parts.runner->active(i) || parts.chart.states[i].result == Chart::no_function) continue;
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
-    lua_rawgeti(state, -1, i + 1);
+    push_entry(state, parts.tables.results, i + 1);
     ByteWriter value;
-    if (put_value(state, top + 2, value, why)) {  // a script that got hold of it may have changed it
+    if (put_value(state, top + 1, value, why)) {  // a script that got hold of it may have changed it
       bytes.put<std::uint8_t>(1);
       bytes.put_string(parts.chart.states[i].path);
       bytes.put(value.bytes());
@@ -333,10 +329,9 @@ void take_results(lua_State* state, const Behavior::Parts& parts, ByteReader& by
   luaL_checkstack(state, 8, "results");
   while (bytes.take<std::uint8_t>() != 0) {
     const auto found = std::ranges::find(parts.chart.states, bytes.take_text(), &Chart::State::path);
-    lua_rawgeti(state, LUA_REGISTRYINDEX, parts.tables.results);
     push_value(state, bytes, parts.catalog);
     const auto index = static_cast<int>(found - parts.chart.states.begin());
-    if (found != parts.chart.states.end() && lua_istable(state, -1)) lua_rawseti(state, -2, index + 1);
+    if (found != parts.chart.states.end() && lua_istable(state, -1)) set_entry(state, parts.tables.results, index + 1);
     lua_settop(state, 1);
   }
 }
@@ -443,8 +438,7 @@ struct GoingOn {
 };
 
 // With guards that are tried it takes the machines twice: guards may write vars, which they should not.
-int take_machines(lua_State* state) {
-  const GoingOn& going_on = *static_cast<const GoingOn*>(lua_touserdata(state, 1));
+void take_machines(lua_State* state, const GoingOn& going_on) {
   Behavior::Parts& parts = going_on.parts;
   take_event_data(state, parts, going_on.bytes);
   take_results(state, parts, going_on.bytes);
@@ -453,11 +447,10 @@ int take_machines(lua_State* state) {
   renew_machines(state, parts, going_on.bytes);
   parts.runner->be_at(parts.bindings.now_ns);
   parts.runner->start_runs(state);
-  if (!going_on.guards_tried) return 0;
+  if (!going_on.guards_tried) return;
   parts.lua->core().random = going_on.random;
   parts.runner->try_guards(state);
   renew_machines(state, parts, again);
-  return 0;
 }
 
 }  // namespace
@@ -469,7 +462,7 @@ std::string keep_behavior(Behavior::Parts& parts, ByteWriter& bytes) {
   bytes.put<std::uint8_t>(parts.reports.queue_full);
   bytes.put(parts.reports.faults_seen);
   bytes.put(std::as_bytes(std::span(&parts.lua->core().random, 1)));
-  put_bindings(parts.bindings, bytes);
+  put_sent(parts.bindings, bytes);
   put_armed(parts, bytes);
   parts.runner->keep(bytes);
   put_event_data(parts, bytes);
@@ -489,14 +482,15 @@ bool go_on_with(Behavior::Parts& parts, ByteReader& bytes, const Snapshot& snaps
   GoingOn going_on{parts, bytes, core.random, guards_tried};
   const auto kept = bytes.take_bytes(sizeof going_on.random);
   if (!kept.empty()) std::memcpy(static_cast<void*>(&going_on.random), kept.data(), sizeof going_on.random);
-  take_bindings(parts.bindings, bytes);
+  take_sent(parts.bindings, bytes);
   take_armed(parts, bytes);
   if (!parts.runner->restore(bytes)) {
     parts.error.set_message("what was kept does not fit the chart");
     return false;
   }
   parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const bool taken = parts.lua->call(take_machines, &going_on, instructions, parts.settings.limits.load_wall_ns);
+  const bool taken = parts.lua->call([&](lua_State* state) { take_machines(state, going_on); }, instructions,
+                                     parts.settings.limits.load_wall_ns);
   commands.discard();  // a guard that commands
   core.random = going_on.random;
   if (taken && parts.runner->started()) parts.want_sets();
@@ -520,26 +514,15 @@ bool holds(const std::filesystem::path& first, const std::vector<LuaState::Sourc
   return !sources.empty() && first.parent_path() == sources.front().path.parent_path();
 }
 
-struct Leaving {
-  Behavior::Parts& parts;
-  const std::vector<bool>& marks;
-};
-
-int leave(lua_State* state) {
-  const Leaving& leaving = *static_cast<const Leaving*>(lua_touserdata(state, 1));
-  Behavior::Parts& parts = leaving.parts;
-  parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
-  parts.runner->leave_marked(state, leaving.marks, parts.bindings.now_ns);
-  return 0;
-}
-
 // Leaves the marked states in a transaction of its own. False: an `exit` raised.
 bool leave_states(Behavior::Parts& parts, const std::vector<bool>& marks, const Snapshot& snapshot,
                   CommandSender& commands) noexcept {
-  Leaving leaving{parts, marks};
+  const auto leave = [&](lua_State* state) {
+    parts.snapshot_tables.refill(*parts.bindings.snapshot, parts.bindings.now_ns);
+    parts.runner->leave_marked(state, marks, parts.bindings.now_ns);
+  };
   parts.bindings.begin(commands, snapshot, snapshot.time_ns);
-  const Behavior::Settings& settings = parts.settings;
-  if (parts.lua->call(leave, &leaving, settings.limits.tick_instructions, settings.limits.tick_wall_ns)) {
+  if (parts.run(leave)) {
     (void)parts.bindings.commit();
     return true;
   }
@@ -601,8 +584,7 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
     past_->left = old.runner->gone_from(*fresh->runner);
     fresh->runner->report_gone(*old.runner, past_->left);
     if (!leave_states(old, past_->left, snapshot, commands)) {
-      old.log.message(snapshot.time_ns, BehaviorLog::Severity::warning, name(),
-                      "a state that is gone could not be left: " + old.lua->error().text());
+      old.note(BehaviorLog::Severity::warning, "a state that is gone could not be left: " + old.lua->error().text());
     }
     past_->swapped_ns = clock_ns(snapshot);
     past_->parts = std::move(parts_);
@@ -610,8 +592,7 @@ void Behavior::swap(std::unique_ptr<Parts> fresh, const Snapshot& snapshot, Comm
   parts_ = std::move(fresh);
   number_states();
   status_->reloads.fetch_add(1, std::memory_order_relaxed);
-  parts_->log.message(snapshot.time_ns, BehaviorLog::Severity::info, name(),
-                      "reloaded " + parts_->lua->sources().front().chunk);
+  parts_->note(BehaviorLog::Severity::info, "reloaded " + parts_->lua->sources().front().chunk);
 }
 
 bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -624,7 +605,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
     (void)leave_states(failing, failing.runner->gone_from(*old.runner), snapshot, commands);
   }
   old.runner->enter_again(past_->left);
-  old.bindings.go_on_after(failing.bindings);
+  static_cast<SentSoFar&>(old.bindings) = failing.bindings;
   old.want_sets();
   parts_ = std::move(past_->parts);
   number_states();

@@ -26,6 +26,7 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
+  void note(BehaviorLog::Severity severity, std::string_view text) noexcept;  // logs it as said in the present tick
   void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
   void tell_dropped(bool at_once) noexcept;  // logs how many lines were dropped
   void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;
@@ -37,8 +38,11 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void tell_armed() noexcept;    // logs what became of armed transactions since the last call, and posts their events
   // Asks in the next tick for the control sets of the active states that are not active.
   void want_sets() noexcept;
-  // Runs a function under the tick's budget, with the parts or with another argument.
-  bool run(int (*function)(lua_State*), void* argument = nullptr) noexcept;
+  // Runs work(state) under the tick's budget.
+  template <typename Work>
+  bool run(Work work) noexcept {
+    return lua->call(work, settings.limits.tick_instructions, settings.limits.tick_wall_ns);
+  }
 
   Settings settings;
   const Catalog& catalog;
@@ -56,7 +60,7 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
     std::int64_t now_ns = 0;
     int function = LUA_NOREF;
   } rehearsal;
-  struct Reports {  // what is going to be an event in the next step of the chart (chart_reports.h)
+  struct Reports {  // what is going to be an event in the next step of the chart (chart.h)
     std::array<Refusal, refusals_shown> refused{};
     std::uint32_t refused_count = 0;
     void note(const Refusal& refusal) noexcept {
@@ -79,18 +83,13 @@ struct Behavior::Past {
   std::string complaint;                     // the last logged complaint, so that it is not repeated
 };
 
+// Makes the Lua state in which the file will be read.
+void open_lua(Behavior::Parts& parts);
 // Reads the file, makes the chart and the bindings. `instructions` 0: the limit for loading. Throws InputError.
 void load_behavior(Behavior::Parts& parts, std::uint64_t instructions = 0);
 
 // What a robot's file calls it: the chunk, or, when the behavior was reloaded from another file, that of its first one.
 const std::string& first_name(const Behavior::Parts& parts, const std::string& chunk);
-
-// Sets the parameters of the behavior and of those that it calls to the values in the robot's
-// configuration. Throws InputError.
-void give_robot_values(Behavior::Parts& parts);
-
-// Gives the behavior the values of Settings::arguments. Throws InputError.
-void give_arguments(Behavior::Parts& parts, std::uint64_t instructions);
 
 // Of a finished behavior: the result of its final state, as text that Lua can read; "" when it has none.
 std::string result_text(const Behavior::Parts& parts);

@@ -1,4 +1,4 @@
-// What happened to a behavior becomes events of its chart: refused transactions and faults (chart_reports.h).
+// What happened to a behavior becomes events of its chart: refused transactions and faults (chart.h).
 #include <algorithm>
 
 #include "behavior_parts.h"
@@ -9,10 +9,8 @@ namespace {
 
 void post_refusal(lua_State* state, Behavior::Parts& parts, const char* reason, const char* what) {
   lua_createtable(state, 0, 2);
-  lua_pushstring(state, reason);
-  lua_setfield(state, -2, "reason");
-  lua_pushstring(state, what);
-  lua_setfield(state, -2, "what");
+  set_field(state, "reason", reason);
+  set_field(state, "what", what);
   parts.runner->post_with_data(state, parts.chart.refused_event);
 }
 
@@ -32,14 +30,9 @@ void post_refusals(lua_State* state, Behavior::Parts& parts) {
 void post_fault(lua_State* state, Behavior::Parts& parts, const NewFault& fault, EventId event) {
   const auto& joints = parts.catalog.model->joints;
   lua_createtable(state, 0, 3);
-  if (fault.joint < joints.size()) {
-    lua_pushstring(state, joints[fault.joint].name.c_str());
-    lua_setfield(state, -2, "joint");
-  }
-  lua_pushnumber(state, fault.value);
-  lua_setfield(state, -2, "value");
-  lua_pushnumber(state, fault.limit);
-  lua_setfield(state, -2, "limit");
+  if (fault.joint < joints.size()) set_field(state, "joint", joints[fault.joint].name.c_str());
+  set_field(state, "value", fault.value);
+  set_field(state, "limit", fault.limit);
   parts.runner->post_with_data(state, event);
 }
 

@@ -1,10 +1,11 @@
 // The result of a behavior as text that Lua can read: { place = "left", steps = 3 }.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <tuple>
 
 #include "behavior_parts.h"
+#include "kadans/signal/nearest_name.h"
+#include "script/check/source_lexer.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -33,12 +34,7 @@ std::string text_literal(lua_State* state, int index) {
 }
 
 bool is_name(const std::string& text) {
-  constexpr std::array<std::string_view, 21> keywords{"and", "break",    "do",     "else", "elseif", "end",   "false",
-                                                      "for", "function", "if",     "in",   "local",  "nil",   "not",
-                                                      "or",  "repeat",   "return", "then", "true",   "until", "while"};
-  return !text.empty() && std::ranges::find(keywords, text) == keywords.end() &&
-         std::isdigit(static_cast<unsigned char>(text[0])) == 0 &&
-         std::ranges::all_of(text, [](unsigned char c) { return c == '_' || std::isalnum(c) != 0; });
+  return is_word(text) && starts_name(text[0]) && (!is_keyword(text) || text == "goto");  // which LuaJIT takes for one
 }
 
 struct ResultField {

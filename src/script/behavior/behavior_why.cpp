@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "behavior_parts.h"
-#include "script/chart/chart_calls.h"
 #include "script/chart/chart_graph.h"
+#include "script/check/source_lexer.h"
 #include "script/lua/lua_core.h"
 #include "signal/number_text.h"
 
@@ -83,8 +83,7 @@ int ask_guard(lua_State* state) {
   return 0;
 }
 
-int ask_guards(lua_State* state) {
-  Asking& asking = *static_cast<Asking*>(lua_touserdata(state, 1));
+void ask_guards(lua_State* state, Asking& asking) {
   const auto attempt = [&](lua_CFunction function) {
     lua_pushcfunction(state, function);
     lua_pushlightuserdata(state, &asking);
@@ -106,10 +105,7 @@ int ask_guards(lua_State* state) {
     std::snprintf(question.value.data(), question.value.size(), "raises: %s", raised != nullptr ? raised : "an error");
     lua_settop(state, 1);
   }
-  return 0;
 }
-
-bool in_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
 
 // The names of the function's arguments, s and m as a rule.
 std::array<std::string, 2> argument_names(const std::string& text) {
@@ -119,7 +115,7 @@ std::array<std::string, 2> argument_names(const std::string& text) {
   if (close == std::string::npos) return names;
   std::size_t number = 0;
   for (std::size_t at = open + 1; at < close && number < names.size(); ++at) {
-    if (in_word(text[at])) names[number] += text[at];
+    if (in_name(text[at])) names[number] += text[at];
     if (text[at] == ',') ++number;
   }
   return names;
@@ -130,13 +126,13 @@ std::vector<Seen> fields_read(const std::string& text) {
   const std::array<std::string, 2> names = argument_names(text);
   std::vector<Seen> all;
   for (std::size_t at = 0; at < text.size() && all.size() < paths_max;) {
-    if (!in_word(text[at]) || (at > 0 && (in_word(text[at - 1]) || text[at - 1] == '.'))) {
+    if (!in_name(text[at]) || (at > 0 && (in_name(text[at - 1]) || text[at - 1] == '.'))) {
       ++at;
       continue;
     }
     std::size_t end = at;
     while (end < text.size() &&
-           (in_word(text[end]) || (text[end] == '.' && end + 1 < text.size() && in_word(text[end + 1]))))
+           (in_name(text[end]) || (text[end] == '.' && end + 1 < text.size() && in_name(text[end + 1]))))
       ++end;
     const std::string path = text.substr(at, end - at);
     const std::size_t dot = std::min(path.find('.'), path.size());
@@ -153,15 +149,10 @@ std::vector<Seen> fields_read(const std::string& text) {
 
 std::string shown_lines(const std::string& text, int first, int last) {
   std::vector<std::string> lines;
-  std::size_t at = 0, common = std::string::npos;
-  for (int line = 1; line <= last && at <= text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    if (line >= first && lines.size() < GuardSource::lines_max) {
-      lines.push_back(text.substr(at, end - at));
-      const std::size_t indent = lines.back().find_first_not_of(" \t");
-      if (indent != std::string::npos) common = std::min(common, indent);
-    }
-    at = end + 1;
+  std::size_t common = std::string::npos;
+  for (int line = first; line <= last && lines.size() < GuardSource::lines_max; ++line) {
+    lines.emplace_back(line_of_text(text, line));
+    common = std::min(common, lines.back().find_first_not_of(" \t"));
   }
   std::string all;
   for (std::string& line : lines) {
@@ -196,10 +187,7 @@ std::string why_not(const Behavior::Parts& parts, const Question& question) {
   if (transition.on != no_event && transition.on != run_done_event)
     add(why, "no event '" + parts.chart.events[static_cast<std::size_t>(transition.on)] + "'");
   if (transition.timed) {
-    const double after_s = transition.after_parameter != Chart::no_parameter
-                               ? parameter_value(parts.lua->get(), static_cast<std::size_t>(transition.after_parameter),
-                                                 parts.chart.states[transition.source].machine)
-                               : transition.after_s;
+    const double after_s = parts.runner->after_s(parts.lua->get(), transition);
     const double left_s = after_s - parts.runner->state_time_s(transition.source);
     if (left_s > 0) add(why, printed("%.2f s left of %g s", left_s, after_s));
   }
@@ -254,8 +242,8 @@ std::vector<TransitionReason> Behavior::why(const Snapshot& snapshot) const {
     for (Seen& seen : question.seen) seen.fields = std::string_view(seen.path).substr(seen.path.find('.') + 1);
   }
   const ScriptLimits& limits = copy.settings.limits;
-  const bool asked =
-      copy.lua->call(ask_guards, &asking, limits.tick_instructions, limits.tick_wall_ns > 0 ? asking_wall_ns : 0);
+  const bool asked = copy.lua->call([&](lua_State* state) { ask_guards(state, asking); }, limits.tick_instructions,
+                                    limits.tick_wall_ns > 0 ? asking_wall_ns : 0);
   sender.discard();
 
   std::vector<TransitionReason> reasons;

@@ -1,20 +1,27 @@
 #include "api.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <deque>
 #include <iterator>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include <lua.hpp>
+
 #include "bindings.h"
+#include "script/chart/chart_arguments.h"
 #include "script/chart/chart_reader.h"
+#include "script/chart/chart_skills.h"
 #include "script/check/known_names.h"
+#include "script/lua/lua_core.h"
+#include "script/lua/lua_state.h"
 #include "script/motion/motion_options.h"
+#include "signal/number_text.h"
 #include "signal/status_fields.h"
-#include "skill_reference.h"
 
 namespace kadans {
 namespace {
@@ -53,25 +60,19 @@ constexpr ArgumentType argument_types[] = {{"pose", "kadans.pose|table<string, n
                                            {"table", "table<string, table>"},
                                            {"...", "any"}};
 
-const char* type_name(const MotionOption& option) noexcept {
-  switch (option.type) {
-    case MotionOption::Type::number:
-      return "number";
-    case MotionOption::Type::text:
-      return "'minimum_jerk'|'trapezoid'";
-    case MotionOption::Type::flag:
-      return "boolean";
-    case MotionOption::Type::list:
-      return "string[]";
-  }
-  return "any";
-}
+struct OptionWords {
+  const char* type;   // of the stubs
+  const char* value;  // of the reference, where there is no range
+};
+constexpr OptionWords option_words[] = {  // as MotionOption::Type
+    {"number", ""},
+    {"'minimum_jerk'|'trapezoid'", "text"},
+    {"boolean", "boolean"},
+    {"string[]", "list"}};
+const OptionWords& words_of(const MotionOption& option) { return option_words[static_cast<std::size_t>(option.type)]; }
 
 std::string range(const MotionOption& option) {
-  if (option.type != MotionOption::Type::number) return "";
-  char text[64];
-  std::snprintf(text, sizeof text, "%g..%g %s", option.min, option.max, option.unit);
-  return text;
+  return option.type == MotionOption::Type::number ? printed("%g..%g %s", option.min, option.max, option.unit) : "";
 }
 
 // The type of the argument `name` of a function, as ": kadans.MoveOptions"; "" when any value is allowed.
@@ -100,8 +101,8 @@ std::string motion_option_stubs() {
       if ((option.methods & table.method) == 0) continue;
       const bool needed = table.method == MotionOption::point || table.method == MotionOption::follow;
       const std::string limits = range(option);
-      text += "---@field " + std::string(option.name) + (needed ? " " : "? ") + type_name(option) + " " + option.doc +
-              (limits.empty() ? "" : "; " + limits) + "\n";
+      text += "---@field " + std::string(option.name) + (needed ? " " : "? ") + words_of(option).type + " " +
+              option.doc + (limits.empty() ? "" : "; " + limits) + "\n";
     }
     text += "\n";
   }
@@ -117,13 +118,8 @@ std::string motion_option_reference() {
     for (const OptionTable& table : option_tables) {
       if ((option.methods & table.method) != 0) where += (where.empty() ? "" : ", ") + std::string(table.title);
     }
-    std::string value = range(option);
-    if (value.empty()) {
-      value = option.type == MotionOption::Type::flag   ? "boolean"
-              : option.type == MotionOption::Type::list ? "list"
-                                                        : "text";
-    }
-    text += "| `" + std::string(option.name) + "` | " + where + " | " + value + " | " + option.doc + " |\n";
+    text += "| `" + std::string(option.name) + "` | " + where + " | " + range(option) + words_of(option).value + " | " +
+            option.doc + " |\n";
   }
   return text;
 }
@@ -264,37 +260,9 @@ constexpr ApiEntry written[] = {
      "What the robot's configuration names under `sensors`; NaN before the first reading"},
 };
 
-// Where a part of the snapshot is documented.
-const char* owner_of(StatusField::Part part) {
-  using enum StatusField::Part;
-  switch (part) {
-    case joint:
-      return "joint";
-    case base:
-      return "base";
-    case rate:
-      return "rate";
-    case foot:
-      return "foot";
-    case support:
-      return "support";
-    case odometry:
-      return "odometry";
-    case safety:
-      return "safety";
-    case joystick:
-      return "joystick";
-    case ball:
-      return "ball";
-    case seen:
-      return "entry";
-    case sensors:
-      return "sensors";
-    case root:
-      break;
-  }
-  return "s";
-}
+// Where a part of the snapshot is documented; as StatusField::Part.
+constexpr const char* part_owners[] = {"s",        "joint",  "base",     "rate", "foot",  "support",
+                                       "odometry", "safety", "joystick", "ball", "entry", "sensors"};
 
 std::string type_of(const StatusField& field) {
   if (field.type == StatusField::Type::number) return "number";
@@ -311,7 +279,7 @@ std::vector<ApiEntry> whole_api() {
   std::vector<ApiEntry> all(std::begin(written), std::end(written));
   for (const StatusField& field : status_fields()) {
     const std::string unit = field.unit;
-    all.push_back({owner_of(field.part), field.name, kept(type_of(field)),
+    all.push_back({part_owners[static_cast<std::size_t>(field.part)], field.name, kept(type_of(field)),
                    kept(field.doc + (unit.empty() ? "" : ", in " + unit))});
   }
   return all;
@@ -378,23 +346,14 @@ std::string alternatives(const std::string& alias, const std::vector<std::string
   return text + "\n";
 }
 
-std::string range_note(const std::string& name, const std::string& unit, double min, double max) {
-  char text[160];
-  std::snprintf(text, sizeof text, "'\"%s\"' # %g..%g %s", name.c_str(), min, max, unit.c_str());
-  return text;
-}
-
 void add_object(std::string& text, const Catalog& catalog, const ObjectInfo& object) {
   const std::string type = "kadans." + object.name;
   std::vector<std::string> setpoints, parameters, presets;
-  for (const SetpointId id : object.setpoints) {
-    const Setpoint& setpoint = catalog.setpoints[id];
-    setpoints.push_back(range_note(short_name(object, setpoint.name), setpoint.unit, setpoint.min, setpoint.max));
-  }
-  for (const ParameterId id : object.parameters) {
-    const Parameter& parameter = catalog.parameters.info(id);
-    parameters.push_back(range_note(short_name(object, parameter.name), parameter.unit, parameter.min, parameter.max));
-  }
+  const auto note = [&](const auto& one) {  // a Setpoint or a Parameter
+    return printed("'\"%s\"' # %g..%g %s", short_name(object, one.name), one.min, one.max, one.unit.c_str());
+  };
+  for (const SetpointId id : object.setpoints) setpoints.push_back(note(catalog.setpoints[id]));
+  for (const ParameterId id : object.parameters) parameters.push_back(note(catalog.parameters.info(id)));
   for (const Preset& preset : object.presets) presets.push_back("'\"" + preset.name + "\"'");
   text += alternatives(type + ".setpoint", setpoints) + alternatives(type + ".parameter", parameters) +
           alternatives(type + ".preset", presets);
@@ -460,6 +419,84 @@ std::string lua_stubs(const Catalog& catalog) {
   return text + "---@type kadans\nlocal kadans\nreturn kadans\n";
 }
 
+namespace {
+
+std::string default_text(const ScriptArgument& argument) {
+  if (!argument.initial) return "a table";
+  if (const auto* number = std::get_if<double>(&*argument.initial)) return number_text(*number);
+  if (const auto* flag = std::get_if<bool>(&*argument.initial)) return *flag ? "true" : "false";
+  return "\"" + std::get<std::string>(*argument.initial) + "\"";
+}
+
+// "0.1..10 s", "\"left\", \"right\"".
+std::string allowed_text(const ScriptArgument& argument) {
+  const auto end = [](double value) { return std::isfinite(value) ? number_text(value) : ""; };
+  std::string text = end(argument.min) + ".." + end(argument.max);
+  if (text == "..") text.clear();
+  if (!argument.unit.empty()) text += (text.empty() ? "" : " ") + argument.unit;
+  for (const std::string& choice : argument.one_of) text += (text.empty() ? "\"" : ", \"") + choice + "\"";
+  return text;
+}
+
+// Of the skill whose table is at `skill`.
+std::string skill_text(lua_State* state, int skill) {
+  std::string text = text_of_field(state, skill, "doc") + ".\n";
+  lua_getfield(state, skill, "args");
+  const int declared = lua_gettop(state);
+  const std::vector<ScriptArgument> arguments = read_declarations(state, declared);
+  lua_pop(state, 1);
+  if (!arguments.empty()) text += "\n| argument | default | allowed | |\n|---|---|---|---|\n";
+  for (const ScriptArgument& argument : arguments) {
+    text += "| `" + argument.name + "` | " + default_text(argument) + " | " + allowed_text(argument) + " | " +
+            argument.doc + " |\n";
+  }
+  return text;
+}
+
+// By field, as Markdown. Nothing here raises but the module, before a string is made.
+void read_skills(lua_State* state, LuaState& lua, const std::filesystem::path& file,
+                 std::map<std::string, std::string>& skills) {
+  if (!lua.load_file(state, file)) lua_error(state);
+  lua_call(state, 0, 1);
+  const int module = lua_gettop(state);
+  luaL_checkstack(state, 16, "skills");
+  if (!lua_istable(state, module)) return;
+  for (lua_pushnil(state); lua_next(state, module) != 0; lua_settop(state, module + 1)) {
+    if (lua_type(state, module + 1) != LUA_TSTRING || !push_skill(state, module + 2)) continue;
+    skills[lua_tostring(state, module + 1)] = skill_text(state, lua_gettop(state));
+  }
+}
+
+std::string module_reference(const std::filesystem::path& root, const std::filesystem::path& file) {
+  LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string()});
+  std::map<std::string, std::string> skills;
+  lua.call_or_throw([&](lua_State* state) { read_skills(state, lua, file, skills); },
+                    lua.settings().limits.load_instructions, 0);
+  const std::string module = file.stem().string();
+  std::string text;
+  for (const auto& [field, skill] : skills) {
+    text += "\n### `" + module + "." + field + "`\n\n" + skill;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string skill_reference(const std::filesystem::path& root) {
+  const std::filesystem::path folder = root / "behaviors/lib";
+  std::error_code none;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(".lua") && !name.ends_with("_test.lua")) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  std::string text;
+  for (const std::filesystem::path& file : files) text += module_reference(root, file);
+  if (text.empty()) return "";
+  return "\n## Skills of behaviors/lib: `MODULE.SKILL \"state\" { argument = value, transitions }`\n" + text;
+}
+
 std::string api_reference(const std::filesystem::path& root) {
   std::string text =
       "# Reference of behaviors\n\nGenerated by `kadans lua-stubs --markdown`; do not edit. The guide is "
@@ -493,19 +530,14 @@ std::vector<std::string> bound_names(const std::filesystem::path& root, const st
   add("kadans", known.module.names());
   add("m", known.machine.names());
   add("object", known.object_methods);
-  add("motion", known.motion_fields);
-  add("armed", known.armed_fields);
+  add("motion", {"cancel", "done", "outcome", "reason", "wait"});
+  add("armed", {"cancel", "fired", "outcome"});
   add("s", known.snapshot.names());
-  add("event", s["event"].names());
+  for (const char* part : {"event", "base", "support", "odometry", "safety", "joystick", "seen"})
+    add(part, s[part].names());
   add("joint", s["joints"].fields.begin()->second.names());
-  add("base", s["base"].names());
   add("rate", s["base"].fields["angular_velocity_rad_s"].names());
   add("foot", s["feet"].fields.begin()->second.names());
-  add("support", s["support"].names());
-  add("odometry", s["odometry"].names());
-  add("safety", s["safety"].names());
-  add("joystick", s["joystick"].names());
-  add("seen", s["seen"].names());
   add("ball", s["seen"].fields["ball"].names());
   for (const char* field : {"age_s", "carried", "confidence", "source"}) all.push_back(std::string("entry.") + field);
   for (std::string& word : decider_words()) all.push_back(std::move(word));

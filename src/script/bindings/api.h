@@ -24,6 +24,9 @@ std::vector<std::string> decider_words();
 // A ---@meta file for lua-language-server with the table and this robot's objects, set-points, presets, poses and
 // joints.
 std::string lua_stubs(const Catalog& catalog);
+// The skills that the modules of <root>/behaviors/lib return, as Markdown; "" when there are none. Throws InputError
+// when a module does not load.
+std::string skill_reference(const std::filesystem::path& root);
 // The table as Markdown for people, and the skills of the project's library.
 std::string api_reference(const std::filesystem::path& root);
 // The names that a loaded behavior really has: "kadans.pose", "m.wait", "object.move", "joint.position_rad". Throws

@@ -26,6 +26,14 @@ struct ArmedHandle {
   std::uint16_t which = 0;
 };
 
+// nullptr: its place was taken by another one, or it has not arrived.
+const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, std::uint32_t which) noexcept {
+  for (const ArmedStatus& status : snapshot.armed) {
+    if (status.state != ArmedState::none && status.sequence == sequence && status.which == which) return &status;
+  }
+  return nullptr;
+}
+
 [[noreturn]] void refuse_condition(lua_State* state, const char* why) {
   luaL_error(state,
              "m:on: %s; a condition is \"foot.right.contact\", \"not foot.right.contact\", \"joint.l_knee.position_rad "
@@ -44,60 +52,6 @@ std::string_view trimmed(std::string_view text) noexcept {
 std::string_view part_of(std::string_view name, std::size_t from) noexcept {
   return name.substr(from, name.find('.', from) - from);
 }
-
-}  // namespace
-
-SignalName condition_signal(const Bindings& bindings, std::string_view name) noexcept {
-  constexpr std::size_t foot_at = 5;  // behind "foot."
-  SignalName text{};
-  std::string_view foot = name.starts_with("foot.") ? part_of(name, foot_at) : std::string_view{}, link = foot;
-  const auto known = std::ranges::find(bindings.catalog->feet, foot, &FootInfo::name);
-  if (known != bindings.catalog->feet.end()) link = known->link;
-  const std::string_view rest = foot.empty() ? name : name.substr(foot_at + foot.size());
-  std::snprintf(text.data(), text.size(), "%s%.*s%.*s", foot.empty() ? "" : "foot.", static_cast<int>(link.size()),
-                link.data(), static_cast<int>(rest.size()), rest.data());
-  return text;
-}
-
-bool is_truth_of_simulation(std::string_view name) noexcept {
-  return name.starts_with("plant.") || name.starts_with("reference.") || name.starts_with("world.");
-}
-
-// Of the same topic: those of the same owner, and those of the same quantity.
-std::vector<std::string> signals_near(const Bindings& bindings, std::string_view wanted) {
-  const std::string_view topic = part_of(wanted, 0);
-  const std::string_view owner = part_of(wanted, std::min(wanted.size(), topic.size() + 1));
-  const std::string_view quantity = wanted.substr(std::min(wanted.rfind('.'), wanted.size()));
-  std::vector<std::string> names;
-  for (SignalId id = 0; id < bindings.catalog->signals.size() && names.size() < hints_max; ++id) {
-    const std::string& other = bindings.catalog->signals.info(id).name;
-    if (part_of(other, 0) != topic || other.size() == topic.size()) continue;
-    const bool near = part_of(other, topic.size() + 1) == owner || std::string_view(other).ends_with(quantity);
-    if (near) names.push_back(other);
-  }
-  return names;
-}
-
-ConditionText read_condition_text(std::string_view text) noexcept {
-  text = trimmed(text);
-  ConditionText read{.signal = text};
-  const std::size_t sign = text.find_first_of("<>");
-  if (text.find('=') != std::string_view::npos) {
-    read.wrong = "a condition compares with < or >, not with =";
-  } else if (sign != std::string_view::npos) {
-    const std::optional<double> number = number_of<double>(trimmed(text.substr(sign + 1)));
-    if (!number) read.wrong = "behind < or > stands a number";
-    read.value = number.value_or(0);
-    read.below = text[sign] == '<';
-    read.signal = trimmed(text.substr(0, sign));
-  } else if (text.starts_with("not ")) {
-    read.below = true;
-    read.signal = trimmed(text.substr(4));
-  }
-  return read;
-}
-
-namespace {
 
 // The key of a signal that behaviors may know. The text is at the top of the stack.
 std::int64_t check_signal(lua_State* state, std::string_view name) {
@@ -295,9 +249,8 @@ int cancel_armed(lua_State* state) {
   const ArmedHandle& handle = check_handle(state);
   Bindings& bindings = bindings_of(state);
   if (bindings.recording) return luaL_error(state, "armed:cancel() does not work inside the function of m:on");
-  if (!bindings.send({.kind = CommandKind::disarm, .index = handle.which, .sequence = handle.sequence}))
-    return queue_full(state);
-  return lua_pushboolean(state, 1), 1;
+  return tell_sent(state,
+                   bindings.send({.kind = CommandKind::disarm, .index = handle.which, .sequence = handle.sequence}));
 }
 
 const char* outcome(const ArmedHandle& handle, const ArmedStatus* status, const Snapshot& snapshot) noexcept {
@@ -321,11 +274,54 @@ int read_armed_field(lua_State* state) {
 
 }  // namespace
 
-const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, std::uint32_t which) noexcept {
-  for (const ArmedStatus& status : snapshot.armed) {
-    if (status.state != ArmedState::none && status.sequence == sequence && status.which == which) return &status;
+SignalName condition_signal(const Bindings& bindings, std::string_view name) noexcept {
+  constexpr std::size_t foot_at = 5;  // behind "foot."
+  SignalName text{};
+  std::string_view foot = name.starts_with("foot.") ? part_of(name, foot_at) : std::string_view{}, link = foot;
+  const auto known = std::ranges::find(bindings.catalog->feet, foot, &FootInfo::name);
+  if (known != bindings.catalog->feet.end()) link = known->link;
+  const std::string_view rest = foot.empty() ? name : name.substr(foot_at + foot.size());
+  std::snprintf(text.data(), text.size(), "%s%.*s%.*s", foot.empty() ? "" : "foot.", static_cast<int>(link.size()),
+                link.data(), static_cast<int>(rest.size()), rest.data());
+  return text;
+}
+
+bool is_truth_of_simulation(std::string_view name) noexcept {
+  return name.starts_with("plant.") || name.starts_with("reference.") || name.starts_with("world.");
+}
+
+// Of the same topic: those of the same owner, and those of the same quantity.
+std::vector<std::string> signals_near(const Bindings& bindings, std::string_view wanted) {
+  const std::string_view topic = part_of(wanted, 0);
+  const std::string_view owner = part_of(wanted, std::min(wanted.size(), topic.size() + 1));
+  const std::string_view quantity = wanted.substr(std::min(wanted.rfind('.'), wanted.size()));
+  std::vector<std::string> names;
+  for (SignalId id = 0; id < bindings.catalog->signals.size() && names.size() < hints_max; ++id) {
+    const std::string& other = bindings.catalog->signals.info(id).name;
+    if (part_of(other, 0) != topic || other.size() == topic.size()) continue;
+    const bool near = part_of(other, topic.size() + 1) == owner || std::string_view(other).ends_with(quantity);
+    if (near) names.push_back(other);
   }
-  return nullptr;
+  return names;
+}
+
+ConditionText read_condition_text(std::string_view text) noexcept {
+  text = trimmed(text);
+  ConditionText read{.signal = text};
+  const std::size_t sign = text.find_first_of("<>");
+  if (text.find('=') != std::string_view::npos) {
+    read.wrong = "a condition compares with < or >, not with =";
+  } else if (sign != std::string_view::npos) {
+    const std::optional<double> number = number_of<double>(trimmed(text.substr(sign + 1)));
+    if (!number) read.wrong = "behind < or > stands a number";
+    read.value = number.value_or(0);
+    read.below = text[sign] == '<';
+    read.signal = trimmed(text.substr(0, sign));
+  } else if (text.starts_with("not ")) {
+    read.below = true;
+    read.signal = trimmed(text.substr(4));
+  }
+  return read;
 }
 
 const ArmedHere& Bindings::note_armed(EventId event) noexcept {

@@ -42,17 +42,6 @@ bool Bindings::must_wait(std::uint32_t set) const noexcept {
   return dwells;
 }
 
-void Bindings::go_on_after(const Bindings& other) noexcept {
-  sent = other.sent;
-  sent_count = other.sent_count;
-  refusals_seen = other.refusals_seen;
-  refused_last = other.refused_last;
-  switched = other.switched;
-  begun = other.begun;
-  sets_sent = other.sets_sent;
-  sets_lost = other.sets_lost;
-}
-
 const Refusal* Bindings::next_refusal() noexcept {
   const std::uint32_t count = snapshot->transactions_refused;
   if (count - refusals_seen > refusals_shown) refusals_seen = count - refusals_shown;
@@ -149,11 +138,9 @@ constexpr double joint_instructions = 20;
 int budget(lua_State* state) {
   const LuaCore& core = core_of(state);
   lua_createtable(state, 0, 2);
-  lua_pushnumber(state, static_cast<lua_Number>(core.budget.left()));
-  lua_setfield(state, -2, "instructions");
+  set_field(state, "instructions", static_cast<lua_Number>(core.budget.left()));
   const std::size_t used = core.heap.used_bytes(), limit = core.heap.limit_bytes();
-  lua_pushnumber(state, static_cast<lua_Number>(used < limit ? limit - used : 0));
-  lua_setfield(state, -2, "memory_bytes");
+  set_field(state, "memory_bytes", static_cast<lua_Number>(used < limit ? limit - used : 0));
   return 1;
 }
 
@@ -166,36 +153,15 @@ int pose(lua_State* state) {
     if (known.name != name) continue;
     core_of(state).budget.charge(state, joint_instructions * static_cast<double>(known.position_rad.size()));
     lua_newtable(state);
-    for (const auto& [joint, position_rad] : known.position_rad) {
-      lua_pushnumber(state, position_rad);
-      lua_setfield(state, -2, catalog.model->joints[joint].name.c_str());
-    }
+    for (const auto& [joint, position_rad] : known.position_rad)
+      set_field(state, catalog.model->joints[joint].name.c_str(), position_rad);
     return 1;
   }
   const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(catalog.poses); });
   return luaL_error(state, "unknown pose '%s'%s", name, hint.data());
 }
 
-}  // namespace
-
-void open_kadans_module(lua_State* state) {
-  lua_newtable(state);
-  open_parameters(state);
-  open_events(state);
-  open_arguments(state);
-  open_skills(state);
-  open_nodes(state);
-  lua_pushcfunction(state, budget);
-  lua_setfield(state, -2, "budget");
-  lua_pushcfunction(state, pose);
-  lua_setfield(state, -2, "pose");
-  open_log(state);
-  make_read_only(state, "kadans");
-}
-
 // k.log: lines for people, in the record and on the console, each with its severity.
-
-namespace {
 
 constexpr double charge_instructions = 1000;  // as for print
 
@@ -220,8 +186,7 @@ int log_line(lua_State* state) {
   return 0;
 }
 
-}  // namespace
-
+// [-0 +0] Adds `log` to the module's table at the top of the stack.
 void open_log(lua_State* state) {
   constexpr const char* names[] = {"info", "warning", "error"};  // as BehaviorLog::Severity
   lua_createtable(state, 0, 3);
@@ -232,6 +197,23 @@ void open_log(lua_State* state) {
   }
   make_read_only(state, "kadans.log");
   lua_setfield(state, -2, "log");
+}
+
+}  // namespace
+
+void open_kadans_module(lua_State* state) {
+  lua_newtable(state);
+  open_parameters(state);
+  open_events(state);
+  open_arguments(state);
+  open_skills(state);
+  open_nodes(state);
+  lua_pushcfunction(state, budget);
+  lua_setfield(state, -2, "budget");
+  lua_pushcfunction(state, pose);
+  lua_setfield(state, -2, "pose");
+  open_log(state);
+  make_read_only(state, "kadans");
 }
 
 }  // namespace kadans

@@ -41,7 +41,19 @@ struct ConditionText {
 ConditionText read_condition_text(std::string_view text) noexcept;
 bool is_truth_of_simulation(std::string_view signal) noexcept;
 
-struct Bindings {
+// What a behavior has sent, which the version after it goes on from.
+struct SentSoFar {
+  SetMask sets_sent = 0;                // the control sets that are active once all transactions sent are applied
+  bool sets_lost = false;               // a transaction was refused that may have brought sets in
+  std::array<std::uint32_t, 8> sent{};  // the newest transactions, a ring indexed by sent_count
+  std::uint32_t sent_count = 0;
+  std::uint32_t refusals_seen = 0;  // transactions_refused of the last snapshot
+  std::uint32_t refused_last = 0;   // the newest transaction of this behavior that was refused
+  std::uint32_t switched = 0;       // the newest one that brings sets in
+  bool begun = false;
+};
+
+struct Bindings : SentSoFar {
   const Catalog* catalog = nullptr;
   BehaviorInputs* const* inputs = nullptr;  // of a run that is recorded or repeated
   std::optional<SetPartition> partition;
@@ -59,22 +71,14 @@ struct Bindings {
   std::uint32_t motion_count = 0;
   std::array<Motion*, max_transaction> cancelled{};  // motions cancelled in this tick
   std::uint32_t cancelled_count = 0;
-  // Sets of which no command has been sent yet that brings them in; which are active once all transactions sent are
-  // applied; and once this tick's is, too.
-  SetMask wanted = 0, sets_sent = 0, sets_now = 0;
-  bool sets_lost = false;               // a transaction was refused that may have brought sets in
-  std::array<std::uint32_t, 8> sent{};  // the newest transactions, a ring indexed by sent_count
-  std::uint32_t sent_count = 0;
-  std::uint32_t refusals_seen = 0;  // transactions_refused of the last snapshot
-  bool recording = false;           // the function of m:on runs: what it asks for is recorded, not sent
+  SetMask wanted = 0;      // sets of which no command has been sent yet that brings them in
+  SetMask sets_now = 0;    // as sets_sent, once this tick's transaction is applied, too
+  bool recording = false;  // the function of m:on runs: what it asks for is recorded, not sent
   std::array<Command, max_armed_commands> recorded{};
   std::uint32_t recorded_count = 0;  // may be greater than its room
   std::array<ArmedHere, max_armed> armed{};
   std::uint32_t armed_count = 0;
   std::uint16_t armed_in_tick = 0;
-  std::uint32_t refused_last = 0;  // the newest transaction of this behavior that was refused
-  std::uint32_t switched = 0;      // the newest one that brings sets in
-  bool begun = false;
   std::vector<SentEvent> sent_events{};  // by this tick, for other behaviors
   // Of a k.decisions (decision_binding.cpp): where behaviors are found, what plays now, and what this tick asked for.
   const PlayFolders* folders = nullptr;
@@ -127,42 +131,37 @@ struct Bindings {
   std::int64_t engine_ns() const noexcept { return now_ns + held_ns; }
   // Whether the snapshot shows the control sets as this behavior has left them.
   bool sets_known() const noexcept { return std::max(snapshot->transactions_applied, refused_last) >= switched; }
-  // Goes on after what another version of the behavior has sent.
-  void go_on_after(const Bindings& other) noexcept;
   // Commits the transaction and stores its number in its motions. False: refused.
   bool commit() noexcept;
 };
 
 inline Bindings& bindings_of(lua_State* state) noexcept { return *static_cast<Bindings*>(core_of(state).bindings); }
 
-void open_log(lua_State* state);  // [-1 +1] adds `log` to the module's table at the top of the stack
-
 // [-0 +0] Adds play, replace, stop and the other words of a k.decisions to the machine's table at the top of the stack.
 void open_decisions(lua_State* state);
 
 // [-0 +1] Pushes the handle of a control object: m.posture.
 void push_object(lua_State* state, std::uint32_t object);
-void open_objects(lua_State* state);
 
-// nullptr: its place was taken by another one, or it has not arrived.
-const ArmedStatus* find_armed(const Snapshot& snapshot, std::uint32_t sequence, std::uint32_t which) noexcept;
 // [-0 +0] Adds m:on and m:use to the machine's table at the top of the stack.
 void open_armed(lua_State* state, const Chart& chart);
 void open_armed_handles(lua_State* state);
 
-// Makes `m` for each machine, and `s`. Stores their references in the runner's tables. Raises.
 // A signal as the table names it: a foot has the name of its link there, and that of `s.feet` here.
 using SignalName = std::array<char, 128>;
 SignalName condition_signal(const Bindings& bindings, std::string_view name) noexcept;
 // The signals that may have been meant by an unknown one.
 std::vector<std::string> signals_near(const Bindings& bindings, std::string_view wanted);
 
+// Makes `m` for each machine, and stores their references in the runner's tables. Raises.
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables);
 // Gives a machine that is being entered its vars and arguments.
 void renew_machine(lua_State* state, const Chart& chart, const RunnerTables& tables, std::uint16_t machine);
 
 // [-0 +1] A deep copy of the value at `index` (> 0): plain data only. Raises.
 void push_plain_copy(lua_State* state, int index);
+// [-0 +1] A list of texts.
+void push_texts(lua_State* state, const std::vector<std::string>& texts);
 
 // Helper functions for the methods of a control object: m.<object>:method(...).
 
@@ -178,13 +177,16 @@ int send_away(lua_State* state, const ScriptEvent* declared, const char* name, i
 int send_to(lua_State* state, const ScriptEvent* declared, const char* name, int data, const char* to);
 // [-0 +1] Pushes data of an event from outside as a table.
 void push_event_data(lua_State* state, const PlayedEvent& event);
-// The object on which the method was called; `number` is its index in the catalog. Raises.
-const ObjectInfo& check_object(lua_State* state, std::uint32_t& number);
+// The object on which the method was called. Raises.
+const ObjectInfo& check_object(lua_State* state);
+std::uint32_t object_number(const Catalog& catalog, const ObjectInfo& object) noexcept;  // its place in the catalog
 // The name without the prefix of the object's name.
 const char* short_name(const ObjectInfo& object, const std::string& name) noexcept;
 void check_range(lua_State* state, const char* name, const char* unit, double value, double min, double max);
 // Returns nil, "queue_full" to the script.
 int queue_full(lua_State* state);
+// The same when it was not sent, else true.
+int tell_sent(lua_State* state, bool sent);
 
 // [-0 +0] Adds move, move_through, set and follow to the methods in the table at the top of the stack.
 void open_motion_methods(lua_State* state);

@@ -10,6 +10,7 @@
 #include "kadans/signal/input_error.h"
 #include "script/chart/chart_reader.h"
 #include "script/lua/lua_core.h"
+#include "script/sandbox/handle.h"
 #include "script/sandbox/sandbox.h"
 
 namespace kadans {
@@ -129,12 +130,7 @@ constexpr luaL_Reg decision_calls[] = {{"play", play},     {"replace", replace},
 
 }  // namespace
 
-void open_decisions(lua_State* state) {
-  for (const luaL_Reg& word : decision_calls) {
-    lua_pushcfunction(state, word.func);
-    lua_setfield(state, -2, word.name);
-  }
-}
+void open_decisions(lua_State* state) { set_functions(state, decision_calls); }
 
 std::vector<std::string> decider_words() {
   std::vector<std::string> all;

@@ -6,7 +6,6 @@
 #include "bindings.h"
 #include "engine/behavior_inputs.h"
 #include "machine_sets.h"
-#include "script/chart/chart_reports.h"
 #include "script/check/hint.h"
 #include "script/motion/motion_options.h"
 #include "script/sandbox/handle.h"
@@ -20,8 +19,7 @@ constexpr double command_instructions = 20;
 
 // object:setpoint(name) -> number: where it is on its way now.
 int setpoint(lua_State* state) {
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   return lua_pushnumber(state, present_setpoint(state, read_setpoint(state, 2, object)).value), 1;
 }
 
@@ -41,8 +39,7 @@ ParameterId read_parameter(lua_State* state, int index, const ObjectInfo& object
 
 // object:parameter(name) -> number: what it was set to last.
 int parameter(lua_State* state) {
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   const ParameterId id = read_parameter(state, 2, object);
   const Bindings& bindings = bindings_of(state);
   const double newest = bindings.catalog->parameters.newest(id);
@@ -52,29 +49,26 @@ int parameter(lua_State* state) {
 
 // object:set_parameter(name, value) -> true | nil, "queue_full".
 int set_parameter(lua_State* state) {
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   Bindings& bindings = bindings_of(state);
   const ParameterId id = read_parameter(state, 2, object);
   const double value = luaL_checknumber(state, 3);
   const Parameter& info = bindings.catalog->parameters.info(id);
   check_range(state, info.name.c_str(), info.unit.c_str(), value, info.min, info.max);
-  if (!bindings.send({.kind = CommandKind::set_parameter, .index = id, .value = value})) return queue_full(state);
-  return lua_pushboolean(state, 1), 1;
+  return tell_sent(state, bindings.send({.kind = CommandKind::set_parameter, .index = id, .value = value}));
 }
 
 // object:set_gains(preset) -> true | nil, "queue_full".
 int set_gains(lua_State* state) {
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   Bindings& bindings = bindings_of(state);
   const char* name = luaL_checkstring(state, 2);
   for (const Preset& preset : object.presets) {
     if (preset.name != name) continue;
-    for (const auto& [id, value] : preset.values) {
-      if (!bindings.send({.kind = CommandKind::set_parameter, .index = id, .value = value})) return queue_full(state);
-    }
-    return lua_pushboolean(state, 1), 1;
+    bool sent = true;
+    for (const auto& [id, value] : preset.values)
+      sent = sent && bindings.send({.kind = CommandKind::set_parameter, .index = id, .value = value});
+    return tell_sent(state, sent);
   }
   const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(object.presets); });
   return luaL_error(state, "'%s' has no gains '%s'%s", object.name.c_str(), name, hint.data());
@@ -82,13 +76,12 @@ int set_gains(lua_State* state) {
 
 // object:hold() -> true | nil, "queue_full": all its motions come to rest where they are.
 int hold(lua_State* state) {
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   core_of(state).budget.charge(state, command_instructions * static_cast<double>(object.setpoints.size()));
-  for (const SetpointId id : object.setpoints) {
-    if (!bindings_of(state).send({.kind = CommandKind::cancel_motion, .index = id})) return queue_full(state);
-  }
-  return lua_pushboolean(state, 1), 1;
+  bool sent = true;
+  for (const SetpointId id : object.setpoints)
+    sent = sent && bindings_of(state).send({.kind = CommandKind::cancel_motion, .index = id});
+  return tell_sent(state, sent);
 }
 
 }  // namespace
@@ -97,10 +90,14 @@ const std::uint32_t* to_object(lua_State* state, int index) noexcept {
   return static_cast<const std::uint32_t*>(to_handle(state, index, object_key));
 }
 
-const ObjectInfo& check_object(lua_State* state, std::uint32_t& number) {
+std::uint32_t object_number(const Catalog& catalog, const ObjectInfo& object) noexcept {
+  return static_cast<std::uint32_t>(&object - catalog.objects.data());
+}
+
+const ObjectInfo& check_object(lua_State* state) {
   const std::uint32_t* handle = to_object(state, 1);
   if (handle == nullptr) luaL_error(state, "call it on a control object, with a colon: m.object:method(...)");
-  number = handle != nullptr ? *handle : 0;
+  const std::uint32_t number = handle != nullptr ? *handle : 0;
   const Bindings& bindings = bindings_of(state);
   if (bindings.runner != nullptr && !bindings.recording) {  // m:on may switch to the set of any object
     const Chart::State& acting = bindings.runner->acting();
@@ -121,11 +118,14 @@ void check_range(lua_State* state, const char* name, const char* unit, double va
 }
 
 int queue_full(lua_State* state) { return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2; }
+int tell_sent(lua_State* state, bool sent) { return sent ? (lua_pushboolean(state, 1), 1) : queue_full(state); }
 
 void push_object(lua_State* state, std::uint32_t object) {
   *static_cast<std::uint32_t*>(lua_newuserdata(state, sizeof object)) = object;
   set_kind(state, object_key);
 }
+
+namespace {
 
 void open_objects(lua_State* state) {
   const luaL_Reg methods[] = {{"setpoint", setpoint},
@@ -135,10 +135,7 @@ void open_objects(lua_State* state) {
                               {"hold", hold}};
   lua_createtable(state, 0, 2);
   lua_createtable(state, 0, 8);
-  for (const luaL_Reg& method : methods) {
-    lua_pushcfunction(state, method.func);
-    lua_setfield(state, -2, method.name);
-  }
+  set_functions(state, methods);
   open_motion_methods(state);
   make_read_only(state, "a control object");
   lua_setfield(state, -2, "__index");
@@ -146,8 +143,6 @@ void open_objects(lua_State* state) {
 }
 
 // `m`: what the functions of a behavior act through. Each machine has its own; the control objects are the same.
-
-namespace {
 
 constexpr double copied_field_instructions = 20;
 
@@ -161,10 +156,6 @@ int wait(lua_State* state) {
   lua_settop(state, 0);
   return lua_yield(state, 0);
 }
-
-// m:emit(event, data?, { to = }?) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the
-// next. With `to` it goes to other behaviors, which get it in their next tick.
-int emit(lua_State* state);  // upvalue: the chart
 
 // Reading what m does not have; upvalues: its content, its number.
 int refuse_read(lua_State* state) {
@@ -186,8 +177,7 @@ int refuse_read(lua_State* state) {
 // m:clear_faults() -> true | nil, "queue_full". What is asked for behind it in the same tick counts already.
 int clear_faults(lua_State* state) {
   if (bindings_of(state).recording) return luaL_error(state, "what waits for a condition cannot clear faults");
-  if (bindings_of(state).send({.kind = CommandKind::clear_faults})) return lua_pushboolean(state, 1), 1;
-  return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
+  return tell_sent(state, bindings_of(state).send({.kind = CommandKind::clear_faults}));
 }
 
 // m:reset_odometry() -> true | nil, "queue_full". Raises where the robot has no feet.
@@ -195,8 +185,7 @@ int reset_odometry(lua_State* state) {
   Bindings& bindings = bindings_of(state);
   if (bindings.recording) return luaL_error(state, "what waits for a condition cannot reset the odometry");
   if (bindings.catalog->feet.empty()) return luaL_error(state, "the robot has no feet, so it has no odometry");
-  if (bindings.send({.kind = CommandKind::reset_odometry})) return lua_pushboolean(state, 1), 1;
-  return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
+  return tell_sent(state, bindings.send({.kind = CommandKind::reset_odometry}));
 }
 
 // [-0 +1] A deep copy of the value at `index`: plain data only.
@@ -275,9 +264,76 @@ void push_event_data(lua_State* state, int index, int depth, int& fields) {
   }
 }
 
+// m:emit(event, data?, { to = }?) -> true | nil, "queue_full". It is taken in this tick; from `during` and `run` in the
+// next. With `to` it goes to other behaviors, which get it in their next tick.
+int emit(lua_State* state) {
+  if (bindings_of(state).recording)
+    return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
+  auto& chart = *static_cast<Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
+  const char* name = luaL_checkstring(state, 2);
+  const bool given = !lua_isnoneornil(state, 3);
+  if (given && !lua_istable(state, 3)) {
+    return luaL_error(state, "the data of an event is a table { name = value }, not a %s", luaL_typename(state, 3));
+  }
+  const ScriptEvent* declared = find_event(core_of(state).events, name);
+  if (!lua_isnoneornil(state, 4)) return send_away(state, declared, name, 3, 4);
+  const EventId event = check_event(state, chart, name);
+  if (declared != nullptr) check_event_data(state, *declared, 3);
+  ChartRunner& runner = *bindings_of(state).runner;
+  const bool with_data = given || (declared != nullptr && !declared->fields.empty());
+  int fields = 0;
+  if (given) push_event_data(state, 3, 1, fields);
+  if (with_data && !given) lua_newtable(state);
+  return tell_sent(state, with_data ? runner.post_with_data(state, event) : runner.post(event));
+}
+
+// (function, m, s) -> what the function of a final state's `result` returns, copied.
+int make_result(lua_State* state) {
+  lua_settop(state, 3);
+  lua_call(state, 2, 1);
+  if (!lua_istable(state, 1))
+    return luaL_error(state, "result returns a table { name = value }, not a %s", luaL_typename(state, 1));
+  int fields = 0;
+  push_event_data(state, 1, 1, fields);
+  return 1;
+}
+
+void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, std::size_t number) {
+  lua_newtable(state);
+  for (std::uint32_t object = 0; object < bindings.catalog->objects.size() && !chart.decides; ++object) {
+    if (!bindings.has_object(number, object)) continue;
+    push_object(state, object);
+    lua_setfield(state, -2, bindings.catalog->objects[object].name.c_str());
+  }
+  set_field(state, "name", chart.machines[number].name.c_str());
+  set_field(state, "time_s", 0.0);
+  lua_newtable(state);
+  lua_setfield(state, -2, "vars");
+  lua_newtable(state);
+  lua_setfield(state, -2, "args");
+  lua_pushcfunction(state, wait);
+  lua_setfield(state, -2, "wait");
+  lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
+  lua_pushcclosure(state, emit, 1);
+  lua_setfield(state, -2, "emit");
+  if (chart.decides) return open_decisions(state);
+  const luaL_Reg orders[] = {{"clear_faults", clear_faults}, {"reset_odometry", reset_odometry}};
+  set_functions(state, orders);
+  open_armed(state, chart);
+}
+
 }  // namespace
 
 void push_plain_copy(lua_State* state, int index) { push_copy(state, index, 0); }
+
+void push_texts(lua_State* state, const std::vector<std::string>& texts) {
+  lua_createtable(state, static_cast<int>(texts.size()), 0);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    lua_pushlstring(state, texts[i].data(), texts[i].size());
+    lua_rawseti(state, -2, static_cast<int>(i) + 1);
+  }
+}
+
 void push_event_data(lua_State* state, const PlayedEvent& event) {
   lua_createtable(state, 0, static_cast<int>(event.data.size()));
   for (const PlayArgument& field : event.data) {
@@ -300,82 +356,12 @@ EventId check_event(lua_State* state, Chart& chart, const char* name) {
   return event;
 }
 
-namespace {
-
-int emit(lua_State* state) {
-  if (bindings_of(state).recording)
-    return luaL_error(state, "the function of m:on only says what to send: give m:on event = \"name\" instead");
-  auto& chart = *static_cast<Chart*>(lua_touserdata(state, lua_upvalueindex(1)));
-  const char* name = luaL_checkstring(state, 2);
-  const bool given = !lua_isnoneornil(state, 3);
-  if (given && !lua_istable(state, 3)) {
-    return luaL_error(state, "the data of an event is a table { name = value }, not a %s", luaL_typename(state, 3));
-  }
-  const ScriptEvent* declared = find_event(core_of(state).events, name);
-  if (!lua_isnoneornil(state, 4)) return send_away(state, declared, name, 3, 4);
-  const EventId event = check_event(state, chart, name);
-  if (declared != nullptr) check_event_data(state, *declared, 3);
-  ChartRunner& runner = *bindings_of(state).runner;
-  const bool with_data = given || (declared != nullptr && !declared->fields.empty());
-  int fields = 0;
-  if (given) push_event_data(state, 3, 1, fields);
-  if (with_data && !given) lua_newtable(state);
-  const bool posted = with_data ? runner.post_with_data(state, event) : runner.post(event);
-  if (!posted) return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
-  return lua_pushboolean(state, 1), 1;
-}
-
-// (function, m, s) -> what the function of a final state's `result` returns, copied.
-int make_result(lua_State* state) {
-  lua_settop(state, 3);
-  lua_call(state, 2, 1);
-  if (!lua_istable(state, 1))
-    return luaL_error(state, "result returns a table { name = value }, not a %s", luaL_typename(state, 1));
-  int fields = 0;
-  push_event_data(state, 1, 1, fields);
-  return 1;
-}
-
-void push_machine_content(lua_State* state, const Chart& chart, const Bindings& bindings, std::size_t number) {
-  lua_newtable(state);
-  for (std::uint32_t object = 0; object < bindings.catalog->objects.size() && !chart.decides; ++object) {
-    if (!bindings.has_object(number, object)) continue;
-    push_object(state, object);
-    lua_setfield(state, -2, bindings.catalog->objects[object].name.c_str());
-  }
-  lua_pushstring(state, chart.machines[number].name.c_str());
-  lua_setfield(state, -2, "name");
-  lua_pushnumber(state, 0);
-  lua_setfield(state, -2, "time_s");
-  lua_newtable(state);
-  lua_setfield(state, -2, "vars");
-  lua_newtable(state);
-  lua_setfield(state, -2, "args");
-  lua_pushcfunction(state, wait);
-  lua_setfield(state, -2, "wait");
-  lua_pushlightuserdata(state, const_cast<Chart*>(&chart));
-  lua_pushcclosure(state, emit, 1);
-  lua_setfield(state, -2, "emit");
-  if (chart.decides) return open_decisions(state);
-  lua_pushcfunction(state, clear_faults);
-  lua_setfield(state, -2, "clear_faults");
-  lua_pushcfunction(state, reset_odometry);
-  lua_setfield(state, -2, "reset_odometry");
-  open_armed(state, chart);
-}
-
-}  // namespace
-
 void open_machines(lua_State* state, const Chart& chart, const Bindings& bindings, RunnerTables& tables) {
   open_objects(state);
   open_motions(state);
   open_armed_handles(state);
   tables.machines.resize(chart.machines.size());
-  lua_createtable(state, static_cast<int>(chart.events.size()), 0);
-  for (std::size_t i = 0; i < chart.events.size(); ++i) {
-    lua_pushstring(state, chart.events[i].c_str());
-    lua_rawseti(state, -2, static_cast<int>(i) + 1);
-  }
+  push_texts(state, chart.events);
   tables.event_names = luaL_ref(state, LUA_REGISTRYINDEX);
   lua_createtable(state, EventQueue::places, 0);
   tables.event_data = luaL_ref(state, LUA_REGISTRYINDEX);

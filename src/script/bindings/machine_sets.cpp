@@ -62,12 +62,10 @@ struct SetFinder {
 
   // Whether it can be active while nothing in it is.
   bool innermost(StateIndex index) const {
-    const Chart::State& state = chart.states[index];
-    if (state.kind == Chart::Kind::history) return false;
-    for (StateIndex i = static_cast<StateIndex>(index + 1); i < state.end; i = chart.states[i].end) {
-      if (chart.states[i].kind != Chart::Kind::history) return false;
-    }
-    return true;
+    const auto is_history = [&](StateIndex state) { return chart.states[state].kind == Chart::Kind::history; };
+    bool inmost = !is_history(index);
+    chart.each_child(index, [&](StateIndex child) { inmost = inmost && is_history(child); });
+    return inmost;
   }
   SetMask sets_inside(StateIndex around) const {
     SetMask all = 0;

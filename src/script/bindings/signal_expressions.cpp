@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 9> expression_functions{"abs",  "min", "m
                                                                "ceil", "sin", "cos", "deg"};
 constexpr std::string_view tick_before = "last.";
 
-bool continues_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.'; }
+bool continues_name(char c) { return in_name(c) || c == '.'; }
 
 // Where a number that begins at `at` ends: an exponent's letter is no name.
 std::size_t number_end(std::string_view text, std::size_t at) {
@@ -64,78 +64,47 @@ std::ptrdiff_t place_of(SignalId signal, std::vector<SignalId>& of_condition, st
 }  // namespace
 
 struct SignalExpressions::State {
-  LuaState lua;
-  std::vector<Condition>* conditions = nullptr;
-  const std::vector<SignalId>* used = nullptr;
-  int values = LUA_NOREF;  // registry: the table of the signals' values, by place in `used`
+  LuaState lua{{.root = {}, .folder = {}, .name = "conditions", .seed = 1, .limits = ScriptLimits{}, .voice = nullptr}};
+  int values = LUA_NOREF;  // registry: the table of the signals' values, by place in `used_`
   int last = LUA_NOREF;    // registry: that of one tick before
   bool begun = false;
-  double time_s = 0;
-  std::span<const double> row;
-  const std::string* text = nullptr;  // to compile
-  int compiled = LUA_NOREF;
-
-  State()
-      : lua({.root = {}, .folder = {}, .name = "conditions", .seed = 1, .limits = ScriptLimits{}, .voice = nullptr}) {}
-
-  static int compile(lua_State* state);
-  static int evaluate(lua_State* state);
 };
 
-int SignalExpressions::State::compile(lua_State* state) {
-  auto& self = *static_cast<State*>(lua_touserdata(state, 1));
-  if (luaL_loadbufferx(state, self.text->data(), self.text->size(), "=condition", "t") != 0) return lua_error(state);
-  push_environment(state);
-  lua_setfenv(state, -2);
-  self.compiled = luaL_ref(state, LUA_REGISTRYINDEX);
-  if (self.values == LUA_NOREF) {
-    lua_newtable(state);
-    self.values = luaL_ref(state, LUA_REGISTRYINDEX);
-    lua_newtable(state);
-    self.last = luaL_ref(state, LUA_REGISTRYINDEX);
-  }
-  return 0;
-}
-
-int SignalExpressions::State::evaluate(lua_State* state) {
-  auto& self = *static_cast<State*>(lua_touserdata(state, 1));
-  lua_rawgeti(state, LUA_REGISTRYINDEX, self.values);
+// [-0 +0] Raises when one gives no value of its kind.
+void SignalExpressions::evaluate_all(lua_State* state, double time_s, std::span<const double> row) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, state_->values);
   const int values = lua_gettop(state);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, self.last);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, state_->last);
   const int last = lua_gettop(state);
-  const auto count = static_cast<int>(self.used->size());
   const auto copy = [&](int from, int to, int i) {
     lua_rawgeti(state, from, i);
     lua_rawseti(state, to, i);
   };
-  for (int i = 1; i <= count; ++i) {
-    if (self.begun) copy(values, last, i);
-    lua_pushnumber(state, self.row[(*self.used)[static_cast<std::size_t>(i) - 1]]);
+  for (std::size_t place = 0; place < used_.size(); ++place) {
+    const int i = static_cast<int>(place) + 1;
+    if (state_->begun) copy(values, last, i);
+    lua_pushnumber(state, row[used_[place]]);
     lua_rawseti(state, values, i);
-    if (!self.begun) copy(values, last, i);
+    if (!state_->begun) copy(values, last, i);
   }
-  self.begun = true;
-  for (Condition& condition : *self.conditions) {
+  state_->begun = true;
+  for (Condition& condition : conditions_) {
     lua_rawgeti(state, LUA_REGISTRYINDEX, condition.function);
     lua_pushvalue(state, values);
-    lua_pushnumber(state, self.time_s);
+    lua_pushnumber(state, time_s);
     lua_pushvalue(state, last);
     lua_call(state, 3, 1);
     const bool number = condition.gives == Gives::number;
     if (lua_type(state, -1) != (number ? LUA_TNUMBER : LUA_TBOOLEAN))
-      return luaL_error(state, "'%s' gives a %s, wanted %s", condition.text.c_str(), luaL_typename(state, -1),
-                        number ? "a number" : "true or false");
+      luaL_error(state, "'%s' gives a %s, wanted %s", condition.text.c_str(), luaL_typename(state, -1),
+                 number ? "a number" : "true or false");
     condition.value = number ? lua_tonumber(state, -1) : lua_toboolean(state, -1);
     lua_pop(state, 1);
   }
-  return 0;
 }
 
 SignalExpressions::SignalExpressions(const SignalTable& signals, std::span<const SignalState> states)
-    : signals_(signals), states_(states), state_(std::make_unique<State>()) {
-  state_->conditions = &conditions_;
-  state_->used = &used_;
-}
+    : signals_(signals), states_(states), state_(std::make_unique<State>()) {}
 
 SignalExpressions::~SignalExpressions() = default;
 
@@ -216,14 +185,20 @@ bool SignalExpressions::translate(std::string_view text, Condition& condition, s
 }
 
 bool SignalExpressions::compile(const std::string& lua, Condition& condition, ExpressionError& error) {
-  state_->text = &lua;
-  const bool compiled = state_->lua.call(State::compile, state_.get(), compilation_instructions, 0);
-  if (!compiled) {
-    error = {1, "is not a condition: " + std::string(state_->lua.error().message.data())};
-    return false;
-  }
-  condition.function = state_->compiled;
-  return true;
+  const auto compile = [&](lua_State* state) {
+    if (luaL_loadbufferx(state, lua.data(), lua.size(), "=condition", "t") != 0) lua_error(state);
+    push_environment(state);
+    lua_setfenv(state, -2);
+    condition.function = luaL_ref(state, LUA_REGISTRYINDEX);
+    for (int* table : {&state_->values, &state_->last}) {
+      if (*table != LUA_NOREF) continue;
+      lua_newtable(state);
+      *table = luaL_ref(state, LUA_REGISTRYINDEX);
+    }
+  };
+  if (state_->lua.call(compile, compilation_instructions, 0)) return true;
+  error = {1, "is not a condition: " + std::string(state_->lua.error().message.data())};
+  return false;
 }
 
 bool SignalExpressions::add(std::string_view text, std::size_t& index, ExpressionError& error, Gives gives) {
@@ -239,9 +214,8 @@ bool SignalExpressions::add(std::string_view text, std::size_t& index, Expressio
 }
 
 bool SignalExpressions::evaluate(double time_s, std::span<const double> row) noexcept {
-  state_->time_s = time_s;
-  state_->row = row;
-  if (state_->lua.call(State::evaluate, state_.get(), evaluation_instructions, 0)) {
+  const auto evaluate = [&](lua_State* state) { evaluate_all(state, time_s, row); };
+  if (state_->lua.call(evaluate, evaluation_instructions, 0)) {
     state_->lua.collect();
     return true;
   }

@@ -21,6 +21,8 @@
 
 #include "kadans/signal/signal.h"
 
+struct lua_State;
+
 namespace kadans {
 
 // A state of a behavior, which is active while a signal is in this range.
@@ -85,6 +87,7 @@ class SignalExpressions {
   bool translate_state(std::string_view text, std::size_t& at, Condition& condition, std::vector<SignalId>& used,
                        std::string& lua, ExpressionError& error) const;
   bool compile(const std::string& lua, Condition& condition, ExpressionError& error);
+  void evaluate_all(lua_State* state, double time_s, std::span<const double> row);
 
   const SignalTable& signals_;
   std::span<const SignalState> states_;

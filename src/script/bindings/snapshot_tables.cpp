@@ -229,9 +229,7 @@ void SnapshotTables::push_value(lua_State* state, std::size_t at, std::size_t in
   const double value = field.at == nullptr ? static_cast<double>(now_ns_) / 1e9 : field.value(*snapshot_, index);
   if (field.type == Type::number) return lua_pushnumber(state, value);
   if (field.type == Type::flag) return lua_pushboolean(state, value != 0 ? 1 : 0);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, choices_[at]);
-  lua_rawgeti(state, -1, static_cast<int>(value) + 1);
-  lua_remove(state, -2);
+  push_entry(state, choices_[at], static_cast<int>(value) + 1);
 }
 
 bool SnapshotTables::read_first(lua_State* state, std::size_t part, int key) {

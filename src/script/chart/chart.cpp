@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "chart_reports.h"
 #include "script/check/hint.h"
 
 namespace kadans {
@@ -55,12 +54,6 @@ StateIndex find_target(const Chart& chart, StateIndex from, const std::string& n
   return found;
 }
 
-template <typename Visit>
-void each_target(const Chart::Transition& transition, Visit visit) {
-  visit(transition.target);
-  for (const StateIndex target : transition.also) visit(target);
-}
-
 // The innermost state around source and targets that is left by none of them: never a parallel, nor a target itself,
 // which is left and entered again when it is around the source (SCXML, getTransitionDomain).
 StateIndex domain_of(const Chart& chart, const Chart::Transition& transition) {
@@ -70,8 +63,8 @@ StateIndex domain_of(const Chart& chart, const Chart::Transition& transition) {
   do {
     domain = chart.states[domain].parent;
     around = chart.states[domain].kind != Chart::Kind::parallel;
-    each_target(transition,
-                [&](StateIndex target) { around = around && domain != target && chart.inside(target, domain); });
+    transition.each_target(
+        [&](StateIndex target) { around = around && domain != target && chart.inside(target, domain); });
   } while (domain != 0 && !around);
   return domain;
 }
@@ -90,16 +83,15 @@ struct Resolver {
   }
 
   void siblings(StateIndex parent) {
-    for (StateIndex i = parent + 1; i < chart.states[parent].end; ++i) {
-      if (chart.states[i].parent != parent) continue;
-      for (StateIndex j = parent + 1; j < i; ++j) {
-        if (chart.states[j].parent == parent && chart.states[j].name == chart.states[i].name) {
-          problem(chart.states[i], chart.states[i].line,
-                  "a second state '" + chart.states[i].name + "' beside the one in line " +
-                      std::to_string(chart.states[j].line));
-        }
-      }
-    }
+    chart.each_child(parent, [&](StateIndex later) {
+      const Chart::State& state = chart.states[later];
+      chart.each_child(parent, [&](StateIndex other) {
+        if (other < later && chart.states[other].name == state.name)
+          problem(
+              state, state.line,
+              "a second state '" + state.name + "' beside the one in line " + std::to_string(chart.states[other].line));
+      });
+    });
   }
 
   std::string title(StateIndex index) const { return "'" + chart.states[index].path + "'"; }
@@ -196,9 +188,9 @@ struct Resolver {
 
   void only_child(StateIndex index) {
     Chart::State& state = chart.states[index];
-    for (StateIndex i = index + 1; i < state.end; i = chart.states[i].end) {
-      if (chart.states[i].kind != Chart::Kind::history) state.defaults.push_back(i);
-    }
+    chart.each_child(index, [&](StateIndex child) {
+      if (chart.states[child].kind != Chart::Kind::history) state.defaults.push_back(child);
+    });
     if (state.defaults.size() < 2) return;
     state.defaults.clear();
     problem(state, state.line,
@@ -263,7 +255,7 @@ struct Resolver {
           source, transition.line,
           "internal = true: a k.parallel has no states but its regions; write the transition into the region");
     }
-    each_target(transition, [&](StateIndex target) {
+    transition.each_target([&](StateIndex target) {
       if (target != transition.source && chart.inside(target, transition.source)) return;
       problem(source, transition.line,
               "internal = true is for a target inside " +
@@ -326,7 +318,7 @@ void Chart::resolve(std::vector<InputProblem>& problems) {
     if (states[i].kind == Kind::history) resolver.history(i);
   }
   for (std::size_t i = 0; i < transitions.size() && !enough(); ++i) resolver.transition(transitions[i]);
-  find_reports(*this, problems);
+  find_reports(problems);
   for (const State& state : states) {
     if (state.outcome != no_event) ends_[static_cast<std::size_t>(state.outcome)] = true;
   }

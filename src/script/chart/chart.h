@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +24,11 @@ using EventId = std::int32_t;
 inline constexpr EventId no_event = -1;
 inline constexpr EventId run_done_event = 0;  // "run.done"
 inline constexpr EventId done_event = 1;      // "done"
+
+// Reports: events that tell what happened to a behavior. "error" when one of its functions raised (chart_recovery.cpp),
+// "refused" when the control engine refused one of its transactions, "fault.NAME" when the safety layer noted a fault.
+// Nobody can send them. Where no active state waits for them they are no events at all.
+bool reserved_for_reports(std::string_view event) noexcept;
 
 struct Chart {
   enum class Kind : std::uint8_t { state, parallel, region, final_state, history };
@@ -71,6 +77,11 @@ struct Chart {
     std::string why;
     int line = 0;
     bool listed = false;  // a further event of on = { "a", "b" }: otherwise the same as the one before
+    template <typename Visit>
+    void each_target(Visit visit) const {
+      if (target != no_state) visit(target);
+      for (const StateIndex further : also) visit(further);
+    }
   };
   // on = "fault.*": the events whose name is "fault" or begins with "fault."; on = "*": all. Never the end of a state.
   struct Pattern {
@@ -105,8 +116,7 @@ struct Chart {
   std::vector<Machine> machines;
   std::vector<std::string> events{"run.done", "done"};
   std::vector<Pattern> patterns;
-  // Reports, events that tell what happened to the behavior: errors, refused transactions, faults. no_event: no
-  // transition waits for them.
+  // Reports; no_event: no transition waits for them.
   EventId error_event = no_event, refused_event = no_event;
   std::vector<std::pair<FaultCode, EventId>> fault_events;
   bool waits_for_reports = false;  // for refusals or faults
@@ -115,12 +125,24 @@ struct Chart {
   bool inside(StateIndex state, StateIndex ancestor) const noexcept {  // true also for the ancestor itself
     return state >= ancestor && state < states[ancestor].end;
   }
+  // The transitions of a state: those without its `always`, and all of them, which stand together.
+  std::span<const Transition> ordinary(const State& state) const {
+    return std::span(transitions).subspan(state.first_transition, state.transition_count);
+  }
+  std::span<const Transition> transitions_of(const State& state) const {
+    return std::span(transitions).subspan(state.first_transition, state.transition_count + state.always_count);
+  }
+  // The states directly inside, first to last.
+  template <typename Visit>
+  void each_child(StateIndex parent, Visit visit) const {
+    for (auto child = static_cast<StateIndex>(parent + 1); child < states[parent].end; child = states[child].end)
+      visit(child);
+  }
   template <typename Visit>
   void each_region(StateIndex parallel, Visit visit) const {
-    const StateIndex end_of_all = states[parallel].end;
-    for (auto region = static_cast<StateIndex>(parallel + 1); region < end_of_all; region = states[region].end) {
-      if (states[region].kind == Kind::region) visit(region);
-    }
+    each_child(parallel, [&](StateIndex child) {
+      if (states[child].kind == Kind::region) visit(child);
+    });
   }
   // Whether the end of `ended` is an event for `state`: for itself and the states around it in its behavior, up to the
   // region that it is in.
@@ -149,6 +171,10 @@ struct Chart {
  private:
   std::vector<bool> ends_{true, true};  // by event
   std::size_t late_ = 0;                // names learnt
+
+  // Finds the reports that transitions wait for; faults that do not exist are mistakes, and so are final states whose
+  // outcome has such a name.
+  void find_reports(std::vector<InputProblem>& problems);
 };
 
 }  // namespace kadans

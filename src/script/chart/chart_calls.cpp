@@ -63,13 +63,13 @@ struct CallReader {
     const std::int32_t its = declared_parameter(core_of(state), chart.states[machine().root].chunk, name);
     if (!argument && its == Chart::no_parameter) refuse_name(name);
     const int value = lua_gettop(state);
-    std::size_t followed = 0;
-    const bool follows = is_parameter(state, value, &followed);
-    if (follows) check_followed(name, argument ? value - 1 : 0, its, followed);
-    if (!follows && !lua_isfunction(state, value)) return take_constant(name, argument, its);
+    const std::size_t* followed = to_parameter(state, value);
+    if (followed != nullptr) check_followed(name, argument ? value - 1 : 0, its, *followed);
+    if (followed == nullptr && !lua_isfunction(state, value)) return take_constant(name, argument, its);
     Chart::Given& given = add(name, argument ? Chart::no_parameter : its);
-    if (follows) given.follows = static_cast<std::int32_t>(followed);
-    if (!follows) {
+    if (followed != nullptr) {
+      given.follows = static_cast<std::int32_t>(*followed);
+    } else {
       lua_pushvalue(state, value);
       const int function = luaL_ref(state, LUA_REGISTRYINDEX);
       chart.machines[number].calls_with.back().function = function;
@@ -80,9 +80,7 @@ struct CallReader {
   Chart::Given& add(const char* name, std::int32_t parameter) {
     auto& all = chart.machines[number].calls_with;
     if (all.size() >= given_max) raise_at(state, place, name, "k.call gives more than %d values", given_max);
-    const LuaState& owner = *core_of(state).owner;
-    core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
-    const int line = owner.line_of(place.chunk, place.line, name);
+    const int line = find_line(state, place, name);
     Chart::Given& given = all.emplace_back();
     given.name = name;
     given.parameter = parameter;
@@ -259,7 +257,8 @@ bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
     if (given.function == Chart::no_function && given.parameter != Chart::no_parameter) continue;
     const int top = lua_gettop(state);
     if (given.function != Chart::no_function) {
-      if (!push_given_by(state, caller, given.function)) return false;
+      push_call(state, given.function, caller);
+      if (!call_recoverably(state, caller, 2, 1)) return false;
     } else {
       lua_pushnumber(state,
                      charged_value(state, static_cast<std::size_t>(given.follows), chart_.states[caller].machine));
@@ -273,12 +272,6 @@ bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
     lua_settop(state, top);
   }
   return true;
-}
-
-// [-0 +1 when true]
-bool ChartRunner::push_given_by(lua_State* state, StateIndex caller, int function) {
-  push_call(state, function, caller);
-  return call_recoverably(state, caller, 2, 1);
 }
 
 void ChartRunner::push_arguments(lua_State* state) const {

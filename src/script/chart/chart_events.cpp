@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "chart_reader.h"
-#include "chart_reports.h"
 #include "config/scenario/event_text.h"
 #include "script/bindings/bindings.h"
 #include "script/check/foreign_words.h"
@@ -127,11 +126,10 @@ void read_event(lua_State* state, const char* name, int value, const ScriptPlace
     raise_at(state, place, name, "event '%s' must be a table { field = type }, not a %s", name,
              luaL_typename(state, value));
   if (events.size() >= events_max) raise_at(state, place, name, "more than %d events", static_cast<int>(events_max));
-  const LuaState& owner = *core_of(state).owner;
-  core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
+  const int line = find_line(state, place, name);
   ScriptEvent& event = events.emplace_back();
   event.chunk = place.chunk;
-  event.line = owner.line_of(place.chunk, place.line, name);
+  event.line = line;
   event.name = name;
   each_in_order(state, value, [&](int key, int field) {
     if (lua_type(state, key) == LUA_TSTRING) return read_field(state, lua_tostring(state, key), field, event, place);

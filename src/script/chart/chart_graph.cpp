@@ -1,7 +1,6 @@
 #include "chart_graph.h"
 
-#include <array>
-#include <cstdio>
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -18,12 +17,6 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-std::string seconds(double time_s) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g s", time_s);
-  return text.data();
-}
-
 class Graph {
  public:
   Graph(const Chart& chart, const std::vector<ScriptParameter>& parameters) : chart_(chart), parameters_(parameters) {}
@@ -35,7 +28,7 @@ class Graph {
     if (transition.timed && transition.after_parameter != Chart::no_parameter) {
       add("after " + parameters_.at(static_cast<std::size_t>(transition.after_parameter)).name);
     } else if (transition.timed) {
-      add("after " + seconds(transition.after_s));
+      add(printed("after %g s", transition.after_s));
     }
     if (transition.when != Chart::no_function) add("[when]");
     const bool told =
@@ -56,10 +49,7 @@ class Graph {
   // What a state does without being left, a line each: UML's internal transitions.
   std::vector<std::string> actions_alone(StateIndex state) const {
     std::vector<std::string> lines;
-    const Chart::State& s = chart_.states[state];
-    const std::size_t first = s.first_transition, count = std::size_t{s.transition_count} + s.always_count;
-    for (std::size_t i = first; i < first + count; ++i) {
-      const Chart::Transition& one = chart_.transitions[i];
+    for (const Chart::Transition& one : chart_.transitions_of(chart_.states[state])) {
       if (one.target == no_state) lines.push_back(whole_label(one) + " / action");
     }
     return lines;
@@ -75,14 +65,6 @@ class Graph {
     return one.source != 0 && one.target != one.source && chart_.inside(one.target, one.source);
   }
   bool has_children(StateIndex state) const { return chart_.states[state].end > state + 1; }
-  // The first child, then each next one.
-  template <typename Visit>
-  void each_child(StateIndex state, Visit visit) const {
-    const StateIndex end = chart_.states[state].end;
-    for (StateIndex child = static_cast<StateIndex>(state + 1); child < end; child = chart_.states[child].end) {
-      visit(child);
-    }
-  }
   std::string title(StateIndex state) const {
     const Chart::State& s = chart_.states[state];
     if (s.kind == Chart::Kind::history) return s.deep ? "H*" : "H";
@@ -135,7 +117,7 @@ void write_dot_state(const Graph& graph, StateIndex state, const std::string& in
   text += indent + "subgraph cluster_" + id(state) + " {\n" + indent +
           "  label=" + quoted(graph.full_title(state, "\n")) + "; style=" + style + ";\n";
   write_dot_defaults(graph, state, indent + "  ", text);
-  graph.each_child(state, [&](StateIndex child) { write_dot_state(graph, child, indent + "  ", text); });
+  graph.chart().each_child(state, [&](StateIndex child) { write_dot_state(graph, child, indent + "  ", text); });
   text += indent + "}\n";
 }
 
@@ -172,8 +154,7 @@ void write_dot_transition(const Graph& graph, const Chart::Transition& one, std:
     from = bar;
     style.clear();
   }
-  arrow(one.target);
-  for (const StateIndex target : one.also) arrow(target);
+  one.each_target(arrow);
 }
 
 void write_mermaid_state(const Graph& graph, StateIndex state, const std::string& indent, std::string& text) {
@@ -193,7 +174,7 @@ void write_mermaid_state(const Graph& graph, StateIndex state, const std::string
     for (const StateIndex target : s.defaults)
       text += inner + (history ? id(state) : "[*]") + " --> " + id(target) + "\n";
   }
-  graph.each_child(state, [&](StateIndex child) { write_mermaid_state(graph, child, inner, text); });
+  graph.chart().each_child(state, [&](StateIndex child) { write_mermaid_state(graph, child, inner, text); });
   if (s.kind == Chart::Kind::final_state) text += indent + id(state) + " --> [*]\n";
   if (braces) text += indent + "}\n";
 }
@@ -211,8 +192,7 @@ void write_mermaid_transition(const Graph& graph, const Chart::Transition& one, 
     from = bar;
     label.clear();
   }
-  arrow(id(one.target));
-  for (const StateIndex target : one.also) arrow(id(target));
+  one.each_target([&](StateIndex target) { arrow(id(target)); });
 }
 
 }  // namespace
@@ -223,7 +203,7 @@ std::string dot_graph(const Chart& chart, const std::vector<ScriptParameter>& pa
                      "  node [fontname=sans, style=rounded]; edge [fontname=sans, fontsize=10];\n" +
                      "  start [shape=point];\n";
   if (!graph.actions_alone(0).empty()) text += "  label=" + quoted(graph.full_title(0, "\n")) + "; labelloc=t;\n";
-  graph.each_child(0, [&](StateIndex child) { write_dot_state(graph, child, "  ", text); });
+  chart.each_child(0, [&](StateIndex child) { write_dot_state(graph, child, "  ", text); });
   for (const StateIndex target : chart.states.front().defaults) {
     text += "  start -> " + id(graph.leaf(target)) + ";\n";
   }

@@ -206,10 +206,7 @@ bool ChartRunner::restore_state(ByteReader& bytes, std::vector<bool>& listed) {
   if ((bits & (bit_active | bit_entering)) == 0 || state.kind == Chart::Kind::history) return true;
   const auto there = [&](StateIndex i) { return run_[i].active || run_[i].entering; };
   bool alone = true;
-  for (StateIndex other = static_cast<StateIndex>(state.parent + 1);
-       index != 0 && other < chart_.states[state.parent].end; other = chart_.states[other].end) {
-    alone = alone && !there(other);
-  }
+  if (index != 0) chart_.each_child(state.parent, [&](StateIndex other) { alone = alone && !there(other); });
   const bool fits =
       index == 0 || (there(state.parent) && (alone || chart_.states[state.parent].kind == Chart::Kind::parallel));
   run.active = fits && (bits & bit_active) != 0;
@@ -226,10 +223,7 @@ void ChartRunner::restore_history(ByteReader& bytes) {
     const StateIndex around = chart_.states[history].parent, its = chart_.states[state].parent;
     if (state == around || !chart_.inside(state, around) || (its != around && !histories_[history][its])) continue;
     bool alone = true;
-    for (StateIndex other = static_cast<StateIndex>(its + 1); other < chart_.states[its].end;
-         other = chart_.states[other].end) {
-      alone = alone && (other == state || !histories_[history][other]);
-    }
+    chart_.each_child(its, [&](StateIndex other) { alone = alone && (other == state || !histories_[history][other]); });
     if (!alone && chart_.states[its].kind != Chart::Kind::parallel) continue;
     histories_[history][state] = remembered_[history] = true;
   }
@@ -249,11 +243,11 @@ void ChartRunner::fill_gaps() noexcept {
     const Chart::State& around = chart_.states[index];
     const bool parallel = around.kind == Chart::Kind::parallel;
     bool any = false;
-    for (StateIndex child = static_cast<StateIndex>(index + 1); child < around.end; child = chart_.states[child].end) {
+    chart_.each_child(index, [&](StateIndex child) {
       const bool there = run_[child].active || run_[child].entering;
       any = any || there;
       if (parallel && !there && chart_.states[child].kind == Chart::Kind::region) fill(index, child);
-    }
+    });
     if (!parallel && !any && !around.defaults.empty()) fill(index, no_state);
   }
 }

@@ -89,9 +89,9 @@ int read_parameter(lua_State* state) {  // (proxy, key); upvalue: name -> handle
   lua_settop(state, 2);
   lua_pushvalue(state, 2);
   lua_rawget(state, lua_upvalueindex(1));
-  std::size_t number = 0;
-  if (!is_parameter(state, 3, &number)) return raise_unknown_field(state, "k.params", lua_upvalueindex(1), 2);
-  if (!core_of(state).loading) lua_pushnumber(state, value_here(state, number));
+  const std::size_t* number = to_parameter(state, 3);
+  if (number == nullptr) return raise_unknown_field(state, "k.params", lua_upvalueindex(1), 2);
+  if (!core_of(state).loading) lua_pushnumber(state, value_here(state, *number));
   return 1;
 }
 
@@ -126,10 +126,8 @@ int params(lua_State* state) {
 
 }  // namespace
 
-bool is_parameter(lua_State* state, int index, std::size_t* number) {
-  const auto* handle = static_cast<const std::size_t*>(to_handle(state, index, handle_key));
-  if (handle != nullptr) *number = *handle;
-  return handle != nullptr;
+const std::size_t* to_parameter(lua_State* state, int index) {
+  return static_cast<const std::size_t*>(to_handle(state, index, handle_key));
 }
 
 void open_parameters(lua_State* state) {

@@ -6,10 +6,12 @@
 #include <initializer_list>
 #include <iterator>
 #include <string>
+#include <string_view>
 
 #include "chart_arguments.h"
 #include "chart_calls.h"
 #include "kadans/signal/capacity.h"
+#include "kadans/signal/nearest_name.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/handle.h"
@@ -19,7 +21,7 @@ namespace kadans {
 namespace {
 
 const HandleKey node_key = 0;
-constexpr int listed_max = 32;                        // events in one on = { ... }
+constexpr std::size_t listed_max = 32;                // events in one on = { ... }
 constexpr std::size_t name_max = 64, text_max = 256;  // characters: charts keep them outside the script's memory
 
 constexpr double node_instructions = 300, transition_instructions = 160;  // to check one
@@ -35,58 +37,72 @@ constexpr const char* final_keys[] = {"outcome", "result", "enter", nullptr};
 constexpr const char* history_keys[] = {"deep", "to", nullptr};
 constexpr const char* transition_keys[] = {"when", "on", "after", "to", "why", "action", "internal", nullptr};
 
-const char* const* keys_of(NodeKind kind) noexcept {
-  switch (kind) {
-    case NodeKind::behavior:
-      return behavior_keys;
-    case NodeKind::decisions:
-      return decisions_keys;
-    case NodeKind::parallel:
-      return parallel_keys;
-    case NodeKind::final_state:
-      return final_keys;
-    case NodeKind::history:
-      return history_keys;
-    default:
-      return state_keys;
-  }
+struct NodeWords {
+  const char* word;
+  const char* const* keys;
+};
+constexpr NodeWords node_words[] = {  // as NodeKind
+    {"k.behavior", behavior_keys}, {"k.state", state_keys},        {"k.parallel", parallel_keys},
+    {"k.region", state_keys},      {"k.final", final_keys},        {"k.history", history_keys},
+    {"k.call", state_keys},        {"k.decisions", decisions_keys}};
+
+const char* const* keys_of(NodeKind kind) noexcept { return node_words[static_cast<std::size_t>(kind)].keys; }
+
+// The types that keys must have, in words of lua_typename. Other keys are checked elsewhere.
+struct KeyType {
+  std::string_view key;
+  const char* type;
+};
+constexpr KeyType key_types[] = {{"enter", "function"},  {"exit", "function"},   {"during", "function"},
+                                 {"run", "function"},    {"when", "function"},   {"migrate", "function"},
+                                 {"action", "function"}, {"result", "function"}, {"outcome", "string"},
+                                 {"why", "string"},      {"version", "number"},  {"vars", "table"},
+                                 {"args", "table"},      {"always", "table"},    {"deep", "boolean"},
+                                 {"endless", "boolean"}, {"internal", "boolean"}};
+
+// Raises when the value at the top is a text that is too long.
+void check_text_length(lua_State* state, const ScriptPlace& place, const char* key) {
+  if (lua_type(state, -1) == LUA_TSTRING && lua_objlen(state, -1) > text_max)
+    raise_at(state, place, key, "'%s' is longer than %d characters", key, static_cast<int>(text_max));
 }
 
-// The type that a key must have, in words of lua_typename; nullptr: checked elsewhere.
-const char* wanted_type(const char* key) noexcept {
-  for (const char* name : {"enter", "exit", "during", "run", "migrate", "when", "action", "result"}) {
-    if (std::strcmp(key, name) == 0) return "function";
+// Calls visit() for each entry of the list at the top of the stack, pushed above it; once for what is no list, as it
+// is.
+template <typename Visit>
+void each_listed(lua_State* state, Visit visit) {
+  const int value = lua_gettop(state);
+  if (!lua_istable(state, value)) return visit();
+  const auto count = static_cast<int>(lua_objlen(state, value));
+  for (int i = 1; i <= count; ++i) {
+    lua_rawgeti(state, value, i);
+    visit();
+    lua_pop(state, 1);
   }
-  for (const char* name : {"outcome", "why"}) {
-    if (std::strcmp(key, name) == 0) return "string";
-  }
-  for (const char* name : {"vars", "args", "always"}) {
-    if (std::strcmp(key, name) == 0) return "table";
-  }
-  if (std::strcmp(key, "version") == 0) return "number";
-  for (const char* name : {"deep", "endless", "internal"}) {
-    if (std::strcmp(key, name) == 0) return "boolean";
-  }
-  return nullptr;
 }
 
 void check_types(lua_State* state, int table, const ScriptPlace& place, const char* const* names) {
   for (; *names != nullptr; ++names) {
     lua_getfield(state, table, *names);
-    const char* wanted = wanted_type(*names);
+    const auto known = std::ranges::find(key_types, *names, &KeyType::key);
+    const char* wanted = known == std::end(key_types) ? nullptr : known->type;
     if (!lua_isnil(state, -1) && wanted != nullptr && std::strcmp(luaL_typename(state, -1), wanted) != 0) {
-      std::size_t number = 0;
-      const char* given = is_parameter(state, lua_gettop(state), &number) ? "parameter: ask it in a function"
-                                                                          : luaL_typename(state, -1);
+      const char* given =
+          to_parameter(state, -1) != nullptr ? "parameter: ask it in a function" : luaL_typename(state, -1);
       const bool quoted = lua_type(state, -1) == LUA_TSTRING && std::strcmp(wanted, "boolean") == 0;
       raise_at(state, place, *names, "'%s' must be a %s, not a %s%s", *names, wanted, given,
                quoted ? ": true has no quotes" : "");
     }
-    if (lua_type(state, -1) == LUA_TSTRING && lua_objlen(state, -1) > text_max) {
-      raise_at(state, place, *names, "'%s' is longer than %d characters", *names, static_cast<int>(text_max));
-    }
+    check_text_length(state, place, *names);
     lua_pop(state, 1);
   }
+}
+
+// Whether the field holds something that counts as true.
+bool flag_of(lua_State* state, int table, const char* key) {
+  lua_getfield(state, table, key);
+  const bool yes = lua_toboolean(state, -1) != 0;
+  lua_pop(state, 1);
+  return yes;
 }
 
 // controls = "legs" or controls = { "legs", "arms" }
@@ -101,16 +117,11 @@ void check_controls(lua_State* state, int table, const ScriptPlace& place) {
   if (count < 1 || count > static_cast<int>(max_control_sets))
     raise_at(state, place, "controls", "'controls' is a list of 1..%d names of control sets, not of %d%s",
              static_cast<int>(max_control_sets), count, count == 0 ? ": controls = { \"legs\", \"arms\" }" : "");
-  for (int i = 1; list && i <= count; ++i) {
-    lua_rawgeti(state, value, i);
-    if (lua_type(state, -1) != LUA_TSTRING)
+  each_listed(state, [&] {
+    if (list && lua_type(state, -1) != LUA_TSTRING)
       raise_at(state, place, "controls", "'controls' lists names of control sets, not a %s", luaL_typename(state, -1));
-    if (lua_objlen(state, -1) > text_max)
-      raise_at(state, place, "controls", "'controls' is longer than %d characters", static_cast<int>(text_max));
-    lua_pop(state, 1);
-  }
-  if (!list && lua_objlen(state, value) > text_max)
-    raise_at(state, place, "controls", "'controls' is longer than %d characters", static_cast<int>(text_max));
+    check_text_length(state, place, "controls");
+  });
   lua_pop(state, 1);
 }
 
@@ -119,29 +130,21 @@ void check_targets(lua_State* state, int table, const ScriptPlace& place, const 
   lua_getfield(state, table, key);
   const int value = lua_gettop(state);
   const bool list = lua_istable(state, value);
-  const auto target = [&] {
-    if (lua_type(state, -1) != LUA_TSTRING)
+  if (list && (lua_objlen(state, value) == 0 || lua_objlen(state, value) > listed_max))
+    raise_at(state, place, key, "'%s' lists 1 to %d states, in regions of one k.parallel", key,
+             static_cast<int>(listed_max));
+  each_listed(state, [&] {
+    if (lua_type(state, -1) != LUA_TSTRING && (list || !lua_isnil(state, -1)))
       raise_at(state, place, key, "'%s' must be the name of a state, or a list of names, not a %s%s", key,
                list ? "list with a " : "", luaL_typename(state, -1));
-    if (lua_objlen(state, -1) > text_max)
-      raise_at(state, place, key, "'%s' is longer than %d characters", key, static_cast<int>(text_max));
-  };
-  const auto count = list ? static_cast<int>(lua_objlen(state, value)) : 0;
-  if (list && (count == 0 || count > listed_max))
-    raise_at(state, place, key, "'%s' lists 1 to %d states, in regions of one k.parallel", key, listed_max);
-  for (int i = 1; i <= count; ++i) {
-    lua_rawgeti(state, value, i);
-    target();
-    lua_pop(state, 1);
-  }
-  if (!list && !lua_isnil(state, value)) target();
-  lua_settop(state, value - 1);
+    check_text_length(state, place, key);
+  });
+  lua_pop(state, 1);
 }
 
 void check_after(lua_State* state, int table, const ScriptPlace& place) {
   lua_getfield(state, table, "after");
-  std::size_t number = 0;
-  if (!lua_isnil(state, -1) && !is_parameter(state, -1, &number)) {
+  if (!lua_isnil(state, -1) && to_parameter(state, -1) == nullptr) {
     const bool good =
         lua_type(state, -1) == LUA_TNUMBER && lua_tonumber(state, -1) >= 0 && std::isfinite(lua_tonumber(state, -1));
     if (!good) raise_at(state, place, "after", "'after' must be seconds >= 0, or a parameter from k.params");
@@ -152,12 +155,15 @@ void check_after(lua_State* state, int table, const ScriptPlace& place) {
 void check_on(lua_State* state, int table, const ScriptPlace& place) {
   lua_getfield(state, table, "on");
   const int on = lua_gettop(state);
-  const auto event = [&](const char* where) {
+  const bool list = lua_istable(state, on);
+  if (list && (lua_objlen(state, on) == 0 || lua_objlen(state, on) > listed_max))
+    raise_at(state, place, "on", "'on' lists 1 to %d events: on = { \"a\", \"b\" }", static_cast<int>(listed_max));
+  each_listed(state, [&] {
+    if (!list && lua_isnil(state, -1)) return;
     if (lua_type(state, -1) != LUA_TSTRING)
-      raise_at(state, place, "on", "'on' must be an event's name or a list of names, not %s%s", where,
-               luaL_typename(state, -1));
-    if (lua_objlen(state, -1) > text_max)
-      raise_at(state, place, "on", "'on' is longer than %d characters", static_cast<int>(text_max));
+      raise_at(state, place, "on", "'on' must be an event's name or a list of names, not a %s%s",
+               list ? "list with a " : "", luaL_typename(state, -1));
+    check_text_length(state, place, "on");
     if (lua_objlen(state, -1) == 0) raise_at(state, place, "on", "'on' is the name of an event, not an empty text");
     const char* star = std::strchr(lua_tostring(state, -1), '*');
     const bool first = star == lua_tostring(state, -1);
@@ -165,30 +171,13 @@ void check_on(lua_State* state, int table, const ScriptPlace& place) {
       raise_at(state, place, lua_tostring(state, -1),
                "on = \"%s\": '*' stands for all words behind a dot, on = \"fault.*\", or alone for all events",
                lua_tostring(state, -1));
-  };
-  if (lua_istable(state, on)) {
-    const int count = static_cast<int>(lua_objlen(state, on));
-    if (count == 0 || count > listed_max)
-      raise_at(state, place, "on", "'on' lists 1 to %d events: on = { \"a\", \"b\" }", listed_max);
-    for (int i = 1; i <= count; ++i) {
-      lua_rawgeti(state, on, i);
-      event("a list with a ");
-      lua_pop(state, 1);
-    }
-  } else if (!lua_isnil(state, on)) {
-    event("a ");
-  }
-  lua_settop(state, on - 1);
+  });
+  lua_pop(state, 1);
 }
 
 void check_transition(lua_State* state, int table, const ScriptPlace& place) {
   core_of(state).budget.charge(state, transition_instructions);
-  const auto has = [&](const char* key) {
-    lua_getfield(state, table, key);
-    const bool there = lua_toboolean(state, -1) != 0;
-    lua_pop(state, 1);
-    return there;
-  };
+  const auto has = [&](const char* key) { return flag_of(state, table, key); };
   if (!has("to") && !has("action")) {
     check_keys(state, table, place, "a transition", transition_keys);  // `target` says more than a missing `to`
     lua_getfield(state, table, "on");
@@ -209,10 +198,9 @@ void check_transitions(lua_State* state, int list, const ScriptPlace& place, boo
   for (int i = 1; i <= count; ++i) {
     lua_rawgeti(state, list, i);
     const int entry = lua_gettop(state);
-    NodeKind kind{};
-    if (is_node(state, entry, &kind)) {
+    if (const std::optional<NodeKind> kind = node_kind(state, entry)) {
       if (!nodes_too)
-        raise_at(state, place, node_name(state, entry), "only transitions belong here, not a %s", node_word(kind));
+        raise_at(state, place, node_name(state, entry), "only transitions belong here, not a %s", node_word(*kind));
     } else if (lua_isfunction(state, entry)) {
       raise_at(state, place, nullptr, "%d: a k.state, k.call or other part without its { ... }?", i);
     } else if (!lua_istable(state, entry)) {
@@ -230,14 +218,10 @@ void make_node(lua_State* state, NodeKind kind, const char* name, const ScriptPl
   lua_createtable(state, 0, 5);
   lua_insert(state, -2);
   lua_setfield(state, -2, "body");
-  lua_pushinteger(state, static_cast<int>(kind));
-  lua_setfield(state, -2, "kind");
-  lua_pushstring(state, name);
-  lua_setfield(state, -2, "name");
-  lua_pushstring(state, place.chunk);
-  lua_setfield(state, -2, "chunk");
-  lua_pushinteger(state, place.line);
-  lua_setfield(state, -2, "line");
+  set_field(state, "kind", static_cast<int>(kind));
+  set_field(state, "name", name);
+  set_field(state, "chunk", place.chunk);
+  set_field(state, "line", place.line);
   set_kind(state, node_key);
 }
 
@@ -277,11 +261,6 @@ int finish_node(lua_State* state) {
   return 1;
 }
 
-bool good_name(const char* name) noexcept {
-  if (*name == '\0') return false;
-  return std::strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::strlen(name);
-}
-
 // The name at index 1 of k.state "name" and its kin.
 void check_name(lua_State* state, const char* word, const ScriptPlace& place) {
   if (lua_type(state, 1) != LUA_TSTRING) raise_at(state, place, nullptr, "%s needs a name", word);
@@ -289,7 +268,7 @@ void check_name(lua_State* state, const char* word, const ScriptPlace& place) {
   if (lua_objlen(state, 1) > name_max) {
     raise_at(state, place, nullptr, "%s: a name has at most %d characters", word, static_cast<int>(name_max));
   }
-  if (!good_name(name)) {
+  if (!is_word(name)) {
     raise_at(state, place, name, "%s: a name is letters, digits and '_', not \"%s\"", word, name);
   }
 }
@@ -323,9 +302,7 @@ int make_call(lua_State* state) {
 }
 
 int take_arguments(lua_State* state) {  // (node, arguments)
-  NodeKind kind{};
-  const bool call = is_node(state, 1, &kind) && kind == NodeKind::call;
-  if (!call || !lua_istable(state, 2))
+  if (node_kind(state, 1) != NodeKind::call || !lua_istable(state, 2))
     return luaL_error(state, "only k.call takes arguments, in a table { ... }; is a comma missing before this table?");
   lua_settop(state, 2);
   lua_setfield(state, 1, "body");
@@ -334,19 +311,15 @@ int take_arguments(lua_State* state) {  // (node, arguments)
 
 }  // namespace
 
-const char* node_word(NodeKind kind) noexcept {
-  constexpr const char* words[] = {"k.behavior", "k.state",   "k.parallel", "k.region",
-                                   "k.final",    "k.history", "k.call",     "k.decisions"};
-  return words[static_cast<int>(kind)];
-}
+const char* node_word(NodeKind kind) noexcept { return node_words[static_cast<std::size_t>(kind)].word; }
 
-bool is_node(lua_State* state, int index, NodeKind* kind) {
-  if (!lua_istable(state, index) || !is_kind(state, index, node_key)) return false;
+std::optional<NodeKind> node_kind(lua_State* state, int index) {
+  if (!lua_istable(state, index) || !is_kind(state, index, node_key)) return std::nullopt;
   lua_pushvalue(state, index);
   lua_getfield(state, -1, "kind");
-  *kind = static_cast<NodeKind>(lua_tointeger(state, -1));
+  const auto kind = static_cast<NodeKind>(lua_tointeger(state, -1));
   lua_pop(state, 2);
-  return true;
+  return kind;
 }
 
 const char* node_name(lua_State* state, int index) {
@@ -356,12 +329,10 @@ const char* node_name(lua_State* state, int index) {
   return name;  // anchored by the node
 }
 
-ScriptPlace node_place(lua_State* state, int index) {
-  lua_getfield(state, index, "chunk");
-  lua_getfield(state, index, "line");
-  const ScriptPlace place{lua_tostring(state, -2), static_cast<int>(lua_tointeger(state, -1))};
-  lua_pop(state, 2);
-  return place;
+int find_line(lua_State* state, const ScriptPlace& place, const char* text) {
+  const LuaState& owner = *core_of(state).owner;
+  core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
+  return owner.line_of(place.chunk, place.line, text);
 }
 
 std::vector<std::string> transition_key_names() {
@@ -377,8 +348,6 @@ void push_node_maker(lua_State* state, NodeKind kind, int name, const ScriptPlac
   lua_pushinteger(state, place.line);
   lua_pushcclosure(state, finish_node, 4);
 }
-
-void push_node_body(lua_State* state, int index) { lua_getfield(state, index, "body"); }
 
 void open_nodes(lua_State* state) {
   const luaL_Reg functions[] = {{"__call", take_arguments}};
@@ -397,8 +366,15 @@ void open_nodes(lua_State* state) {
 namespace {
 
 constexpr std::size_t states_max = 4000, transitions_max = 16000;  // what a chart takes is not the script's memory
-constexpr std::size_t key_text_max = 256;
 constexpr int call_depth_max = 16;
+
+ScriptPlace node_place(lua_State* state, int index) {
+  lua_getfield(state, index, "chunk");
+  lua_getfield(state, index, "line");
+  const ScriptPlace place{lua_tostring(state, -2), static_cast<int>(lua_tointeger(state, -1))};
+  lua_pop(state, 2);
+  return place;
+}
 
 // Nothing here may hold what needs a destructor while it calls Lua: strings go straight into the chart.
 struct Reader {
@@ -413,29 +389,20 @@ struct Reader {
   const char* text(int table, const char* key) const {  // anchored by the table
     lua_getfield(state, table, key);
     const char* value = lua_tostring(state, -1);
-    if (value != nullptr && lua_objlen(state, -1) > key_text_max) luaL_error(state, "'%s' is too long", key);
+    if (value != nullptr && lua_objlen(state, -1) > text_max) luaL_error(state, "'%s' is too long", key);
     lua_pop(state, 1);
     return value != nullptr ? value : "";
   }
 
   void read_names(int table, const char* key, std::vector<std::string>& names) const {
     lua_getfield(state, table, key);
-    if (lua_type(state, -1) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -1));
-    const int count = lua_istable(state, -1) ? static_cast<int>(lua_objlen(state, -1)) : 0;
-    for (int i = 1; i <= count; ++i) {
-      lua_rawgeti(state, -1, i);
+    each_listed(state, [&] {
       if (lua_type(state, -1) == LUA_TSTRING) names.emplace_back(lua_tostring(state, -1));
-      lua_pop(state, 1);
-    }
+    });
     lua_pop(state, 1);
   }
 
-  // Both look through what is there already.
-  int find_line(const ScriptPlace& place, const char* text) const {
-    const LuaState& owner = *core_of(state).owner;
-    core_of(state).budget.charge(state, owner.search_instructions(place.chunk));
-    return owner.line_of(place.chunk, place.line, text);
-  }
+  // Looks through what is there already.
   EventId intern(const char* event) const {
     core_of(state).budget.charge(state, static_cast<double>(chart.events.size()));
     return chart.intern(event);
@@ -465,14 +432,13 @@ struct Reader {
     Chart::Transition& made = chart.transitions.emplace_back();
     made.source = source;
     read_names(table, "to", made.target_names);
-    made.line = find_line(place, !made.target_names.empty() ? made.target_names.front().c_str()
-                                 : *on != '\0'              ? on
-                                                            : "action");
+    made.line = find_line(state, place,
+                          !made.target_names.empty() ? made.target_names.front().c_str()
+                          : *on != '\0'              ? on
+                                                     : "action");
     made.when = reference(table, "when");
     made.action = reference(table, "action");
-    lua_getfield(state, table, "internal");
-    made.internal = lua_toboolean(state, -1) != 0;
-    lua_pop(state, 1);
+    made.internal = flag_of(state, table, "internal");
     if (*on != '\0') made.on = intern(on);
     if (Chart::is_pattern(on)) {
       made.pattern = chart.intern_pattern(on);
@@ -480,11 +446,10 @@ struct Reader {
         raise_at(state, place, on, "more than %d different names with '*'", static_cast<int>(Chart::patterns_max));
     }
     lua_getfield(state, table, "after");
-    std::size_t number = 0;
     made.timed = !lua_isnil(state, -1);
-    if (is_parameter(state, -1, &number)) {
-      made.after_parameter = static_cast<std::int32_t>(number);
-      made.after_name = core_of(state).parameters[number].name;
+    if (const std::size_t* number = to_parameter(state, -1)) {
+      made.after_parameter = static_cast<std::int32_t>(*number);
+      made.after_name = core_of(state).parameters[*number].name;
     } else if (made.timed) {
       made.after_s = lua_tonumber(state, -1);
     }
@@ -499,8 +464,7 @@ struct Reader {
     const int count = static_cast<int>(lua_objlen(state, list));
     for (int i = 1; i <= count; ++i) {
       lua_rawgeti(state, list, i);
-      NodeKind kind{};
-      if (!is_node(state, -1, &kind)) read_transition(lua_gettop(state), source, place);
+      if (!node_kind(state, -1)) read_transition(lua_gettop(state), source, place);
       lua_pop(state, 1);
     }
     return static_cast<std::uint16_t>(chart.transitions.size() - before);
@@ -541,10 +505,8 @@ struct Reader {
         if (made.outcome_name.empty()) made.outcome_name = "done";
         made.outcome = intern(made.outcome_name.c_str());
       }
-      lua_getfield(state, body, "deep");
-      made.deep = lua_toboolean(state, -1) != 0;
-      lua_getfield(state, body, "endless");
-      made.endless = lua_toboolean(state, -1) != 0;
+      made.deep = flag_of(state, body, "deep");
+      made.endless = flag_of(state, body, "endless");
       made.first_transition = static_cast<std::uint16_t>(chart.transitions.size());
     }
     const std::uint16_t transitions = read_transitions(body, index, place);
@@ -565,8 +527,7 @@ struct Reader {
     const int count = static_cast<int>(lua_objlen(state, body));
     for (int i = 1; i <= count; ++i) {
       lua_rawgeti(state, body, i);
-      NodeKind kind{};
-      if (is_node(state, -1, &kind)) read_node(lua_gettop(state), kind, index, depth);
+      if (const auto kind = node_kind(state, -1)) read_node(lua_gettop(state), *kind, index, depth);
       lua_settop(state, body);
     }
   }
@@ -581,7 +542,7 @@ struct Reader {
                                      Chart::Kind::region, Chart::Kind::final_state, Chart::Kind::history};
     const StateIndex index =
         add_state(name, kinds[static_cast<int>(kind)], parent, chart.states[parent].machine, place);
-    push_node_body(state, node);
+    lua_getfield(state, node, "body");
     read_body(lua_gettop(state), index, place, depth);
   }
 
@@ -598,13 +559,12 @@ struct Reader {
       raise_at(state, place, name, "k.call: %s", text != nullptr ? text : "?");
     }
     const int behavior = lua_gettop(state);
-    NodeKind kind{};
     const NodeKind wanted = chart.decides ? NodeKind::decisions : NodeKind::behavior;
-    if (!is_node(state, behavior, &kind) || kind != wanted) {
+    if (node_kind(state, behavior) != wanted) {
       raise_at(state, place, name, "k.call: '%s' does not return a %s%s", name, node_word(wanted),
                chart.decides ? ": decisions m:play() behaviors" : "");
     }
-    push_node_body(state, node);
+    lua_getfield(state, node, "body");
     const int given = lua_gettop(state);
     const std::size_t number = chart.machines.size();
     read_machine(behavior, parent, depth + 1);
@@ -630,7 +590,7 @@ struct Reader {
     chart.machines.emplace_back();
     const StateIndex index = add_state(parent == no_state ? "" : name, Chart::Kind::state, parent, number, place);
     chart.states[index].machine_root = true;
-    push_node_body(state, behavior);
+    lua_getfield(state, behavior, "body");
     const int body = lua_gettop(state);
     Chart::Machine& machine = chart.machines[number];
     machine.name = name;
@@ -667,8 +627,7 @@ void charge_resolving(lua_State* state, const Chart& chart) {
 
 void read_chart(lua_State* state, int index, Chart& chart) {
   Reader reader{state, chart};
-  NodeKind kind{};
-  chart.decides = is_node(state, index, &kind) && kind == NodeKind::decisions;
+  chart.decides = node_kind(state, index) == NodeKind::decisions;
   chart.name = node_name(state, index);
   reader.read_machine(index, no_state, 0);
   charge_resolving(state, chart);

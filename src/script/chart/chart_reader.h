@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,9 @@ namespace kadans {
 enum class NodeKind : int { behavior, state, parallel, region, final_state, history, call, decisions };
 const char* node_word(NodeKind kind) noexcept;  // "k.state"
 
-// True when the value at `index` is a node; then `kind` is set.
-bool is_node(lua_State* state, int index, NodeKind* kind);
-// The name, the place and the body of the node at `index`.
+// The kind of the node at `index`; nullopt: it is none.
+std::optional<NodeKind> node_kind(lua_State* state, int index);
 const char* node_name(lua_State* state, int index);
-ScriptPlace node_place(lua_State* state, int index);
-void push_node_body(lua_State* state, int index);  // [-0 +1]
 // [-0 +1] Pushes what makes a node of a body: the name is at `name`, and mistakes are told at `place`.
 void push_node_maker(lua_State* state, NodeKind kind, int name, const ScriptPlace& place);
 // [-0 +0] Raises unless the value at index 1 is a good name of a node.
@@ -39,8 +37,11 @@ void open_parameters(lua_State* state);
 void declare_play_events(lua_State* state);
 // [-1 +1] Adds events, flag and text to the module's table at the top of the stack.
 void open_events(lua_State* state);
-// True when the value at `index` is a parameter; then `number` is its index in LuaCore::parameters.
-bool is_parameter(lua_State* state, int index, std::size_t* number);
+// The index in LuaCore::parameters of the parameter at `index`; nullptr: it is none.
+const std::size_t* to_parameter(lua_State* state, int index);
+
+// The line of the file on which this text stands first from the place on, charged for the search. Raises.
+int find_line(lua_State* state, const ScriptPlace& place, const char* text);
 
 std::vector<std::string> transition_key_names();
 

@@ -101,20 +101,13 @@ void ChartRunner::note_failure(lua_State* state, StateIndex index, const Attempt
   failure_ = core.error;
   core.error.clear();
   core.budget.charge(state, failure_instructions);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
   lua_createtable(state, 0, 5);
-  lua_pushstring(state, failure_.message.data());
-  lua_setfield(state, -2, "message");
-  lua_pushstring(state, failure_.file.data());
-  lua_setfield(state, -2, "file");
-  lua_pushinteger(state, failure_.line);
-  lua_setfield(state, -2, "line");
-  lua_pushstring(state, cause_of(chart_, index, core.called));
-  lua_setfield(state, -2, "cause");
-  lua_pushstring(state, chart_.states[index].path.c_str());
-  lua_setfield(state, -2, "state");
-  lua_rawseti(state, -2, failure_slot);
-  lua_pop(state, 1);
+  set_field(state, "message", failure_.message.data());
+  set_field(state, "file", failure_.file.data());
+  set_field(state, "line", failure_.line);
+  set_field(state, "cause", cause_of(chart_, index, core.called));
+  set_field(state, "state", chart_.states[index].path.c_str());
+  set_entry(state, tables_.event_data, failure_slot);
 }
 
 // [-1 +0] The text at the top, with its place, is an error in this state.
@@ -126,19 +119,17 @@ void ChartRunner::fail(lua_State* state, StateIndex index) {
   lua_pop(state, 1);
 }
 
-void ChartRunner::raise_failure(lua_State* state) {
-  core_of(state).error = failure_;
-  lua_pushstring(state, failure_.message.data());
-  lua_error(state);
-}
-
 // Takes the step for the error.
 void ChartRunner::recover(lua_State* state) {
   failed_ = false;
   const WaitingEvent event{.id = chart_.error_event, .from = failed_in_, .place = failure_place};
   show_event(state, event);
   select(state, &event);
-  if (selected_.empty()) return raise_failure(state);
+  if (selected_.empty()) {
+    core_of(state).error = failure_;
+    lua_pushstring(state, failure_.message.data());
+    lua_error(state);
+  }
   sink_.recovered(failure_);
   take_step(state);
   forget_data(state, event);

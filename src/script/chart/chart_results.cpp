@@ -4,6 +4,7 @@
 #include <lua.hpp>
 
 #include "chart_runner.h"
+#include "script/lua/lua_core.h"
 
 namespace kadans {
 
@@ -11,13 +12,11 @@ namespace kadans {
 bool ChartRunner::make_result(lua_State* state, StateIndex index) {
   const int function = chart_.states[index].result;
   if (function == Chart::no_function) return true;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.results);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.make_result);
   push_call(state, function, index);
-  const bool made = call_recoverably(state, index, 3, 1);
-  if (made) lua_rawseti(state, -2, index + 1);
-  lua_pop(state, 1);
-  return made;
+  if (!call_recoverably(state, index, 3, 1)) return false;
+  set_entry(state, tables_.results, index + 1);
+  return true;
 }
 
 // The final state with which a state ended; no_state: it has not ended so.
@@ -34,9 +33,7 @@ StateIndex ChartRunner::final_in(StateIndex index) const noexcept {
 // [-0 +1 when true]
 bool ChartRunner::push_result_of(lua_State* state, StateIndex ended) const {
   if (ended == no_state || chart_.states[ended].result == Chart::no_function) return false;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.results);
-  lua_rawgeti(state, -1, ended + 1);
-  lua_remove(state, -2);
+  push_entry(state, tables_.results, ended + 1);
   return true;
 }
 

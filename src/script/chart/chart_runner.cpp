@@ -96,15 +96,8 @@ bool ChartRunner::select_event(lua_State* state, bool ends_only) {
 
 bool ChartRunner::post_with_data(lua_State* state, EventId event) {
   const std::int8_t place = queue_.free_place();
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
-  lua_insert(state, -2);
   const bool posted = queue_.send(event, place);
-  if (posted) {
-    lua_rawseti(state, -2, place + 1);
-  } else {
-    lua_pop(state, 1);
-  }
-  lua_pop(state, 1);
+  posted ? set_entry(state, tables_.event_data, place + 1) : lua_pop(state, 1);
   return posted;
 }
 
@@ -118,11 +111,8 @@ void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
   push_event_name(state, event.id);
   lua_rawset(state, -3);
   lua_pop(state, 1);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
   if (event.place >= 0) {
-    lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
-    lua_rawgeti(state, -1, event.place + 1);
-    lua_remove(state, -2);
+    push_entry(state, tables_.event_data, event.place + 1);
   } else if (event.from != no_state && chart_.states[event.from].kind == Chart::Kind::parallel) {
     push_outcomes(state, event.from);
   } else if (event.from != no_state && push_result_of(state, final_in(event.from))) {
@@ -132,15 +122,12 @@ void ChartRunner::show_event(lua_State* state, const WaitingEvent& event) {
   } else {
     lua_pushnil(state);
   }
-  lua_rawseti(state, -2, shown_slot);
-  lua_pop(state, 1);
+  set_entry(state, tables_.event_data, shown_slot);
 }
 
 void ChartRunner::push_shown_data(lua_State* state) {
   if (shown_.id == no_event) return lua_pushnil(state);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
-  lua_rawgeti(state, -1, shown_slot);
-  lua_remove(state, -2);
+  push_entry(state, tables_.event_data, shown_slot);
   if (lua_isnil(state, -1)) return;
   push_plain_copy(state, lua_gettop(state));
   lua_remove(state, -2);
@@ -177,10 +164,9 @@ void ChartRunner::hide_event(lua_State* state) {
   lua_pushliteral(state, "name");
   lua_pushnil(state);
   lua_rawset(state, -3);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
+  lua_pop(state, 1);
   lua_pushnil(state);
-  lua_rawseti(state, -2, shown_slot);
-  lua_pop(state, 2);
+  set_entry(state, tables_.event_data, shown_slot);
 }
 
 // [-0 +1] { outcomes = { region = "done" }, results = { region = { ... } } }
@@ -203,10 +189,8 @@ void ChartRunner::push_outcomes(lua_State* state, StateIndex parallel) {
 void ChartRunner::forget_data(lua_State* state, const WaitingEvent& event) {
   if (event.place < 0) return;
   queue_.free(event);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.event_data);
   lua_pushnil(state);
-  lua_rawseti(state, -2, event.place + 1);
-  lua_pop(state, 1);
+  set_entry(state, tables_.event_data, event.place + 1);
 }
 
 void ChartRunner::drop_events(lua_State* state, std::uint32_t steps) {
@@ -374,11 +358,8 @@ void ChartRunner::mark_entry(StateIndex target) noexcept {
 
 // SCXML, computeEntrySet: all targets with what is in them, then what is around them.
 void ChartRunner::mark_targets(const Chart::Transition& transition) noexcept {
-  if (transition.target == no_state) return;
-  mark_entry(transition.target);
-  for (const StateIndex target : transition.also) mark_entry(target);
-  mark_ancestors(transition.target, transition.domain);
-  for (const StateIndex target : transition.also) mark_ancestors(target, transition.domain);
+  transition.each_target([&](StateIndex target) { mark_entry(target); });
+  transition.each_target([&](StateIndex target) { mark_ancestors(target, transition.domain); });
 }
 
 void ChartRunner::mark_defaults(StateIndex index, StateIndex around) noexcept {
@@ -514,10 +495,8 @@ bool ChartRunner::call(lua_State* state, int function, StateIndex index) {
 }
 
 void ChartRunner::start_run(lua_State* state, StateIndex index) {
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.threads);
   lua_State* thread = lua_newthread(state);
-  lua_rawseti(state, -2, index + 1);
-  lua_pop(state, 1);
+  set_entry(state, tables_.threads, index + 1);
   lua_rawgeti(state, LUA_REGISTRYINDEX, chart_.states[index].run);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[index].machine].handle);
   lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.snapshot);
@@ -534,10 +513,8 @@ void ChartRunner::cancel_run(lua_State* state, StateIndex index) {
   if (run.thread == nullptr) return;
   run.thread = nullptr;
   run.motion = nullptr;
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.threads);
   lua_pushnil(state);
-  lua_rawseti(state, -2, index + 1);
-  lua_pop(state, 1);
+  set_entry(state, tables_.threads, index + 1);
 }
 
 // Whether what the coroutine waits for is over; pushes what its wait() returns.

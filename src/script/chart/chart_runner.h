@@ -127,6 +127,7 @@ class ChartRunner {
   // The active state in `around`, the first when there are several; `around` itself when none in it is.
   StateIndex innermost(StateIndex around = 0) const noexcept;
   double state_time_s(StateIndex state) const noexcept;
+  double after_s(lua_State* state, const Chart::Transition& transition) const noexcept;  // of a timed one
   bool run_done(StateIndex state) const noexcept { return run_[state].run_done; }
   // Its `run` has begun, and is not over.
   bool run_under_way(StateIndex state) const noexcept {
@@ -182,20 +183,16 @@ class ChartRunner {
   void push_guard(lua_State* state, std::uint16_t transition);
   template <typename Takes>
   bool has_transition_for(StateIndex index, Takes takes) const noexcept {
-    const Chart::State& at = chart_.states[index];
-    const auto begin = chart_.transitions.begin();
-    return std::any_of(begin + at.first_transition, begin + at.first_transition + at.transition_count, takes) ||
-           std::any_of(begin + at.first_always, begin + at.first_always + at.always_count, takes);
+    return std::ranges::any_of(chart_.transitions_of(chart_.states[index]), takes);
   }
   bool enabled(lua_State* state, std::uint16_t transition, const WaitingEvent* event);
   bool happened(std::uint16_t transition, const WaitingEvent* event) const noexcept;
   bool due(lua_State* state, std::uint16_t transition) const;
-  double after_s(lua_State* state, const Chart::Transition& transition) const noexcept;
   bool guard(lua_State* state, std::uint16_t transition);
   bool there_already(const Chart::Transition& transition) const noexcept;
   bool acted(std::uint16_t transition) const noexcept;
   bool lets_pass(StepMeter& meter, std::uint16_t transition, const WaitingEvent* event);
-  void add_selected(std::uint16_t transition) noexcept;
+  void add_selected(StepMeter& meter, std::uint16_t transition);
   bool passes_over(std::uint16_t taken, std::uint16_t due) const noexcept;
   bool conflict(std::uint16_t one, std::uint16_t other) const noexcept;
 
@@ -246,13 +243,11 @@ class ChartRunner {
   static void keep_run_error(lua_State* state, lua_State* thread);
   void note_failure(lua_State* state, StateIndex index, const Attempt& attempt);
   void fail(lua_State* state, StateIndex index);
-  void raise_failure(lua_State* state);
   void recover(lua_State* state);
   void recover_late(lua_State* state);
   void enter_no_further(StateIndex index) noexcept;
   // Evaluates what the call of a machine that is being entered gives to it. False: as call().
   bool evaluate_call(lua_State* state, std::uint16_t machine);
-  bool push_given_by(lua_State* state, StateIndex caller, int function);
   void set_time(lua_State* state, StateIndex index);
   // [-0 +3] The function and its arguments, m and s.
   void push_call(lua_State* state, int function, StateIndex index);

@@ -136,8 +136,7 @@ bool ChartRunner::there_already(const Chart::Transition& transition) const noexc
 // An action alone, without an event that it would use up, is taken beside what else is found.
 bool ChartRunner::lets_pass(StepMeter& meter, std::uint16_t number, const WaitingEvent* event) {
   if (chart_.transitions[number].target != no_state || event != nullptr) return false;
-  meter.spend(selected_steps * selected_.size());
-  add_selected(number);
+  add_selected(meter, number);
   return true;
 }
 
@@ -174,7 +173,8 @@ bool ChartRunner::conflict(std::uint16_t one, std::uint16_t other) const noexcep
 }
 
 // Keeps `selected_` free of transitions that leave the same states.
-void ChartRunner::add_selected(std::uint16_t added) noexcept {
+void ChartRunner::add_selected(StepMeter& meter, std::uint16_t added) {
+  meter.spend(selected_steps * selected_.size());
   const Chart::Transition& transition = chart_.transitions[added];
   for (const std::uint16_t other : selected_) {
     if (other == added) return;
@@ -199,15 +199,12 @@ void ChartRunner::select(lua_State* state, const WaitingEvent* event) {
     const std::uint16_t found = select_always(state, meter, active_[i], event);
     run_[active_[i]].decided = found != none;
     if (found == none) continue;
-    meter.spend(selected_steps * selected_.size());
-    add_selected(found);
+    add_selected(meter, found);
   }
   for (std::size_t i = 0; i < active_.size(); ++i) {
     if (!is_leaf(i) || run_[active_[i]].decided) continue;
     const std::uint16_t found = select_ordinary(state, meter, active_[i], event);
-    if (found == none) continue;
-    meter.spend(selected_steps * selected_.size());
-    add_selected(found);
+    if (found != none) add_selected(meter, found);
   }
   if (event == nullptr && !selected_.empty()) note_passed_over(state, meter);
   meter.settle();
@@ -216,17 +213,10 @@ void ChartRunner::select(lua_State* state, const WaitingEvent* event) {
 // Not those beside an event: there is none.
 void ChartRunner::try_guards(lua_State* state) {
   ++look_;
-  const auto attempt = [&](std::uint16_t number) {
-    const EventId on = chart_.transitions[number].on;
-    if (on == no_event || on == run_done_event) (void)guard(state, number);
-  };
   for (const StateIndex index : active_) {
-    const Chart::State& at = chart_.states[index];
-    for (std::uint16_t i = 0; i < at.transition_count; ++i) {
-      attempt(static_cast<std::uint16_t>(at.first_transition + i));
-    }
-    for (std::uint16_t i = 0; i < at.always_count; ++i) {
-      attempt(static_cast<std::uint16_t>(at.first_always + i));
+    for (const Chart::Transition& one : chart_.transitions_of(chart_.states[index])) {
+      if (one.on == no_event || one.on == run_done_event)
+        (void)guard(state, static_cast<std::uint16_t>(&one - chart_.transitions.data()));
     }
   }
 }

@@ -47,10 +47,10 @@ void fill_given(lua_State* state, const char* name, const ScriptPlace& place) {
     const int value = lua_gettop(state);
     lua_getfield(state, at_declared, key);
     if (lua_isnil(state, -1)) refuse_unknown(state, key, name, place);
-    std::size_t number = 0;
+    const std::size_t* number = to_parameter(state, value);
     const char* of = lua_pushfstring(state, "skill '%s'", name);
-    const bool wrong = is_parameter(state, value, &number)
-                           ? push_followed_refusal(state, value + 1, core_of(state).parameters[number], key, of)
+    const bool wrong = number != nullptr
+                           ? push_followed_refusal(state, value + 1, core_of(state).parameters[*number], key, of)
                            : push_refusal(state, value + 1, value, key, of);
     if (wrong) raise_at(state, place, key, "%s", lua_tostring(state, -1));
     lua_settop(state, value);
@@ -67,8 +67,8 @@ int read_given_argument(lua_State* state) {  // (proxy, key)
   lua_pushvalue(state, 2);
   lua_rawget(state, lua_upvalueindex(1));
   if (lua_isnil(state, 3)) return raise_unknown_field(state, "the skill's arguments", lua_upvalueindex(1), 2);
-  std::size_t number = 0;
-  if (!core_of(state).loading && is_parameter(state, 3, &number)) lua_pushnumber(state, value_here(state, number));
+  const std::size_t* number = to_parameter(state, 3);
+  if (!core_of(state).loading && number != nullptr) lua_pushnumber(state, value_here(state, *number));
   return 1;
 }
 
@@ -78,9 +78,9 @@ void push_made(lua_State* state, const char* name, const ScriptPlace& place) {
   lua_pushvalue(state, at_given);
   push_reader(state, read_given_argument, refuse_change);
   lua_call(state, 1, 1);
-  NodeKind kind{};
-  const bool good = is_node(state, lua_gettop(state), &kind) && kind != NodeKind::behavior &&
-                    kind != NodeKind::region && kind != NodeKind::final_state && kind != NodeKind::history;
+  const std::optional<NodeKind> kind = node_kind(state, -1);
+  const bool good = kind && kind != NodeKind::behavior && kind != NodeKind::region && kind != NodeKind::final_state &&
+                    kind != NodeKind::history;
   if (good) return;
   raise_at(state, place, nullptr, "skill '%s': its make must return a k.state, k.parallel or k.call", name);
 }
@@ -106,10 +106,9 @@ int use_skill(lua_State* state) {
   const auto count = static_cast<int>(lua_objlen(state, at_body));
   for (int i = 1; i <= count; ++i) {
     lua_rawgeti(state, at_body, i);
-    NodeKind kind{};
-    if (is_node(state, lua_gettop(state), &kind))
+    if (const std::optional<NodeKind> kind = node_kind(state, -1))
       raise_at(state, place, node_name(state, lua_gettop(state)), "a skill takes arguments and transitions, not a %s",
-               node_word(kind));
+               node_word(*kind));
     lua_rawseti(state, at_made, i + 1);
   }
   push_node_maker(state, NodeKind::state, lua_upvalueindex(2), place);

@@ -9,7 +9,7 @@
 //
 // The state "hello" is the caller's: its mistakes, and wrong arguments, are told at the caller's line. Inside is the
 // state that `make` returns. `make` gets all arguments, checked. The reference of behaviors lists the skills of
-// behaviors/lib (script/bindings/skill_reference.h).
+// behaviors/lib (script/bindings/api.h).
 #pragma once
 
 #include <lua.hpp>

@@ -3,10 +3,20 @@
 #include <algorithm>
 
 #include "chart.h"
-#include "chart_reports.h"
+#include "script/check/hint.h"
 
 namespace kadans {
 namespace {
+
+constexpr std::size_t reported_max = 20;
+constexpr std::string_view fault_prefix = "fault.";
+
+std::vector<std::string> fault_names() {
+  std::vector<std::string> names;
+  for (std::size_t code = 1; code < fault_codes; ++code)
+    names.push_back(std::string(fault_prefix) + name(static_cast<FaultCode>(code)));
+  return names;
+}
 
 // SCXML, section 3.12.1: by whole words. "fault.*" takes "fault" and "fault.motor_hot", not "faulty". Ours: "*" takes
 // what is sent, but no reports of the runner.
@@ -57,6 +67,45 @@ EventId Chart::find_or_learn(std::string_view event) {
   if (known != no_event || !learn) return known;
   ++late_;
   return intern(event);
+}
+
+bool reserved_for_reports(std::string_view event) noexcept {
+  return event == "error" || event == "refused" || event.starts_with(fault_prefix);
+}
+
+void Chart::find_reports(std::vector<InputProblem>& problems) {
+  error_event = find_event("error");
+  refused_event = find_event("refused");
+  fault_events.clear();
+  const std::vector<std::string> names = fault_names();
+  for (const std::string& fault : names) {  // known now to what waits for "fault.*"
+    if (any_pattern_takes(fault)) intern(fault);
+  }
+  for (std::size_t code = 0; code < names.size(); ++code) {
+    const EventId event = find_event(names[code]);
+    if (event != no_event) fault_events.emplace_back(static_cast<FaultCode>(code + 1), event);
+  }
+  waits_for_reports = refused_event != no_event || !fault_events.empty();
+  takes_errors.assign(states.size(), false);
+  for (const Transition& transition : transitions) {
+    if (transition.on == no_event || problems.size() >= reported_max) continue;
+    if (transition.on == error_event) takes_errors[transition.source] = true;
+    const std::string& event = events[static_cast<std::size_t>(transition.on)];
+    const bool some = std::ranges::any_of(
+        fault_events, [&](const auto& fault) { return takes_by_pattern(transition, fault.second); });
+    if (!event.starts_with(fault_prefix) || is_report(transition.on) || some) continue;
+    problems.push_back({states[transition.source].chunk, transition.line, 0,
+                        "the safety layer knows no '" + event + "'" + hint_text(event, names)});
+  }
+  for (StateIndex i = 1; i < size(); ++i)  // what is around a state comes before it
+    takes_errors[i] = takes_errors[i] || takes_errors[states[i].parent];
+  for (const State& state : states) {
+    if (problems.size() >= reported_max) break;
+    if (state.outcome == no_event || !reserved_for_reports(state.outcome_name)) continue;
+    problems.push_back({state.chunk, state.line, 0,
+                        "final '" + state.name + "' cannot end with '" + state.outcome_name +
+                            "': the runner makes that event; give the outcome another name"});
+  }
 }
 
 }  // namespace kadans

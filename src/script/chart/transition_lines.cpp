@@ -9,13 +9,11 @@
 namespace kadans {
 namespace {
 
-using Tokens = std::vector<SourceToken>;
-
 // The opening brace of `k.state "name" {` from this line on; 0: not written so.
 std::size_t body_of(const Tokens& tokens, int line, const std::string& name) {
   const auto first = std::ranges::lower_bound(tokens, line, {}, &SourceToken::line);
   for (auto i = static_cast<std::size_t>(first - tokens.begin()); i + 2 < tokens.size(); ++i) {
-    if (tokens[i].kind != SourceToken::Kind::text || tokens[i].text != name) continue;
+    if (tokens[i].kind != TokenKind::text || tokens[i].text != name) continue;
     const std::size_t behind = tokens[i + 1].is(")") ? i + 2 : i + 1;
     if (tokens[behind].is("{")) return behind;
   }
@@ -27,10 +25,10 @@ std::size_t body_of(const Tokens& tokens, int line, const std::string& name) {
 std::size_t target_of(const Tokens& tokens, std::size_t at) {
   if (!tokens[at].is("{")) return 0;
   for (const std::size_t part : parts_of(tokens, at + 1)) {
-    if (tokens[part].kind != SourceToken::Kind::name || tokens[part].text != "to") continue;
+    if (!tokens[part].is_name("to")) continue;
     if (!tokens[part + 1].is("=")) return 0;
     const std::size_t first = tokens[part + 2].is("{") ? part + 3 : part + 2;
-    return tokens[first].kind == SourceToken::Kind::text ? first : 0;
+    return tokens[first].kind == TokenKind::text ? first : 0;
   }
   return at;
 }
@@ -60,9 +58,7 @@ void place(const Tokens& tokens, std::size_t at, Chart& chart, std::uint16_t fir
 
 std::size_t always_of(const Tokens& tokens, std::size_t at) {
   for (const std::size_t part : parts_of(tokens, at + 1)) {
-    const bool found = tokens[part].kind == SourceToken::Kind::name && tokens[part].text == "always" &&
-                       tokens[part + 1].is("=") && tokens[part + 2].is("{");
-    if (found) return part + 2;
+    if (tokens[part].is_name("always") && tokens[part + 1].is("=") && tokens[part + 2].is("{")) return part + 2;
   }
   return 0;
 }

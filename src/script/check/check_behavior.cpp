@@ -6,7 +6,6 @@
 
 #include "check_source.h"
 #include "hint.h"
-#include "known_names.h"
 #include "script/behavior/behavior_parts.h"
 #include "script/chart/chart_reader.h"
 #include "script/lua/lua_core.h"
@@ -34,23 +33,20 @@ struct Looked {
 };
 
 // Runs the file and looks at what it returns.
-int look_at_file(lua_State* state) {
-  auto& looked = *static_cast<Looked*>(lua_touserdata(state, 1));
+void look_at_file(lua_State* state, Looked& looked) {
   if (looked.found.kind == ScriptKind::test) {
-    if (luaL_loadbuffer(state, test_stubs, sizeof test_stubs - 1, "=kadans test") != 0) return lua_error(state);
+    if (luaL_loadbuffer(state, test_stubs, sizeof test_stubs - 1, "=kadans test") != 0) lua_error(state);
     push_environment(state);
     lua_setfenv(state, -2);
     lua_call(state, 0, 5);
     open_test_names(state);
   }
-  if (!looked.parts.lua->load_file(state, looked.parts.settings.file)) return lua_error(state);
+  if (!looked.parts.lua->load_file(state, looked.parts.settings.file)) lua_error(state);
   lua_call(state, 0, 1);
-  NodeKind kind{};
+  const std::optional<NodeKind> kind = node_kind(state, -1);
   looked.returned = !lua_isnil(state, -1);
   looked.unfinished = lua_iscfunction(state, -1) != 0;
-  if (is_node(state, lua_gettop(state), &kind) && (kind == NodeKind::behavior || kind == NodeKind::decisions))
-    looked.found.kind = ScriptKind::behavior;
-  return 0;
+  if (kind == NodeKind::behavior || kind == NodeKind::decisions) looked.found.kind = ScriptKind::behavior;
 }
 
 // expect(x).to_equal, k.play "file" { options }: what is written out.
@@ -71,8 +67,6 @@ class TestCalls {
   }
 
  private:
-  using TokenKind = SourceToken::Kind;
-
   void problem(const SourceToken& at, const std::string& message) {
     problems_.push_back({source_.chunk, at.line, 0, message});
   }
@@ -105,15 +99,14 @@ class TestCalls {
   const LuaState::Source& source_;
   const Behavior::Settings& settings_;
   std::vector<InputProblem>& problems_;
-  std::vector<SourceToken> tokens_;
+  Tokens tokens_;
 };
 
 void check_loaded(Looked& looked) {
   Behavior::Parts& parts = looked.parts;
   std::vector<InputProblem>& problems = looked.found.problems;
   const LuaState::Source& own = parts.lua->sources().front();
-  KnownNames known = read_known_names(parts);
-  check_sources(parts, known, problems);
+  check_sources(parts, problems);
   if (looked.found.kind == ScriptKind::test) {
     TestCalls(own, parts.settings, problems).run();
   } else if (looked.unfinished) {
@@ -130,7 +123,7 @@ void check_loaded(Looked& looked) {
 std::vector<InputProblem> check_behavior(const std::filesystem::path& root, const std::filesystem::path& file,
                                          const Catalog& catalog) {
   BehaviorLog silence;
-  const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
+  const Behavior::Settings settings{.root = root, .file = root / file};
   Behavior::Parts parts(settings, catalog, silence);
   std::vector<InputProblem> problems;
   try {
@@ -139,8 +132,7 @@ std::vector<InputProblem> check_behavior(const std::filesystem::path& root, cons
     check_vars(parts, problems);
     check_livelocks(parts, problems);
     check_event_data(parts, problems);
-    KnownNames known = read_known_names(parts);
-    check_sources(parts, known, problems);
+    check_sources(parts, problems);
   } catch (const InputError& error) {
     return error.problems();
   }
@@ -157,22 +149,15 @@ void tell_once(std::vector<InputProblem>& problems) {
 
 CheckedScript check_script(const fs::path& root, const fs::path& file, const Catalog* catalog) {
   BehaviorLog silence;
-  const Behavior::Settings settings{.root = root, .file = file.is_absolute() ? file : root / file};
+  const Behavior::Settings settings{.root = root, .file = root / file};
   Behavior::Parts parts(settings, catalog == nullptr ? no_robot : *catalog, silence);
-  parts.lua = std::make_unique<LuaState>(LuaState::Settings{.root = root,
-                                                            .folder = settings.file.parent_path(),
-                                                            .name = settings.file.stem().string(),
-                                                            .limits = settings.limits});
-  parts.bindings.catalog = &parts.catalog;
+  open_lua(parts);
   if (catalog != nullptr) parts.lua->core().bindings = &parts.bindings;
   Looked looked{parts};
   looked.found.kind = file.string().ends_with("_test.lua") ? ScriptKind::test : ScriptKind::module;
-  if (!parts.lua->call(look_at_file, &looked, settings.limits.load_instructions, 0)) {
-    const ScriptError& error = parts.lua->error();
-    looked.found.problems = {{error.file.data(), error.line, 0, error.message.data()}};
-    return looked.found;
-  }
   try {
+    parts.lua->call_or_throw([&](lua_State* state) { look_at_file(state, looked); }, settings.limits.load_instructions,
+                             0);
     if (looked.found.kind == ScriptKind::behavior) {
       if (catalog != nullptr) looked.found.problems = check_behavior(root, file, *catalog);
     } else {

@@ -24,8 +24,8 @@ class ChartCheck {
       never_entered(i);
       if (reached_[i] && state.kind != Chart::Kind::history) {
         no_way_out(i);
-        shadowed(state, transitions(state.first_transition, state.transition_count));
-        shadowed(state, transitions(state.first_always, state.always_count));
+        shadowed(state, chart_.ordinary(state));
+        shadowed(state, chart_.transitions_of(state).subspan(state.transition_count));
         run_done_without_run(i);
       }
       if (state.kind == Chart::Kind::final_state && !state.outcome_given) {
@@ -39,29 +39,19 @@ class ChartCheck {
     problems_.push_back({state.chunk, line, 0, std::move(message)});
   }
 
-  std::span<const Chart::Transition> transitions(std::size_t first, std::size_t count) const {
-    return std::span(chart_.transitions).subspan(first, count);
-  }
-
   void find_reached() {
     enter(0);
     for (bool more = true; more;) {
       more = false;
       for (const Chart::Transition& transition : chart_.transitions) {
         if (!reached_[transition.source]) continue;
-        each_target(transition, [&](StateIndex target) {
+        transition.each_target([&](StateIndex target) {
           if (reached_[target]) return;
           enter(target);
           more = true;
         });
       }
     }
-  }
-
-  template <typename Visit>
-  static void each_target(const Chart::Transition& transition, Visit visit) {
-    if (transition.target != no_state) visit(transition.target);
-    for (const StateIndex target : transition.also) visit(target);
   }
 
   // The state, those around it, and what is entered with them.
@@ -76,11 +66,10 @@ class ChartCheck {
       if (state.parent != no_state && !reached_[state.parent]) waiting.push_back(state.parent);
       // A transition past `initial` still makes the parent's default reachable only through the parent itself.
       if (at_entry(at, index)) waiting.insert(waiting.end(), state.defaults.begin(), state.defaults.end());
-      for (StateIndex i = at + 1; i < state.end; ++i) {
-        const bool region = state.kind == Chart::Kind::parallel && chart_.states[i].parent == at;
-        const bool called = chart_.states[i].machine_root && chart_.states[i].parent == at && state.initial == no_state;
-        if (region || called) waiting.push_back(i);
-      }
+      chart_.each_child(at, [&](StateIndex child) {
+        const bool called = chart_.states[child].machine_root && state.initial == no_state;
+        if (state.kind == Chart::Kind::parallel || called) waiting.push_back(child);
+      });
     }
   }
 
@@ -101,12 +90,10 @@ class ChartCheck {
     for (StateIndex around = index; around != no_state; around = chart_.states[around].parent) {
       const Chart::State& at = chart_.states[around];
       if (at.endless) return;
-      for (const Chart::Transition& one : transitions(at.first_transition, at.transition_count)) {
-        if (one.target != no_state) return;
-      }
-      for (const Chart::Transition& one : transitions(at.first_always, at.always_count)) {
-        if (one.target != no_state && one.target != index) return;
-      }
+      const auto leads = [](const Chart::Transition& one) { return one.target != no_state; };
+      const auto elsewhere = [&](const Chart::Transition& one) { return leads(one) && one.target != index; };
+      if (std::ranges::any_of(chart_.ordinary(at), leads)) return;
+      if (std::ranges::any_of(chart_.transitions_of(at), elsewhere)) return;
     }
     const std::string shown = state.name.empty() ? chart_.name : state.name;
     problem(state, state.line, "state '" + shown + "' has no way out: give it a transition, or say endless = true");
@@ -141,7 +128,7 @@ class ChartCheck {
 
   void run_done_without_run(StateIndex index) {
     const Chart::State& state = chart_.states[index];
-    for (const Chart::Transition& transition : transitions(state.first_transition, state.transition_count)) {
+    for (const Chart::Transition& transition : chart_.ordinary(state)) {
       if (transition.on != run_done_event || state.run != Chart::no_function) continue;
       problem(state, transition.line,
               "state '" + state.name + "' waits for \"run.done\", but it has no run = function(m) ... end");
@@ -152,9 +139,6 @@ class ChartCheck {
   std::vector<InputProblem>& problems_;
   std::vector<bool> reached_;
 };
-
-using TokenKind = SourceToken::Kind;
-using Tokens = std::vector<SourceToken>;
 
 // What the functions emit, as far as their text tells.
 struct Emitted {
@@ -191,8 +175,7 @@ void add_values(const Tokens& tokens, std::size_t at, std::size_t end, Emitted& 
     }
   };
   for (std::size_t i = at; i < end; ++i) {
-    for (const char* opening : {"(", "{", "[", "function"}) depth += tokens[i].is(opening) ? 1 : 0;
-    for (const char* closing : {")", "}", "]", "end"}) depth -= tokens[i].is(closing) ? 1 : 0;
+    depth += opens(tokens[i]);
     if (depth != 0) continue;
     if (tokens[i].is("and")) value = i + 1;
     if (!tokens[i].is("or")) continue;
@@ -226,14 +209,6 @@ void add_emitted(const Tokens& tokens, Emitted& emitted) {
 // The names with which states may end, as far as the chart tells.
 using Ends = std::set<std::string>;
 
-template <typename Visit>
-void each_child(const Chart& chart, StateIndex index, Visit visit) {
-  for (StateIndex child = static_cast<StateIndex>(index + 1); child < chart.states[index].end;
-       child = chart.states[child].end) {
-    visit(child);
-  }
-}
-
 Ends own_ends(const Chart& chart, StateIndex index);
 
 // All regions must end; it is done when all of them are.
@@ -254,7 +229,7 @@ Ends ends_of_parallel(const Chart& chart, StateIndex index) {
 Ends own_ends(const Chart& chart, StateIndex index) {
   if (chart.states[index].kind == Chart::Kind::parallel) return ends_of_parallel(chart, index);
   Ends ends;
-  each_child(chart, index, [&](StateIndex child) {
+  chart.each_child(index, [&](StateIndex child) {
     const Chart::State& inside = chart.states[child];
     if (inside.kind == Chart::Kind::final_state) ends.insert(inside.outcome_name);
     if (!inside.machine_root) return;
@@ -267,7 +242,7 @@ Ends own_ends(const Chart& chart, StateIndex index) {
 // Its own ends, and those of states inside that reach it.
 Ends heard_ends(const Chart& chart, StateIndex index) {
   Ends ends = own_ends(chart, index);
-  each_child(chart, index, [&](StateIndex child) {
+  chart.each_child(index, [&](StateIndex child) {
     const bool within = !chart.states[child].machine_root && chart.states[child].kind != Chart::Kind::region;
     if (within) ends.merge(heard_ends(chart, child));
   });
@@ -310,8 +285,7 @@ void tell(Looking& looking, const std::string& path, const std::string& key, con
 // [-0 +0] The value at the top. Nothing here raises but for want of memory.
 void look_into(lua_State* state, Looking& looking, const std::string& path, const std::string& key, int depth) {
   const int type = lua_type(state, -1);
-  std::size_t number = 0;
-  if (is_parameter(state, lua_gettop(state), &number))
+  if (to_parameter(state, -1) != nullptr)
     return tell(looking, path, key, " is a parameter, which is read where it is needed");
   if (type == LUA_TFUNCTION || type == LUA_TUSERDATA || type == LUA_TTHREAD)
     return tell(looking, path, key, std::string(" is a ") + lua_typename(state, type));
@@ -349,8 +323,7 @@ void look_at_defaults(lua_State* state, Looking& looking, int declared) {
   lua_settop(state, all - 1);
 }
 
-int look(lua_State* state) {
-  auto& looking = *static_cast<Looking*>(lua_touserdata(state, 1));
+void look(lua_State* state, Looking& looking) {
   const Chart& chart = looking.parts.chart;
   for (const Chart::Machine& machine : chart.machines) {
     looking.chunk = chart.states[machine.root].chunk;
@@ -361,14 +334,7 @@ int look(lua_State* state) {
     looking.line = machine.call_line;
     if (!machine.call_chunk.empty()) look_at(state, looking, machine.given, "args");
   }
-  return 0;
 }
-
-}  // namespace
-
-void check_chart(const Chart& chart, std::vector<InputProblem>& problems) { ChartCheck(chart, problems).run(); }
-
-namespace {
 
 // What comes with the events that the runner makes.
 constexpr const char* runner_fields[] = {"message", "file",  "line",  "cause", "state",  "reason",
@@ -396,6 +362,8 @@ void check_event_fields(const std::vector<ScriptEvent>& declared, const ReadSour
 }
 
 }  // namespace
+
+void check_chart(const Chart& chart, std::vector<InputProblem>& problems) { ChartCheck(chart, problems).run(); }
 
 void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, const std::vector<ReadSource>& read,
                   std::vector<InputProblem>& problems) {
@@ -436,9 +404,7 @@ void check_events(const Chart& chart, const std::vector<ScriptEvent>& declared, 
 
 void check_vars(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
   Looking looking{parts, problems};
-  if (parts.lua->call(look, &looking, parts.settings.limits.load_instructions, 0)) return;
-  const ScriptError& error = parts.lua->error();
-  throw InputError({error.file.data(), error.line, 0, error.message.data()});
+  parts.lua->call_or_throw([&](lua_State* state) { look(state, looking); }, parts.settings.limits.load_instructions, 0);
 }
 
 }  // namespace kadans

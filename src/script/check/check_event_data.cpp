@@ -10,8 +10,6 @@
 namespace kadans {
 namespace {
 
-using Tokens = std::vector<SourceToken>;
-
 // A guard or an action, and all transitions that have it.
 struct EventReader {
   ChartFunction function;
@@ -19,33 +17,21 @@ struct EventReader {
   std::vector<const Chart::Transition*> transitions;
 };
 
-bool is_name(const SourceToken& token, const std::string& text) {
-  return token.kind == SourceToken::Kind::name && token.text == text;
-}
-
 class EventDataCheck {
  public:
-  EventDataCheck(const Behavior::Parts& parts, std::vector<InputProblem>& problems)
-      : chart_(parts.chart), events_(parts.lua->core().events), problems_(problems) {
-    for (const LuaState::Source& source : parts.lua->sources()) {
-      tokens_[source.chunk] = lex_source(source.text);
-      tokens_[source.chunk].resize(tokens_[source.chunk].size() + 8, {.line = 0});  // what is looked at ahead
-    }
-  }
+  EventDataCheck(const Behavior::Parts& parts, const ChartFunctions& functions, std::vector<InputProblem>& problems)
+      : chart_(parts.chart), events_(parts.lua->core().events), functions_(functions), problems_(problems) {}
 
   void look(const EventReader& reader) {
-    const auto file = tokens_.find(reader.function.chunk);
-    if (file == tokens_.end()) return;
-    const Tokens& tokens = file->second;
-    const std::size_t function = function_in_line(tokens, reader.function.line);
+    const auto& [tokens, function] = functions_.begin_of(reader.function);
     if (function == 0) return;
     const std::string snapshot = argument(tokens, function, reader.guard ? 0 : 1);
     if (snapshot.empty()) return;
     std::vector<std::size_t> reads;  // of `s` in s.event.data.field
     const std::size_t end = end_of_block(tokens, function);
     for (std::size_t i = function; i < end; ++i) {
-      if (!is_name(tokens[i], snapshot) || !tokens[i + 1].is(".") || !is_name(tokens[i + 2], "event")) continue;
-      const bool of_data = tokens[i + 3].is(".") && is_name(tokens[i + 4], "data") && tokens[i + 5].is(".");
+      if (!tokens[i].is_name(snapshot) || !tokens[i + 1].is(".") || !tokens[i + 2].is_name("event")) continue;
+      const bool of_data = tokens[i + 3].is(".") && tokens[i + 4].is_name("data") && tokens[i + 5].is(".");
       if (!of_data) return;  // it asks for the event's name, whether there are data, or hands them on
       reads.push_back(i);
     }
@@ -66,8 +52,8 @@ class EventDataCheck {
   // The name of a function's argument.
   static std::string argument(const Tokens& tokens, std::size_t function, std::size_t number) {
     const std::size_t at = function + 2 + 2 * number;
-    const bool there = tokens[function + 1].is("(") && tokens[at].kind == SourceToken::Kind::name &&
-                       (number == 0 || tokens[at - 1].is(","));
+    const bool there =
+        tokens[function + 1].is("(") && tokens[at].kind == TokenKind::name && (number == 0 || tokens[at - 1].is(","));
     return there ? tokens[at].text : "";
   }
 
@@ -100,8 +86,8 @@ class EventDataCheck {
 
   const Chart& chart_;
   const std::vector<ScriptEvent>& events_;
+  const ChartFunctions& functions_;
   std::vector<InputProblem>& problems_;
-  std::map<std::string, Tokens> tokens_;
 };
 
 }  // namespace
@@ -119,7 +105,7 @@ void check_event_data(Behavior::Parts& parts, std::vector<InputProblem>& problem
       reader.transitions.push_back(&one);
     }
   }
-  EventDataCheck check(parts, problems);
+  EventDataCheck check(parts, functions, problems);
   for (const auto& [identity, reader] : readers) check.look(reader);
 }
 

@@ -2,13 +2,10 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "check_values.h"
+#include "check_source.h"
 
 namespace kadans {
 namespace {
-
-using FormatKind = SourceToken::Kind;
-using Tokens = std::vector<SourceToken>;
 
 // The letters of the places in a format: "%5.2f m, %s" has "fs". '?' stands for one that Lua does not know.
 std::string places_of(std::string_view format) {
@@ -29,14 +26,14 @@ std::string places_of(std::string_view format) {
 // Whether how many values it gives is known only in the run: f(x), `...`.
 bool gives_many(const Tokens& tokens, std::size_t end) {
   return tokens[end - 1].is(")") || tokens[end - 1].is("...") || tokens[end - 1].is("}") ||
-         tokens[end - 1].kind == FormatKind::text;
+         tokens[end - 1].kind == TokenKind::text;
 }
 
 bool no_number(const Tokens& tokens, std::size_t at) {
   const SourceToken& after = tokens[at + 1];
   if (!after.is(",") && !after.is(")")) return false;
   if (tokens[at].is("nil") || tokens[at].is("true") || tokens[at].is("false")) return true;
-  if (tokens[at].kind != FormatKind::text) return false;
+  if (tokens[at].kind != TokenKind::text) return false;
   char* end = nullptr;
   (void)std::strtod(tokens[at].text.c_str(), &end);
   return *end != '\0' || tokens[at].text.empty();
@@ -49,7 +46,7 @@ std::string count_text(std::size_t count) {
 }  // namespace
 
 std::string format_mistake(const Tokens& tokens, std::size_t at, const std::string& called) {
-  if (at == 0 || !tokens[at - 1].is("(") || tokens[at].kind != FormatKind::text) return "";
+  if (at == 0 || !tokens[at - 1].is("(") || tokens[at].kind != TokenKind::text) return "";
   if (!tokens[at + 1].is(",") && !tokens[at + 1].is(")")) return "";
   const std::vector<std::size_t> given = parts_of(tokens, at);
   const std::string places = places_of(tokens[at].text);
@@ -60,7 +57,7 @@ std::string format_mistake(const Tokens& tokens, std::size_t at, const std::stri
   const std::size_t values = given.size() - 1;
   const std::size_t end = end_of_call(tokens, at) - 1;
   const bool many =
-      !alone && gives_many(tokens, end) && !(tokens[given.back()].kind == FormatKind::text && given.back() + 1 == end);
+      !alone && gives_many(tokens, end) && !(tokens[given.back()].kind == TokenKind::text && given.back() + 1 == end);
   if (values < places.size() && !many)
     return called + ": the format wants " + count_text(places.size()) + ", " + count_text(values) + " is given";
   if (values > places.size())
@@ -75,7 +72,7 @@ std::string format_mistake(const Tokens& tokens, std::size_t at, const std::stri
 }
 
 std::string print_mistake(const Tokens& tokens, std::size_t at) {
-  if (at == 0 || !tokens[at - 1].is("(") || tokens[at].kind != FormatKind::text || !tokens[at + 1].is(",")) return "";
+  if (at == 0 || !tokens[at - 1].is("(") || tokens[at].kind != TokenKind::text || !tokens[at + 1].is(",")) return "";
   const std::string places = places_of(tokens[at].text);
   if (places.empty() || places.find('?') != std::string::npos) return "";
   return "print writes its values as they are: k.log.info(\"...\", ...) takes a format";

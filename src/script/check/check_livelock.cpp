@@ -15,10 +15,7 @@
 namespace kadans {
 namespace {
 
-using SourceTokens = std::vector<SourceToken>;
-
-int read_chart_functions(lua_State* state) {
-  auto& reading = *static_cast<ChartFunctions*>(lua_touserdata(state, 1));
+void read_chart_functions(lua_State* state, ChartFunctions& reading) {
   const auto read = [&](int reference) {
     if (reference == Chart::no_function) return;
     lua_Debug function;
@@ -29,35 +26,12 @@ int read_chart_functions(lua_State* state) {
   };
   for (const Chart::State& one : reading.chart.states) read(one.enter);
   for (const Chart::Transition& one : reading.chart.transitions) read(one.when), read(one.action);
-  return 0;
 }
-
-}  // namespace
-
-ChartFunctions chart_functions(Behavior::Parts& parts) {
-  ChartFunctions functions{parts.chart};
-  functions.known = parts.lua->call(read_chart_functions, &functions, parts.settings.limits.load_instructions, 0);
-  return functions;
-}
-
-std::size_t function_in_line(const std::vector<SourceToken>& tokens, int line) {
-  std::size_t found = 0;
-  for (std::size_t i = 0; i < tokens.size(); ++i) {
-    if (tokens[i].line != line || !tokens[i].is("function")) continue;
-    if (found != 0) return 0;
-    found = i;
-  }
-  return found;
-}
-
-namespace {
 
 class LivelockCheck {
  public:
   LivelockCheck(const Behavior::Parts& parts, const ChartFunctions& functions, std::vector<InputProblem>& problems)
-      : chart_(parts.chart), functions_(functions), problems_(problems) {
-    for (const LuaState::Source& source : parts.lua->sources()) tokens_[source.chunk] = lex_source(source.text);
-  }
+      : chart_(parts.chart), functions_(functions), problems_(problems) {}
 
   // Each transition is followed by at most one other for sure, so each circle is found by going on from all of them.
   void run() {
@@ -73,15 +47,9 @@ class LivelockCheck {
   }
 
  private:
-  // The only function that begins in this line; 0: there are several, or none.
-  std::size_t function_at(const ChartFunction& function) const {
-    const auto file = tokens_.find(function.chunk);
-    return file == tokens_.end() ? 0 : function_in_line(file->second, function.line);
-  }
-
   // The first token behind the arguments.
-  static std::size_t body_at(const SourceTokens& tokens, std::size_t function) {
-    while (!tokens[function].is(")") && tokens[function].kind != SourceToken::Kind::end) ++function;
+  static std::size_t body_at(const Tokens& tokens, std::size_t function) {
+    while (!tokens[function].is(")") && tokens[function].kind != TokenKind::end) ++function;
     return function + 1;
   }
 
@@ -93,9 +61,9 @@ class LivelockCheck {
   // function(...) return true end
   bool always_true(int reference) const {
     const ChartFunction* function = function_of(reference);
-    const std::size_t at = function == nullptr ? 0 : function_at(*function);
+    if (function == nullptr) return false;
+    const auto& [tokens, at] = functions_.begin_of(*function);
     if (at == 0) return false;
-    const SourceTokens& tokens = tokens_.at(function->chunk);
     const std::size_t body = body_at(tokens, at);
     return body + 2 < tokens.size() && tokens[body].is("return") && tokens[body + 1].is("true") &&
            tokens[body + 2].is("end");
@@ -104,16 +72,15 @@ class LivelockCheck {
   // What a function emits whenever it is called: m:emit "name" outside of all branches and loops.
   void add_emitted_for_sure(int reference, std::set<EventId>& events) const {
     const ChartFunction* function = function_of(reference);
-    const std::size_t at = function == nullptr ? 0 : function_at(*function);
+    if (function == nullptr) return;
+    const auto& [tokens, at] = functions_.begin_of(*function);
     if (at == 0) return;
-    const SourceTokens& tokens = tokens_.at(function->chunk);
     int depth = 0;
     for (std::size_t i = body_at(tokens, at); i + 2 < tokens.size() && depth >= 0; ++i) {
-      for (const char* opening : {"if", "do", "function", "repeat"}) depth += tokens[i].is(opening) ? 1 : 0;
-      for (const char* closing : {"end", "until"}) depth -= tokens[i].is(closing) ? 1 : 0;
+      depth += opens_block(tokens[i]);
       if (depth != 0 || !tokens[i].is(":") || tokens[i + 1].text != "emit") continue;
       const std::size_t text = tokens[i + 2].is("(") ? i + 3 : i + 2;
-      if (tokens[text].kind != SourceToken::Kind::text) continue;
+      if (tokens[text].kind != TokenKind::text) continue;
       const EventId event = chart_.find_event(tokens[text].text);
       if (event != no_event) events.insert(event);
     }
@@ -122,20 +89,15 @@ class LivelockCheck {
   // Whether a guard looks at m, its second argument: the time in the state, vars and set-points change with the state.
   // A function that cannot be read may.
   bool looks_at_machine(const ChartFunction& function) const {
-    const std::size_t at = function_at(function);
+    const auto& [tokens, at] = functions_.begin_of(function);
     if (at == 0) return true;
-    const SourceTokens& tokens = tokens_.at(function.chunk);
     std::size_t open = at;
-    while (!tokens[open].is("(") && tokens[open].kind != SourceToken::Kind::end) ++open;
+    while (!tokens[open].is("(") && tokens[open].kind != TokenKind::end) ++open;
     if (open + 3 >= tokens.size() || !tokens[open + 2].is(",")) return false;
     const std::string& machine = tokens[open + 3].text;
-    int depth = 0;
-    for (std::size_t i = open + 4; i < tokens.size() && depth >= 0; ++i) {
-      for (const char* opening : {"if", "do", "function", "repeat"}) depth += tokens[i].is(opening) ? 1 : 0;
-      for (const char* closing : {"end", "until"}) depth -= tokens[i].is(closing) ? 1 : 0;
-      if (tokens[i].kind == SourceToken::Kind::name && tokens[i].text == machine) return true;
-    }
-    return false;
+    const auto begin = tokens.begin() + static_cast<std::ptrdiff_t>(open) + 4;
+    const auto end = tokens.begin() + static_cast<std::ptrdiff_t>(end_of_block(tokens, at));
+    return std::any_of(begin, end, [&](const SourceToken& token) { return token.is_name(machine); });
   }
 
   // The innermost state that is entered through `target`; no_state when there are several, or a history decides.
@@ -218,10 +180,32 @@ class LivelockCheck {
   const Chart& chart_;
   const ChartFunctions& functions_;
   std::vector<InputProblem>& problems_;
-  std::map<std::string, SourceTokens> tokens_;
 };
 
 }  // namespace
+
+ChartFunctions chart_functions(Behavior::Parts& parts) {
+  ChartFunctions functions{parts.chart};
+  for (const LuaState::Source& source : parts.lua->sources()) {
+    Tokens& tokens = functions.files[source.chunk] = lex_source(source.text);
+    tokens.resize(tokens.size() + 8, {.line = 0});
+  }
+  functions.known = parts.lua->call([&](lua_State* state) { read_chart_functions(state, functions); },
+                                    parts.settings.limits.load_instructions, 0);
+  return functions;
+}
+
+ChartFunctions::Begin ChartFunctions::begin_of(const ChartFunction& function) const {
+  static const Tokens nothing;
+  const auto file = files.find(function.chunk);
+  Begin begin{file == files.end() ? nothing : file->second, 0};
+  for (std::size_t i = 0; i < begin.tokens.size(); ++i) {
+    if (begin.tokens[i].line != function.line || !begin.tokens[i].is("function")) continue;
+    if (begin.at != 0) return {begin.tokens, 0};
+    begin.at = i;
+  }
+  return begin;
+}
 
 void check_livelocks(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
   const ChartFunctions functions = chart_functions(parts);

@@ -4,20 +4,13 @@
 #include <algorithm>
 #include <array>
 
-#include "check_arguments.h"
-#include "check_flow.h"
-#include "check_values.h"
 #include "foreign_words.h"
 #include "hint.h"
 #include "script/bindings/machine_sets.h"
-#include "script/chart/chart_reports.h"
 #include "source_scopes.h"
 
 namespace kadans {
 namespace {
-
-using TokenKind = SourceToken::Kind;
-using Tokens = std::vector<SourceToken>;
 
 // The local that a file ends with returning, or "".
 std::string returned_name(const Tokens& tokens) {
@@ -41,9 +34,9 @@ bool filled_while_it_runs(const Tokens& tokens, const std::string& name) {
   std::vector<bool> blocks;  // whether each is a function's
   for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
     const SourceToken& token = tokens[i];
-    if (token.is("function") || token.is("if") || token.is("do") || token.is("repeat"))
-      blocks.push_back(token.is("function"));
-    if ((token.is("end") || token.is("until")) && !blocks.empty()) blocks.pop_back();
+    const int change = opens_block(token);
+    if (change > 0) blocks.push_back(token.is("function"));
+    if (change < 0 && !blocks.empty()) blocks.pop_back();
     if (std::ranges::find(blocks, true) == blocks.end() || token.kind != TokenKind::name) continue;
     if (token.text == "rawset" && tokens[i + 2].text == name) return true;
     if (token.text == name && tokens[i + 1].is("[") && tokens[end_of_bracket(tokens, i + 1) + 1].is("=")) return true;
@@ -64,14 +57,10 @@ bool uses_value(const Tokens& tokens, std::size_t at) {
   if (after.is(".") || after.is("(") || after.is(":") || after.is("[")) return true;
   if (at == 0) return false;
   const SourceToken& before = tokens[at - 1];
-  for (const char* word : {"=", "(", ",", "{", "return", "and", "or", "not", "..", "=="}) {
-    if (before.is(word)) return true;
-  }
-  return false;
+  return before.is_any({"=", "(", ",", "{", "return", "and", "or", "not", "..", "=="});
 }
 
-}  // namespace
-
+// Tells the facts which file each name in `require` means.
 void name_modules(const std::vector<ReadSource>& read, const LuaState& lua, const KnownNames& known,
                   SourceFacts& facts) {
   for (const auto& [name, ignored] : known.modules) {
@@ -79,6 +68,8 @@ void name_modules(const std::vector<ReadSource>& read, const LuaState& lua, cons
   }
 }
 
+// Adds all fields to a module that are assigned to it anywhere. A module that is filled by computed names may have any
+// field.
 void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, const SourceFacts& facts,
                    KnownNames& known) {
   known.given_somewhere = facts.given_somewhere();
@@ -91,12 +82,13 @@ void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, con
   }
 }
 
+// Finds modules whose value is used although they return nothing.
 void check_module_values(const std::vector<ReadSource>& read, const LuaState& lua,
                          std::vector<InputProblem>& problems) {
   for (const ReadSource& one : read) {
     const Tokens& tokens = one.scopes.tokens();
     for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
-      if (tokens[i].kind != TokenKind::name || tokens[i].text != "require" || !uses_value(tokens, i)) continue;
+      if (!tokens[i].is_name("require") || !uses_value(tokens, i)) continue;
       const SourceToken& name = tokens[i + 1].is("(") ? tokens[i + 2] : tokens[i + 1];
       const ReadSource* const file = name.kind == TokenKind::text ? file_of(read, lua, name.text) : nullptr;
       if (file == nullptr || file->scopes.functions().front().returns_value) continue;
@@ -107,6 +99,7 @@ void check_module_values(const std::vector<ReadSource>& read, const LuaState& lu
   }
 }
 
+// Finds guards that return no value, in any file.
 void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& known,
                         std::vector<InputProblem>& problems) {
   for (const ReadSource& one : read) {
@@ -130,34 +123,13 @@ void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& k
   }
 }
 
-namespace {
-
 constexpr std::array<const char*, 3> always_there{"vars", "args", "*"};
 
-// Fields that scripts write themselves: `m.vars.x = `, in one file.
-class Writes final : public SourceListener {
- public:
-  void used(const SourceUse& use, const std::vector<SourceToken>& /*tokens*/) override {
-    const auto& path = use.meaning.path;
-    if (use.assigned && use.meaning.role == SourceRole::machine && path.size() >= 2 && path[0] == "vars") {
-      vars.push_back(path[1]);
-    }
-  }
-  std::vector<std::string> vars;
-};
-
-class SourceCheck final : public SourceListener {
+class SourceCheck {
  public:
   SourceCheck(const Behavior::Parts& parts, const KnownNames& known, const LuaState::Source& source,
               std::vector<InputProblem>& problems)
-      : parts_(parts),
-        known_(known),
-        source_(source),
-        problems_(problems),
-        machine_(known.machine),
-        arguments_(parts),
-        values_(parts),
-        flow_(parts.catalog, known, known.vars.contains(source.chunk)) {
+      : parts_(parts), known_(known), source_(source), problems_(problems), machine_(known.machine) {
     const auto vars = known.vars.find(source.chunk);
     has_behavior_ = vars != known.vars.end();
     if (const auto own = known.machines.find(source.chunk); own != known.machines.end()) machine_ = own->second;
@@ -165,18 +137,20 @@ class SourceCheck final : public SourceListener {
   }
 
   void run(SourceScopes& scopes) {
-    Writes writes;
-    scopes.tell(writes);
-    vars_.insert(vars_.end(), writes.vars.begin(), writes.vars.end());
+    scopes.tell([this](const SourceUse& use, const Tokens&) {  // fields that the script writes itself
+      const auto& path = use.meaning.path;
+      if (use.assigned && use.meaning.role == SourceRole::machine && path.size() >= 2 && path[0] == "vars")
+        vars_.push_back(path[1]);
+    });
     std::sort(vars_.begin(), vars_.end());
-    scopes.tell(*this);
-    tell(values_.of_literals(scopes.tokens()));
-    tell(flow_.run(scopes.tokens()));
+    scopes.tell([this](const SourceUse& use, const Tokens& tokens) { used(use, tokens); });
+    tell(value_mistakes(parts_, uses_, scopes.tokens()));
+    tell(flow_mistakes(parts_.catalog, known_, has_behavior_, uses_, scopes.tokens()));
   }
 
-  void used(const SourceUse& use, const std::vector<SourceToken>& tokens) override {
-    flow_.note(use);
-    tell(values_.of_use(use, tokens));
+ private:
+  void used(const SourceUse& use, const Tokens& tokens) {
+    uses_.push_back(use);
     if (!use.known) return unknown(use);
     if (use.guard) guard(use);
     if (!use.at_once.empty() && waits(use, tokens)) {
@@ -192,7 +166,7 @@ class SourceCheck final : public SourceListener {
       case SourceRole::module:
         fields(use, known_.module, "kadans");
         if (use.meaning.path == std::vector<std::string>{"pose"} && use.arguments != 0) {
-          tell(arguments_.pose_name(tokens, use.arguments));
+          tell(pose_mistakes(parts_.catalog, tokens, use.arguments));
         }
         return;
       case SourceRole::parameters:
@@ -204,11 +178,14 @@ class SourceCheck final : public SourceListener {
     }
   }
 
- private:
+  const ObjectInfo* object_of(const std::string& name) const noexcept {
+    const auto found = std::ranges::find(parts_.catalog.objects, name, &ObjectInfo::name);
+    return found == parts_.catalog.objects.end() ? nullptr : &*found;
+  }
   static int place(const SourceUse& use) { return use.lines.empty() ? use.line : use.lines.back(); }
   void problem(int line, std::string message) { problems_.push_back({source_.chunk, line, 0, std::move(message)}); }
-  void tell(const std::vector<ArgumentProblem>& found) {
-    for (const ArgumentProblem& wrong : found) problem(wrong.line, wrong.message);
+  void tell(const Mistakes& found) {
+    for (const SourceMistake& wrong : found) problem(wrong.line, wrong.message);
   }
 
   void unknown(const SourceUse& use) {
@@ -219,19 +196,19 @@ class SourceCheck final : public SourceListener {
     }
     const std::string_view foreign = foreign_name_hint(use.name);
     if (!foreign.empty()) return problem(use.line, "unknown name '" + use.name + "'" + std::string(foreign));
-    const bool object = machine_.fields.contains(use.name) && arguments_.object(use.name) != nullptr;
+    const bool object = machine_.fields.contains(use.name) && object_of(use.name) != nullptr;
     const std::string here =
         object ? ": it is a field of m: m." + use.name : hint_text(use.name, known_.globals.names());
     problem(use.line, "unknown name '" + use.name + "'" + here);
   }
 
   // m:wait(1), motion:wait(), m.posture:move(...):wait()
-  bool waits(const SourceUse& use, const std::vector<SourceToken>& tokens) const {
+  bool waits(const SourceUse& use, const Tokens& tokens) const {
     if (use.arguments == 0) return false;
     const auto& path = use.meaning.path;
     const bool machine = use.meaning.role == SourceRole::machine;
     if ((machine || use.meaning.role == SourceRole::motion) && path.empty()) return use.method == "wait";
-    if (!machine || path.size() != 1 || arguments_.object(path.front()) == nullptr) return false;
+    if (!machine || path.size() != 1 || object_of(path.front()) == nullptr) return false;
     const std::size_t after = end_of_call(tokens, use.arguments);
     return tokens[after].is(":") && tokens[after + 1].text == "wait";
   }
@@ -264,10 +241,8 @@ class SourceCheck final : public SourceListener {
   }
 
   // `m` and `s` stand in the wrong order, or the field's name is wrong.
-  std::string field_hint(const SourceUse& use, std::size_t field, const std::string& shown,
-                         const KnownNames::Shape& at) const {
-    const std::string& name = use.meaning.path[field];
-    const bool object = shown == "s" && machine_.fields.contains(name) && arguments_.object(name) != nullptr;
+  std::string field_hint(const std::string& name, const std::string& shown, const KnownNames::Shape& at) const {
+    const bool object = shown == "s" && machine_.fields.contains(name) && object_of(name) != nullptr;
     const std::string_view foreign = object ? order_hint : foreign_field_hint(shown, name);
     return foreign.empty() ? hint_text(name, at.names()) : std::string(foreign);
   }
@@ -281,7 +256,7 @@ class SourceCheck final : public SourceListener {
       const auto found = at->fields.find(path[i]);
       if (found == at->fields.end()) {
         if (i + use.written >= path.size() && !at->fields.empty()) {
-          problem(use.lines[i], shown + " has no '" + path[i] + "'" + field_hint(use, i, shown, *at));
+          problem(use.lines[i], shown + " has no '" + path[i] + "'" + field_hint(path[i], shown, *at));
         }
         return;
       }
@@ -290,19 +265,17 @@ class SourceCheck final : public SourceListener {
     }
   }
 
-  void machine(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+  void machine(const SourceUse& use, const Tokens& tokens) {
     const auto& path = use.meaning.path;
     if (machine_.open) return;
     if (path.empty()) {
       if (!use.method.empty() && !machine_.fields.contains(use.method)) {
-        const std::string_view foreign = foreign_field_hint("m", use.method);
-        const std::string hint = foreign.empty() ? hint_text(use.method, machine_.names()) : std::string(foreign);
-        problem(use.line, "m has no '" + use.method + "'" + hint);
+        problem(use.line, "m has no '" + use.method + "'" + field_hint(use.method, "m", machine_));
       }
       if (use.method == "emit") event(tokens, use.arguments);
       return;
     }
-    const ObjectInfo* object = arguments_.object(path.front());
+    const ObjectInfo* object = object_of(path.front());
     if (object == nullptr || !machine_.fields.contains(path.front())) return machine_field(use, object, tokens);
     if (use.assigned) return problem(use.line, "m is read-only: '" + path.front() + "' cannot be set");
     const std::string method = path.size() > 1 ? path[1] : use.method;
@@ -315,13 +288,13 @@ class SourceCheck final : public SourceListener {
       return problem(place(use), "call it with a colon: m." + path.front() + ":" + method + "(...)");
     }
     if (use.arguments != 0) in_sets(use, *object);
-    if (use.arguments != 0) tell(arguments_.of_method(*object, method, tokens, use.arguments));
+    if (use.arguments != 0) tell(argument_mistakes(parts_.catalog, *object, method, tokens, use.arguments));
   }
 
   // In a function of the chart, or one that such functions call, when all these states run without the object.
   void in_sets(const SourceUse& use, const ObjectInfo& object) {
     const auto& acting = use.states;
-    const auto number = static_cast<std::uint32_t>(&object - parts_.catalog.objects.data());
+    const std::uint32_t number = object_number(parts_.catalog, object);
     const auto lacks = [&](StateIndex index) {
       const SetMask sets = parts_.chart.states[index].sets;
       return sets != 0 && (parts_.bindings.partition->objects(sets) >> number & 1U) == 0;
@@ -340,28 +313,26 @@ class SourceCheck final : public SourceListener {
   }
 
   // A plain value, or one that is counted on, in a field of vars that nobody declared.
-  void undeclared(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+  void undeclared(const SourceUse& use, const Tokens& tokens) {
     const std::string& name = use.meaning.path[1];
     const auto declared = known_.vars.find(source_.chunk);
     if (declared == known_.vars.end() || name == "*" || !tokens[use.next].is("=")) return;
     const std::vector<std::string>& names = declared->second;
     if (std::find(names.begin(), names.end(), name) != names.end()) return;
     const SourceToken& value = tokens[use.next + 1];
-    const bool plain = value.kind == SourceToken::Kind::number || value.kind == SourceToken::Kind::text ||
-                       value.is("true") || value.is("false");
     const std::size_t own = use.next - use.at;  // m.vars.n = m.vars.n + 1
     bool itself = true;
     for (std::size_t i = 0; i < own; ++i) itself = itself && tokens[use.next + 1 + i].text == tokens[use.at + i].text;
-    if (plain || itself)
+    if (value.is_literal() || itself)
       problem(place(use), "m.vars has no '" + name + "'" + hint_text(name, names) + ": declare it in vars = { }");
   }
 
   // The token behind '=' of an assignment.
-  static bool gives_function(const SourceUse& use, const std::vector<SourceToken>& tokens) {
+  static bool gives_function(const SourceUse& use, const Tokens& tokens) {
     return use.next + 1 < tokens.size() && tokens[use.next + 1].is("function");
   }
 
-  void machine_field(const SourceUse& use, const ObjectInfo* object, const std::vector<SourceToken>& tokens) {
+  void machine_field(const SourceUse& use, const ObjectInfo* object, const Tokens& tokens) {
     const auto& path = use.meaning.path;
     if (object != nullptr) {
       return problem(place(use), not_in_sets(parts_.bindings, path.front(), machine_here()).data());
@@ -381,8 +352,8 @@ class SourceCheck final : public SourceListener {
     problem(place(use), "m.vars has no '" + path[1] + "'" + hint_text(path[1], vars_) + ": declare it in vars = { }");
   }
 
-  void event(const std::vector<SourceToken>& tokens, std::size_t at) {
-    if (at == 0 || tokens[at].kind != SourceToken::Kind::text) return;
+  void event(const Tokens& tokens, std::size_t at) {
+    if (at == 0 || tokens[at].kind != TokenKind::text) return;
     if (tokens[at - 1].is("(") && !tokens[at + 1].is(")")) return;  // a part of it
     const EventId id = parts_.chart.find_event(tokens[at].text);
     if (reserved_for_reports(tokens[at].text)) {
@@ -418,16 +389,15 @@ class SourceCheck final : public SourceListener {
   const LuaState::Source& source_;
   std::vector<InputProblem>& problems_;
   KnownNames::Shape machine_;
-  ArgumentCheck arguments_;
-  ValueCheck values_;
-  FlowCheck flow_;
+  std::vector<SourceUse> uses_;
   std::vector<std::string> vars_;
   bool has_behavior_ = false;
 };
 
 }  // namespace
 
-void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<InputProblem>& problems) {
+void check_sources(Behavior::Parts& parts, std::vector<InputProblem>& problems) {
+  KnownNames known = read_known_names(parts);
   SourceFacts facts;
   std::vector<ReadSource> read;
   for (const LuaState::Source& source : parts.lua->sources()) {

@@ -13,42 +13,43 @@
 
 namespace kadans {
 
-// Checks of an author's own modules: fields that are assigned while they run, files that return nothing, and guards in
-// them.
-
 // A loaded file and its parsed text.
 struct ReadSource {
   const LuaState::Source* source = nullptr;
   SourceScopes scopes;
 };
 
-// Tells the facts which file each name in `require` means.
-void name_modules(const std::vector<ReadSource>& read, const LuaState& lua, const KnownNames& known,
-                  SourceFacts& facts);
+// A mistake in the text of one file.
+struct SourceMistake {
+  int line = 0;
+  std::string message;
+};
+using Mistakes = std::vector<SourceMistake>;
 
-// Adds all fields to a module that are assigned to it anywhere. A module that is filled by computed names may have any
-// field.
-void widen_modules(const std::vector<ReadSource>& read, const LuaState& lua, const SourceFacts& facts,
-                   KnownNames& known);
-
-// Finds modules whose value is used although they return nothing.
-void check_module_values(const std::vector<ReadSource>& read, const LuaState& lua, std::vector<InputProblem>& problems);
-
-// Finds guards that return no value, in any file.
-void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& known,
-                        std::vector<InputProblem>& problems);
+// Checks a literal argument that is the name of a pose, and the literal arguments of an object's method. `at` is the
+// first token of the arguments.
+Mistakes pose_mistakes(const Catalog& catalog, const Tokens& tokens, std::size_t at);
+Mistakes argument_mistakes(const Catalog& catalog, const ObjectInfo& object, const std::string& method,
+                           const Tokens& tokens, std::size_t at);
+// Checks what stands around the uses of names, and values that are written out.
+Mistakes value_mistakes(const Behavior::Parts& parts, const std::vector<SourceUse>& uses, const Tokens& tokens);
+// Compares the formats of string.format and k.log with the values behind them, as far as they are written out. `at` is
+// the first token in the brackets of the call. "" when nothing is wrong.
+std::string format_mistake(const Tokens& tokens, std::size_t at, const std::string& called);
+// print("x %d", 1)
+std::string print_mistake(const Tokens& tokens, std::size_t at);
+// Checks how a script goes on. `of_behavior`: the file is a behavior's own, no module.
+Mistakes flow_mistakes(const Catalog& catalog, const KnownNames& known, bool of_behavior,
+                       const std::vector<SourceUse>& uses, const Tokens& tokens);
 
 // Finds mistakes by reading the text of a behavior, in every branch: unknown names (fields of m and s, control objects,
 // set-points, presets, parameters, poses, vars, globals, own modules), values out of range, guards that write or return
 // nothing, waits in places that cannot wait, and events that are never emitted.
-
-// Checks the file of a loaded behavior and all files that it requires and calls. Fields that the files assign to
-// modules are added to `known`.
-void check_sources(const Behavior::Parts& parts, KnownNames& known, std::vector<InputProblem>& problems);
+// Checks the file of a loaded behavior, or a module, and all files that it requires and calls.
+void check_sources(Behavior::Parts& parts, std::vector<InputProblem>& problems);
 
 // Finds mistakes in the shape of a chart that could still run: states that cannot be reached, states without a way out,
 // final states without an outcome, transitions that can never be taken.
-
 // The chart must be resolved and free of other problems.
 void check_chart(const Chart& chart, std::vector<InputProblem>& problems);
 
@@ -65,16 +66,22 @@ struct ChartFunction {
   int line = 0;
 };
 
-// What states enter with, and the guards and actions of transitions, by their references.
+// What states enter with, and the guards and actions of transitions, by their references; and the tokens of all files,
+// with some behind their end to look ahead.
 struct ChartFunctions {
+  // Where a function begins in its tokens; at 0: it is not the only one that begins in its line, or none.
+  struct Begin {
+    const Tokens& tokens;
+    std::size_t at;
+  };
+  Begin begin_of(const ChartFunction& function) const;
+
   const Chart& chart;
   bool known = false;  // all were read
   std::map<int, ChartFunction> by_reference{};
+  std::map<std::string, Tokens> files{};
 };
 ChartFunctions chart_functions(Behavior::Parts& parts);
-
-// The token of the only function that begins in this line; 0: there are several, or none.
-std::size_t function_in_line(const std::vector<SourceToken>& tokens, int line);
 
 // Finds guards and actions that read data of an event where there is none, or a field that may be missing as if it
 // were always there.

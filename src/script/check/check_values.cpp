@@ -1,19 +1,19 @@
-#include "check_values.h"
-
+// Values in the text: comparisons, joined texts, formats and arguments that cannot be right because of what the names
+// stand for, in whatever branch they are.
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <string_view>
 
+#include "check_source.h"
 #include "hint.h"
 #include "script/bindings/api.h"
 #include "script/bindings/bindings.h"
 #include "script/motion/motion_options.h"
+#include "signal/status_fields.h"
 
 namespace kadans {
 namespace {
-
-using TokenKind = SourceToken::Kind;
-using Tokens = std::vector<SourceToken>;
 
 bool compares(const SourceToken& token) { return token.is_any({"==", "~=", "<", ">", "<=", ">="}); }
 bool calculates(const SourceToken& token) { return token.is_any({"+", "-", "*", "/", "%", "^"}); }
@@ -27,9 +27,6 @@ const SourceToken& before(const Tokens& tokens, std::size_t at, std::size_t step
 }
 
 bool is_truth(const SourceToken& token) { return token.is("true") || token.is("false"); }
-bool is_literal(const SourceToken& token) {
-  return token.kind == TokenKind::text || token.kind == TokenKind::number || is_truth(token);
-}
 
 // Lua takes "1" for 1 where it calculates.
 bool is_numeral(const std::string& text) {
@@ -73,282 +70,312 @@ bool without_colon(const SourceUse& use, const Tokens& tokens) {
          !(tokens[use.arguments - 1].is("(") && tokens[use.arguments].kind == TokenKind::name);
 }
 
-}  // namespace
+class ValueCheck {
+ public:
+  ValueCheck(const Behavior::Parts& parts, const Tokens& tokens)
+      : parts_(parts), tokens_(tokens), fields_(status_fields(parts.catalog.sensors, parts.catalog.seen)) {}
 
-ValueCheck::ValueCheck(const Behavior::Parts& parts)
-    : parts_(parts), fields_(status_fields(parts.catalog.sensors, parts.catalog.seen)) {}
-
-ValueCheck::Type ValueCheck::field_of(StatusField::Part part, const std::string& name, std::size_t index) const {
-  for (const StatusField& field : fields_) {
-    if (!field.is_of(part, index) || field.name != name) continue;
-    if (field.type == StatusField::Type::number) {
-      using Part = StatusField::Part;
-      const bool sensed = part == Part::joint || part == Part::base || part == Part::rate || part == Part::foot ||
-                          part == Part::support || part == Part::odometry;
-      return {Kind::number, {}, sensed};
+  // What is wrong with what stands around one use of a name.
+  Mistakes of_use(const SourceUse& use) const {
+    Mistakes found;
+    if (use.assigned) return found;
+    const std::string wrong = call(use);
+    if (!wrong.empty()) found.push_back({use.line, wrong});
+    const std::string unit = other_unit(use);
+    if (!unit.empty()) found.push_back({use.line, unit});
+    SourceMeaning meaning = use.known ? use.meaning : SourceMeaning{};
+    const bool in_brackets = !meaning.path.empty() && meaning.path.back() == "*";  // s.joints[1]
+    if (in_brackets) meaning.path.pop_back();
+    const Type type = type_of(meaning);
+    if (in_brackets && type.kind != Kind::by_name) return found;
+    if (type.kind == Kind::unknown || !use.method.empty()) return found;
+    if (use.arguments == 0) {
+      operands(use, type, found);
+    } else if (tokens_[use.arguments - 1].is("(") && type.kind != Kind::by_name) {
+      found.push_back(
+          {use.line, as_written(tokens_, use.at, use.next - 1) + " is a value: it stands without brackets"});
     }
-    if (field.type == StatusField::Type::flag) return {Kind::flag, {}};
-    Type type{Kind::choice, {}};
-    for (std::size_t i = 0; i < field.choices; ++i) type.texts.emplace_back(field.choice(i));
-    return type;
+    return found;
   }
-  return {};
-}
 
-ValueCheck::Type ValueCheck::type_of(const SourceMeaning& meaning) const {
-  using Part = StatusField::Part;
-  const auto& path = meaning.path;
-  if (meaning.role == SourceRole::motion && path.size() == 1) {
-    if (path[0] == "done") return {Kind::flag, {}};
-    if (path[0] == "outcome") return {Kind::choice, texts_in_api("motion", "outcome")};
+  // What is wrong with values that are written out: "a" + 1, x .. nil.
+  Mistakes of_literals() const {
+    Mistakes found;
+    for (std::size_t i = 1; i + 1 < tokens_.size(); ++i) {
+      const SourceToken& token = tokens_[i];
+      const SourceToken& left = tokens_[i - 1];
+      const SourceToken& right = tokens_[i + 1];
+      const bool nothing = token.is("nil") || is_truth(token);
+      if (nothing && (left.is("..") || right.is("..")))
+        found.push_back({token.line, ".. joins texts and numbers, not " + token.text});
+      if (token.kind != TokenKind::text || is_numeral(token.text)) continue;
+      const bool of_call = left.kind == TokenKind::name || left.kind == TokenKind::text || left.is_any({")", "]", "}"});
+      if (of_call) continue;  // f "text" + 1
+      if (right.is("%")) {
+        found.push_back({token.line, "% does not fill a text: write string.format(text, ...)"});
+      } else if (right.is("+") || left.is("+")) {
+        found.push_back({token.line, "+ adds numbers, .. joins texts"});
+      } else if (calculates(right) || calculates(left)) {
+        found.push_back({token.line, "\"" + token.text + "\" is a text, no number"});
+      }
+    }
+    return found;
   }
-  if (meaning.role == SourceRole::machine && path == std::vector<std::string>{"time_s"}) return {Kind::number, {}};
-  if (meaning.role != SourceRole::snapshot || path.empty()) return {};
-  if (path.size() == 1 && (path[0] == "joints" || path[0] == "feet")) return {Kind::by_name, {}};
-  if (path.size() == 1) return field_of(Part::root, path[0]);
-  if (path.size() == 3 && path[0] == "joints") return field_of(Part::joint, path[2]);
-  if (path.size() == 3 && path[0] == "feet") return field_of(Part::foot, path[2]);
-  if (path.size() == 3 && path[0] == "base") return field_of(Part::rate, path[2]);
-  if (path.size() == 3 && path[0] == "seen") {
-    const auto& entries = parts_.catalog.seen;
-    const auto entry = std::ranges::find(entries, path[1], &SeenInfo::name);
-    if (entry != entries.end()) return field_of(Part::seen, path[2], static_cast<std::size_t>(entry - entries.begin()));
-    return field_of(Part::ball, path[2]);
-  }
-  constexpr std::pair<const char*, Part> parts[] = {{"base", Part::base},         {"support", Part::support},
-                                                    {"odometry", Part::odometry}, {"safety", Part::safety},
-                                                    {"joystick", Part::joystick}, {"sensors", Part::sensors}};
-  for (const auto& [name, part] : parts) {
-    if (path.size() == 2 && path[0] == name) return field_of(part, path[1]);
-  }
-  return {};
-}
 
-// Compared with the literal at `value`; "" when that may be right.
-std::string ValueCheck::compared(const SourceUse& use, const Type& type, const Tokens& tokens, std::size_t value,
-                                 const SourceToken& sign) const {
-  const SourceToken& other = tokens[value];
-  const std::string name = as_written(tokens, use.at, use.next);
-  const bool text = other.kind == TokenKind::text, number = other.kind == TokenKind::number;
-  const std::string what = text ? "a text" : number ? "a number" : "true or false";
-  if (type.kind == Kind::number && !number) return name + " is a number, it is compared with " + what;
-  const bool exactly = sign.is("==") || sign.is("~=");
-  const bool no_force = name.ends_with("force_N") && other.text == "0";  // what does not touch reads exactly that
-  if (type.measured && exactly && !no_force)
-    return name + " is measured, it is hardly ever exactly " + other.text + ": compare with < or >";
-  if (type.kind == Kind::flag && !is_truth(other))
-    return name + " is true or false, it is compared with " + what + ": write " + name + " or not " + name;
-  if (type.kind != Kind::choice) return "";
-  const std::string choices = name + " is " + all_of_them(type.texts);
-  if (!text) return choices + ", it is compared with " + what;
-  if (!sign.is("==") && !sign.is("~=")) return choices + ": texts are compared with == or ~=";
-  if (std::ranges::find(type.texts, other.text) != type.texts.end()) return "";
-  return name + " is never \"" + other.text + "\"" + did_you_mean(other.text, type.texts) + "; it is " +
-         all_of_them(type.texts);
-}
-
-void ValueCheck::operands(const SourceUse& use, const Type& type, const Tokens& tokens,
-                          std::vector<ArgumentProblem>& found) const {
-  const SourceToken& left = before(tokens, use.at);
-  const SourceToken& right = tokens[use.next];
-  const std::string name = as_written(tokens, use.at, use.next);
-  const auto tell = [&](const std::string& text) {
-    if (!text.empty()) found.push_back({use.line, text});
+ private:
+  // What a name stands for; `texts` are all that a choice may be.
+  enum class Kind : std::uint8_t { unknown, number, flag, choice, by_name };
+  struct Type {
+    Kind kind = Kind::unknown;
+    std::vector<std::string> texts;
+    bool measured = false;  // a number that comes from a sensor
   };
-  if (type.kind == Kind::by_name) {
-    const bool counted = before(tokens, use.at, 2).text == "ipairs" && left.is("(");
-    if (left.is("#") || counted || (right.is("[") && tokens[use.next + 1].kind == TokenKind::number))
-      tell(name + " goes by names, not by numbers: for name, one in pairs(" + name + ") do");
-    return;
-  }
-  if (compares(right) && is_literal(tokens[use.next + 1]) && !goes_on(tokens[use.next + 2])) {
-    if (left.is("not") && type.kind != Kind::flag) {
-      tell("not binds closer than " + right.text + ": write " + name + (right.is("==") ? " ~= ..." : " == ..."));
-    } else if (!changes(left)) {
-      tell(compared(use, type, tokens, use.next + 1, right));
+
+  Type field_of(StatusField::Part part, const std::string& name, std::size_t index = 0) const {
+    for (const StatusField& field : fields_) {
+      if (!field.is_of(part, index) || field.name != name) continue;
+      if (field.type == StatusField::Type::number) {
+        using Part = StatusField::Part;
+        const bool sensed = part == Part::joint || part == Part::base || part == Part::rate || part == Part::foot ||
+                            part == Part::support || part == Part::odometry;
+        return {Kind::number, {}, sensed};
+      }
+      if (field.type == StatusField::Type::flag) return {Kind::flag, {}};
+      Type type{Kind::choice, {}};
+      for (std::size_t i = 0; i < field.choices; ++i) type.texts.emplace_back(field.choice(i));
+      return type;
     }
+    return {};
   }
-  if (compares(left) && is_literal(before(tokens, use.at, 2)) && !changes(before(tokens, use.at, 3)) && !changes(right))
-    tell(compared(use, type, tokens, use.at - 2, left));
-  if (type.kind == Kind::number) return;
-  const bool flag = type.kind == Kind::flag;
-  if (calculates(left) || calculates(right))
-    tell(name + (flag ? " is true or false, no number" : " is a text, no number"));
-  if (flag && (left.is("..") || right.is("..")))
-    tell(name + " is true or false, which .. does not join: write tostring(" + name + ")");
-}
 
-std::vector<ArgumentProblem> ValueCheck::of_use(const SourceUse& use, const Tokens& tokens) const {
-  std::vector<ArgumentProblem> found;
-  if (use.assigned) return found;
-  const std::string wrong = call(use, tokens);
-  if (!wrong.empty()) found.push_back({use.line, wrong});
-  const std::string unit = other_unit(use, tokens);
-  if (!unit.empty()) found.push_back({use.line, unit});
-  SourceMeaning meaning = use.known ? use.meaning : SourceMeaning{};
-  const bool in_brackets = !meaning.path.empty() && meaning.path.back() == "*";  // s.joints[1]
-  if (in_brackets) meaning.path.pop_back();
-  const Type type = type_of(meaning);
-  if (in_brackets && type.kind != Kind::by_name) return found;
-  if (type.kind == Kind::unknown || !use.method.empty()) return found;
-  if (use.arguments == 0) {
-    operands(use, type, tokens, found);
-  } else if (tokens[use.arguments - 1].is("(") && type.kind != Kind::by_name) {
-    found.push_back({use.line, as_written(tokens, use.at, use.next - 1) + " is a value: it stands without brackets"});
-  }
-  return found;
-}
-
-// A parameter in milliseconds, minutes or hours where seconds are asked for: m:wait(P.x), time_s = P.x, after = P.x.
-std::string ValueCheck::other_unit(const SourceUse& use, const Tokens& tokens) const {
-  if (use.meaning.role != SourceRole::parameters || use.meaning.path.size() != 1) return "";
-  const auto& declared = parts_.lua->core().parameters;
-  const auto named = [&](const ScriptParameter& one) { return one.name == use.meaning.path[0]; };
-  const auto found = std::ranges::find_if(declared, named);
-  if (found == declared.end() || std::ranges::count_if(declared, named) != 1) return "";
-  if (found->unit != "ms" && found->unit != "min" && found->unit != "h") return "";
-  const SourceToken& left = before(tokens, use.at);
-  const SourceToken& name = before(tokens, use.at, 2);
-  const bool given = left.is("=") && (name.text == "after" || name.text.ends_with("_s"));
-  const bool waits = left.is("(") && name.text == "wait" && before(tokens, use.at, 3).is(":");
-  if ((!given && !waits) || changes(tokens[use.next])) return "";
-  return name.text + " takes seconds, and " + found->name + " is in " + found->unit;
-}
-
-// What is wrong with how something is called, or given to a call.
-std::string ValueCheck::call(const SourceUse& use, const Tokens& tokens) const {
-  using Path = std::vector<std::string>;
-  const auto& path = use.meaning.path;
-  const SourceRole role = use.meaning.role;
-  if (!use.known) {
-    if (use.name == "string" && path == Path{"format"}) return format_mistake(tokens, use.arguments, "string.format");
-    return use.name == "print" && path.empty() ? print_mistake(tokens, use.arguments) : "";
-  }
-  if (role == SourceRole::module && !path.empty() && path[0] == "log" && use.arguments != 0) {
-    if (path.size() == 1 && use.method.empty()) return "k.log is a table: write k.log.info(...), .warning or .error";
-    return path.size() == 2 ? format_mistake(tokens, use.arguments, "k.log." + path[1]) : "";
-  }
-  if (role == SourceRole::motion) {
-    const bool given = before(tokens, use.at, 2).text == "wait" && before(tokens, use.at, 3).is(":");
-    if (path.empty() && use.method.empty() && given && before(tokens, use.at).is("(") && tokens[use.next].is(")"))
-      return "m:wait takes seconds; a motion waits for itself: " + use.name + ":wait()";
-    if (path.size() == 1 && (path[0] == "wait" || path[0] == "cancel") && without_colon(use, tokens))
-      return "call it with a colon: " + use.name + ":" + path[0] + "()";
-  }
-  return role == SourceRole::machine ? machine_call(use, tokens) : "";
-}
-
-std::string ValueCheck::machine_call(const SourceUse& use, const Tokens& tokens) const {
-  const auto& path = use.meaning.path;
-  if (use.arguments == 0) return "";
-  const bool bracket = tokens[use.arguments - 1].is("(");
-  if (path.size() == 1 && use.method.empty()) {
-    for (const char* method : {"wait", "emit", "on", "clear_faults", "reset_odometry", "use"}) {
-      if (path[0] == method && without_colon(use, tokens))
-        return "call it with a colon: " + use.name + ":" + path[0] + "(...)";
+  Type type_of(const SourceMeaning& meaning) const {
+    using Part = StatusField::Part;
+    const auto& path = meaning.path;
+    if (meaning.role == SourceRole::motion && path.size() == 1) {
+      if (path[0] == "done") return {Kind::flag, {}};
+      if (path[0] == "outcome") return {Kind::choice, texts_in_api("motion", "outcome")};
     }
+    if (meaning.role == SourceRole::machine && path == std::vector<std::string>{"time_s"}) return {Kind::number, {}};
+    if (meaning.role != SourceRole::snapshot || path.empty()) return {};
+    if (path.size() == 1 && (path[0] == "joints" || path[0] == "feet")) return {Kind::by_name, {}};
+    if (path.size() == 1) return field_of(Part::root, path[0]);
+    if (path.size() == 3 && path[0] == "joints") return field_of(Part::joint, path[2]);
+    if (path.size() == 3 && path[0] == "feet") return field_of(Part::foot, path[2]);
+    if (path.size() == 3 && path[0] == "base") return field_of(Part::rate, path[2]);
+    if (path.size() == 3 && path[0] == "seen") {
+      const auto& entries = parts_.catalog.seen;
+      const auto entry = std::ranges::find(entries, path[1], &SeenInfo::name);
+      if (entry != entries.end())
+        return field_of(Part::seen, path[2], static_cast<std::size_t>(entry - entries.begin()));
+      return field_of(Part::ball, path[2]);
+    }
+    constexpr std::pair<const char*, Part> parts[] = {{"base", Part::base},         {"support", Part::support},
+                                                      {"odometry", Part::odometry}, {"safety", Part::safety},
+                                                      {"joystick", Part::joystick}, {"sensors", Part::sensors}};
+    for (const auto& [name, part] : parts) {
+      if (path.size() == 2 && path[0] == name) return field_of(part, path[1]);
+    }
+    return {};
+  }
+
+  // Compared with the literal at `value`; "" when that may be right.
+  std::string compared(const SourceUse& use, const Type& type, std::size_t value, const SourceToken& sign) const {
+    const SourceToken& other = tokens_[value];
+    const std::string name = as_written(tokens_, use.at, use.next);
+    const bool text = other.kind == TokenKind::text, number = other.kind == TokenKind::number;
+    const std::string what = text ? "a text" : number ? "a number" : "true or false";
+    if (type.kind == Kind::number && !number) return name + " is a number, it is compared with " + what;
+    const bool exactly = sign.is("==") || sign.is("~=");
+    const bool no_force = name.ends_with("force_N") && other.text == "0";  // what does not touch reads exactly that
+    if (type.measured && exactly && !no_force)
+      return name + " is measured, it is hardly ever exactly " + other.text + ": compare with < or >";
+    if (type.kind == Kind::flag && !is_truth(other))
+      return name + " is true or false, it is compared with " + what + ": write " + name + " or not " + name;
+    if (type.kind != Kind::choice) return "";
+    const std::string choices = name + " is " + all_of_them(type.texts);
+    if (!text) return choices + ", it is compared with " + what;
+    if (!sign.is("==") && !sign.is("~=")) return choices + ": texts are compared with == or ~=";
+    if (std::ranges::find(type.texts, other.text) != type.texts.end()) return "";
+    return name + " is never \"" + other.text + "\"" + did_you_mean(other.text, type.texts) + "; it is " +
+           all_of_them(type.texts);
+  }
+
+  void operands(const SourceUse& use, const Type& type, Mistakes& found) const {
+    const SourceToken& left = before(tokens_, use.at);
+    const SourceToken& right = tokens_[use.next];
+    const std::string name = as_written(tokens_, use.at, use.next);
+    const auto tell = [&](const std::string& text) {
+      if (!text.empty()) found.push_back({use.line, text});
+    };
+    if (type.kind == Kind::by_name) {
+      const bool counted = before(tokens_, use.at, 2).text == "ipairs" && left.is("(");
+      if (left.is("#") || counted || (right.is("[") && tokens_[use.next + 1].kind == TokenKind::number))
+        tell(name + " goes by names, not by numbers: for name, one in pairs(" + name + ") do");
+      return;
+    }
+    if (compares(right) && tokens_[use.next + 1].is_literal() && !goes_on(tokens_[use.next + 2])) {
+      if (left.is("not") && type.kind != Kind::flag) {
+        tell("not binds closer than " + right.text + ": write " + name + (right.is("==") ? " ~= ..." : " == ..."));
+      } else if (!changes(left)) {
+        tell(compared(use, type, use.next + 1, right));
+      }
+    }
+    if (compares(left) && before(tokens_, use.at, 2).is_literal() && !changes(before(tokens_, use.at, 3)) &&
+        !changes(right))
+      tell(compared(use, type, use.at - 2, left));
+    if (type.kind == Kind::number) return;
+    const bool flag = type.kind == Kind::flag;
+    if (calculates(left) || calculates(right))
+      tell(name + (flag ? " is true or false, no number" : " is a text, no number"));
+    if (flag && (left.is("..") || right.is("..")))
+      tell(name + " is true or false, which .. does not join: write tostring(" + name + ")");
+  }
+
+  // A parameter in milliseconds, minutes or hours where seconds are asked for: m:wait(P.x), time_s = P.x, after = P.x.
+  std::string other_unit(const SourceUse& use) const {
+    if (use.meaning.role != SourceRole::parameters || use.meaning.path.size() != 1) return "";
+    const auto& declared = parts_.lua->core().parameters;
+    const auto named = [&](const ScriptParameter& one) { return one.name == use.meaning.path[0]; };
+    const auto found = std::ranges::find_if(declared, named);
+    if (found == declared.end() || std::ranges::count_if(declared, named) != 1) return "";
+    if (found->unit != "ms" && found->unit != "min" && found->unit != "h") return "";
+    const SourceToken& left = before(tokens_, use.at);
+    const SourceToken& name = before(tokens_, use.at, 2);
+    const bool given = left.is("=") && (name.text == "after" || name.text.ends_with("_s"));
+    const bool waits = left.is("(") && name.text == "wait" && before(tokens_, use.at, 3).is(":");
+    if ((!given && !waits) || changes(tokens_[use.next])) return "";
+    return name.text + " takes seconds, and " + found->name + " is in " + found->unit;
+  }
+
+  // What is wrong with how something is called, or given to a call.
+  std::string call(const SourceUse& use) const {
+    using Path = std::vector<std::string>;
+    const auto& path = use.meaning.path;
+    const SourceRole role = use.meaning.role;
+    if (!use.known) {
+      if (use.name == "string" && path == Path{"format"})
+        return format_mistake(tokens_, use.arguments, "string.format");
+      return use.name == "print" && path.empty() ? print_mistake(tokens_, use.arguments) : "";
+    }
+    if (role == SourceRole::module && !path.empty() && path[0] == "log" && use.arguments != 0) {
+      if (path.size() == 1 && use.method.empty()) return "k.log is a table: write k.log.info(...), .warning or .error";
+      return path.size() == 2 ? format_mistake(tokens_, use.arguments, "k.log." + path[1]) : "";
+    }
+    if (role == SourceRole::motion) {
+      const bool given = before(tokens_, use.at, 2).text == "wait" && before(tokens_, use.at, 3).is(":");
+      if (path.empty() && use.method.empty() && given && before(tokens_, use.at).is("(") && tokens_[use.next].is(")"))
+        return "m:wait takes seconds; a motion waits for itself: " + use.name + ":wait()";
+      if (path.size() == 1 && (path[0] == "wait" || path[0] == "cancel") && without_colon(use, tokens_))
+        return "call it with a colon: " + use.name + ":" + path[0] + "()";
+    }
+    return role == SourceRole::machine ? machine_call(use) : "";
+  }
+
+  std::string machine_call(const SourceUse& use) const {
+    const auto& path = use.meaning.path;
+    if (use.arguments == 0) return "";
+    const bool bracket = tokens_[use.arguments - 1].is("(");
+    if (path.size() == 1 && use.method.empty()) {
+      for (const char* method : {"wait", "emit", "on", "clear_faults", "reset_odometry", "use"}) {
+        if (path[0] == method && without_colon(use, tokens_))
+          return "call it with a colon: " + use.name + ":" + path[0] + "(...)";
+      }
+      return "";
+    }
+    if (path.size() == 1) {  // of a control object
+      const std::size_t after = end_of_call(tokens_, use.arguments);
+      const std::string& next = tokens_[after + 1].text;
+      if (tokens_[after].is(".") && (next == "wait" || next == "cancel") && tokens_[after + 2].is("("))
+        return "call it with a colon: " + use.method + "(...):" + next + "()";
+      const bool motion =
+          std::ranges::any_of(motion_methods(), [&](const auto& one) { return use.method == one.name; });
+      const bool given = before(tokens_, use.at).is("(") && before(tokens_, use.at, 2).text == "wait";
+      return motion && given && tokens_[after].is(")")
+                 ? "m:wait takes seconds; a motion waits for itself: move(...):wait()"
+                 : "";
+    }
+    if (!path.empty()) return "";
+    if (use.method == "on") return armed(use);
+    if (use.method != "wait") return "";
+    const SourceToken& first = tokens_[use.arguments];
+    if (first.is(")") && bracket) return "m:wait needs seconds: m:wait(1)";
+    if (first.is_literal() && first.kind != TokenKind::number && !goes_on(tokens_[use.arguments + 1]))
+      return "m:wait takes seconds, a number without quotes: m:wait(1)";
+    if (first.is("{") || first.is("function") || first.is("nil")) return "m:wait takes seconds: m:wait(1)";
+    if (first.is("-") && tokens_[use.arguments + 1].kind == TokenKind::number && tokens_[use.arguments + 2].is(")"))
+      return "m:wait takes seconds >= 0";
     return "";
   }
-  if (path.size() == 1) {  // of a control object
-    const std::size_t after = end_of_call(tokens, use.arguments);
-    const std::string& next = tokens[after + 1].text;
-    if (tokens[after].is(".") && (next == "wait" || next == "cancel") && tokens[after + 2].is("("))
-      return "call it with a colon: " + use.method + "(...):" + next + "()";
-    const bool motion = std::ranges::any_of(motion_methods(), [&](const auto& one) { return use.method == one.name; });
-    const bool given = before(tokens, use.at).is("(") && before(tokens, use.at, 2).text == "wait";
-    return motion && given && tokens[after].is(")")
-               ? "m:wait takes seconds; a motion waits for itself: move(...):wait()"
-               : "";
-  }
-  if (!path.empty()) return "";
-  if (use.method == "on") return armed(use, tokens);
-  if (use.method != "wait") return "";
-  const SourceToken& first = tokens[use.arguments];
-  if (first.is(")") && bracket) return "m:wait needs seconds: m:wait(1)";
-  if (is_literal(first) && first.kind != TokenKind::number && !goes_on(tokens[use.arguments + 1]))
-    return "m:wait takes seconds, a number without quotes: m:wait(1)";
-  if (first.is("{") || first.is("function") || first.is("nil")) return "m:wait takes seconds: m:wait(1)";
-  if (first.is("-") && tokens[use.arguments + 1].kind == TokenKind::number && tokens[use.arguments + 2].is(")"))
-    return "m:wait takes seconds >= 0";
-  return "";
-}
 
-// A condition of m:on that is written out. What is measured has a name in the table, if anything measured has.
-std::string ValueCheck::condition(const std::string& text) const {
-  const ConditionText read = read_condition_text(text);
-  if (read.wrong != nullptr) return std::string("m:on: ") + read.wrong;
-  const std::string given(read.signal);
-  if (is_truth_of_simulation(given)) return "m:on: '" + given + "' is the truth of a simulation, which no robot knows";
-  constexpr std::pair<const char*, const char*> in_snapshot[] = {{"feet.", "foot."}, {"joints.", "joint."}, {"s.", ""}};
-  for (const auto& [wrong, right] : in_snapshot) {
-    if (given.starts_with(wrong))
-      return "m:on: unknown signal '" + given + "', did you mean '" + right + given.substr(std::string(wrong).size()) +
-             "'?";
-  }
-  const SignalTable& signals = parts_.catalog.signals;
-  const SignalName known = condition_signal(parts_.bindings, given);
-  const std::string topic = given.substr(0, given.find('.') + 1);
-  constexpr std::string_view measured[] = {"joint.", "base.", "foot.", "support.", "odometry."};
-  const bool named = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
-  if (!named || signals.find_key(signal_key(known.data()))) return "";
-  return std::string("m:on: unknown signal '") + known.data() + "'" +
-         hint_text(known.data(), signals_near(parts_.bindings, known.data()));
-}
-
-// m:on(condition, function(c) ... end, { within_s = })
-std::string ValueCheck::armed(const SourceUse& use, const Tokens& tokens) const {
-  if (!tokens[use.arguments - 1].is("("))
-    return "m:on takes three things: m:on(condition, function(c) ... end, { within_s = 1 })";
-  const std::vector<std::size_t> given = parts_of(tokens, use.arguments);
-  const std::size_t end = end_of_call(tokens, use.arguments) - 1;
-  if (!given.empty() && tokens[given[0]].kind == TokenKind::text && tokens[given[0] + 1].is_any({",", ")"})) {
-    std::string wrong = condition(tokens[given[0]].text);
-    if (!wrong.empty()) return wrong;
-  }
-  const std::size_t done = given.size() > 1 ? given[1] : end;
-  const std::size_t done_end = given.size() > 2 ? given[2] - 1 : end;
-  bool acts = false;  // m.posture:hold() in place of the function
-  for (std::size_t i = done; i < done_end && !tokens[done].is("function"); ++i) acts = acts || tokens[i].is(":");
-  if (given.size() < 2 || acts || is_literal(tokens[done]) || tokens[done].is("{"))
-    return "m:on needs a function that says what to do: function(c) c.posture:hold() end";
-  for (std::size_t i = done; tokens[done].is("function") && i < done_end; ++i) {
-    if (tokens[i].is(":") && tokens[i + 1].text == "wait")
-      return "m:on: the function runs once, when it is armed, and only records what to send: it cannot wait";
-  }
-  if (given.size() == 2 && tokens[done].is("function"))
-    return "m:on needs { within_s = seconds } at the end: for how long it may wait";
-  if (given.size() < 3 || !tokens[given[2]].is("{")) return "";
-  bool timed = false;
-  for (const std::size_t key : parts_of(tokens, given[2] + 1)) {
-    const std::string& name = tokens[key].text;
-    if (tokens[key].kind != TokenKind::name || !tokens[key + 1].is("=")) return "";
-    if (name != "within_s" && name != "every_time" && name != "event")
-      return "m:on has no option '" + name + "'" + hint_text(name, {"within_s", "every_time", "event"});
-    timed = timed || name == "within_s";
-  }
-  return timed ? "" : "m:on needs within_s = seconds: for how long it may wait";
-}
-
-std::vector<ArgumentProblem> ValueCheck::of_literals(const Tokens& tokens) const {
-  std::vector<ArgumentProblem> found;
-  for (std::size_t i = 1; i + 1 < tokens.size(); ++i) {
-    const SourceToken& token = tokens[i];
-    const SourceToken& left = tokens[i - 1];
-    const SourceToken& right = tokens[i + 1];
-    const bool nothing = token.is("nil") || is_truth(token);
-    if (nothing && (left.is("..") || right.is("..")))
-      found.push_back({token.line, ".. joins texts and numbers, not " + token.text});
-    if (token.kind != TokenKind::text || is_numeral(token.text)) continue;
-    const bool of_call = left.kind == TokenKind::name || left.kind == TokenKind::text || left.is_any({")", "]", "}"});
-    if (of_call) continue;  // f "text" + 1
-    if (right.is("%")) {
-      found.push_back({token.line, "% does not fill a text: write string.format(text, ...)"});
-    } else if (right.is("+") || left.is("+")) {
-      found.push_back({token.line, "+ adds numbers, .. joins texts"});
-    } else if (calculates(right) || calculates(left)) {
-      found.push_back({token.line, "\"" + token.text + "\" is a text, no number"});
+  // A condition of m:on that is written out. What is measured has a name in the table, if anything measured has.
+  std::string condition(const std::string& text) const {
+    const ConditionText read = read_condition_text(text);
+    if (read.wrong != nullptr) return std::string("m:on: ") + read.wrong;
+    const std::string given(read.signal);
+    if (is_truth_of_simulation(given))
+      return "m:on: '" + given + "' is the truth of a simulation, which no robot knows";
+    constexpr std::pair<const char*, const char*> in_snapshot[] = {
+        {"feet.", "foot."}, {"joints.", "joint."}, {"s.", ""}};
+    for (const auto& [wrong, right] : in_snapshot) {
+      if (given.starts_with(wrong))
+        return "m:on: unknown signal '" + given + "', did you mean '" + right +
+               given.substr(std::string(wrong).size()) + "'?";
     }
+    const SignalTable& signals = parts_.catalog.signals;
+    const SignalName known = condition_signal(parts_.bindings, given);
+    const std::string topic = given.substr(0, given.find('.') + 1);
+    constexpr std::string_view measured[] = {"joint.", "base.", "foot.", "support.", "odometry."};
+    const bool named = std::ranges::find(measured, topic) != std::end(measured) && signals.find("base.pitch_rad");
+    if (!named || signals.find_key(signal_key(known.data()))) return "";
+    return std::string("m:on: unknown signal '") + known.data() + "'" +
+           hint_text(known.data(), signals_near(parts_.bindings, known.data()));
   }
+
+  // m:on(condition, function(c) ... end, { within_s = })
+  std::string armed(const SourceUse& use) const {
+    if (!tokens_[use.arguments - 1].is("("))
+      return "m:on takes three things: m:on(condition, function(c) ... end, { within_s = 1 })";
+    const std::vector<std::size_t> given = parts_of(tokens_, use.arguments);
+    const std::size_t end = end_of_call(tokens_, use.arguments) - 1;
+    if (!given.empty() && tokens_[given[0]].kind == TokenKind::text && tokens_[given[0] + 1].is_any({",", ")"})) {
+      std::string wrong = condition(tokens_[given[0]].text);
+      if (!wrong.empty()) return wrong;
+    }
+    const std::size_t done = given.size() > 1 ? given[1] : end;
+    const std::size_t done_end = given.size() > 2 ? given[2] - 1 : end;
+    bool acts = false;  // m.posture:hold() in place of the function
+    for (std::size_t i = done; i < done_end && !tokens_[done].is("function"); ++i) acts = acts || tokens_[i].is(":");
+    if (given.size() < 2 || acts || tokens_[done].is_literal() || tokens_[done].is("{"))
+      return "m:on needs a function that says what to do: function(c) c.posture:hold() end";
+    for (std::size_t i = done; tokens_[done].is("function") && i < done_end; ++i) {
+      if (tokens_[i].is(":") && tokens_[i + 1].text == "wait")
+        return "m:on: the function runs once, when it is armed, and only records what to send: it cannot wait";
+    }
+    if (given.size() == 2 && tokens_[done].is("function"))
+      return "m:on needs { within_s = seconds } at the end: for how long it may wait";
+    if (given.size() < 3 || !tokens_[given[2]].is("{")) return "";
+    bool timed = false;
+    for (const std::size_t key : parts_of(tokens_, given[2] + 1)) {
+      const std::string& name = tokens_[key].text;
+      if (tokens_[key].kind != TokenKind::name || !tokens_[key + 1].is("=")) return "";
+      if (name != "within_s" && name != "every_time" && name != "event")
+        return "m:on has no option '" + name + "'" + hint_text(name, {"within_s", "every_time", "event"});
+      timed = timed || name == "within_s";
+    }
+    return timed ? "" : "m:on needs within_s = seconds: for how long it may wait";
+  }
+
+  const Behavior::Parts& parts_;
+  const Tokens& tokens_;
+  std::vector<StatusField> fields_;
+};
+
+}  // namespace
+
+Mistakes value_mistakes(const Behavior::Parts& parts, const std::vector<SourceUse>& uses, const Tokens& tokens) {
+  const ValueCheck check(parts, tokens);
+  Mistakes found = check.of_literals();
+  for (const SourceUse& use : uses) std::ranges::move(check.of_use(use), std::back_inserter(found));
   return found;
 }
 

@@ -2,18 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <initializer_list>
 #include <iterator>
 
 namespace kadans {
 namespace {
 
-struct ForeignName {
-  std::initializer_list<std::string_view> names;
-  std::string_view hint;
-};
-
-const ForeignName foreign_names[] = {
+const ForeignWords foreign_names[] = {
     {{"null", "None", "NULL", "nullptr", "undefined", "Nil"}, ": Lua writes nil"},
     {{"True", "TRUE"}, ": Lua writes true"},
     {{"False", "FALSE"}, ": Lua writes false"},
@@ -52,12 +46,7 @@ const ForeignName foreign_names[] = {
     {{"event"}, ": it is a field of s: s.event"},
 };
 
-struct ForeignKey {
-  std::initializer_list<std::string_view> names;
-  std::string_view here;
-};
-
-const ForeignKey foreign_keys[] = {
+const ForeignWords foreign_keys[] = {
     {{"event", "events", "trigger", "signal", "message"}, "on"},
     {{"target", "next", "dest", "dst", "destination", "goto_state", "state"}, "to"},
     {{"guard", "cond", "condition", "predicate", "check"}, "when"},
@@ -96,12 +85,7 @@ const ForeignField foreign_fields[] = {
     {"s.event", {"outcome"}, ": the outcome is the event's name: { on = \"done\" }, s.event.name"},
 };
 
-struct ForeignType {
-  std::initializer_list<std::string_view> names;
-  std::string_view here;
-};
-
-const ForeignType foreign_types[] = {
+const ForeignWords foreign_types[] = {
     {{"bool", "boolean", "flag"}, "k.flag"},
     {{"string", "text", "str"}, "k.text"},
     {{"number", "int", "integer", "float", "double"}, "its unit, \"\" for none"},
@@ -116,25 +100,21 @@ constexpr std::string_view of_machine[] = {"vars", "args", "wait", "emit", "clea
 constexpr std::string_view of_snapshot[] = {"base",   "joints",   "feet", "support", "odometry",
                                             "safety", "joystick", "seen", "sensors"};
 
-template <typename Table>
-auto entry_of(const Table& table, std::string_view name) noexcept {
-  return std::ranges::find_if(table,
-                              [&](const auto& one) { return std::ranges::find(one.names, name) != one.names.end(); });
-}
-
 }  // namespace
+
+std::string_view text_of(std::span<const ForeignWords> table, std::string_view word) noexcept {
+  const auto has = [&](const ForeignWords& one) { return std::ranges::find(one.words, word) != one.words.end(); };
+  const auto found = std::ranges::find_if(table, has);
+  return found == table.end() ? std::string_view{} : found->text;
+}
 
 std::string_view foreign_name_hint(std::string_view name) noexcept {
   if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) >= 0x80; }))
     return ": texts stand in plain quotes, names have plain letters";
-  const auto found = entry_of(foreign_names, name);
-  return found == std::end(foreign_names) ? std::string_view{} : found->hint;
+  return text_of(foreign_names, name);
 }
 
-std::string_view foreign_key(std::string_view key) noexcept {
-  const auto found = entry_of(foreign_keys, key);
-  return found == std::end(foreign_keys) ? std::string_view{} : found->here;
-}
+std::string_view foreign_key(std::string_view key) noexcept { return text_of(foreign_keys, key); }
 
 bool names_a_list(std::string_view key) noexcept { return std::ranges::find(list_keys, key) != std::end(list_keys); }
 
@@ -160,10 +140,7 @@ std::string_view foreign_transition(std::string_view key) noexcept {
                : std::string_view{};
 }
 
-std::string_view foreign_type(std::string_view unit) noexcept {
-  const auto found = entry_of(foreign_types, unit);
-  return found == std::end(foreign_types) ? std::string_view{} : found->here;
-}
+std::string_view foreign_type(std::string_view unit) noexcept { return text_of(foreign_types, unit); }
 
 std::string_view foreign_field_hint(std::string_view owner, std::string_view field) noexcept {
   const bool swapped = (owner == "s" && std::ranges::find(of_machine, field) != std::end(of_machine)) ||

@@ -2,9 +2,18 @@
 // here instead. Used in messages about unknown names and keys, before a run and in it.
 #pragma once
 
+#include <initializer_list>
+#include <span>
 #include <string_view>
 
 namespace kadans {
+
+// Words with one meaning, and what a message says about them.
+struct ForeignWords {
+  std::initializer_list<std::string_view> words;
+  std::string_view text;
+};
+std::string_view text_of(std::span<const ForeignWords> table, std::string_view word) noexcept;  // "" for none of them
 
 // How the message about an unknown name goes on, ": Lua writes nil"; "" for a name that is none of these.
 std::string_view foreign_name_hint(std::string_view name) noexcept;

@@ -2,7 +2,6 @@
 
 #include <string_view>
 
-#include "kadans/signal/input_error.h"
 #include "script/lua/lua_core.h"
 #include "script/sandbox/sandbox.h"
 
@@ -10,11 +9,6 @@ namespace kadans {
 namespace {
 
 constexpr int shape_depth_max = 6;
-
-struct Reading {
-  Behavior::Parts* parts;
-  KnownNames* known;
-};
 
 // [-0 +0] The table or read-only table at `index`. Nothing here raises but for want of memory.
 void read_shape(lua_State* state, int index, KnownNames::Shape& shape, int depth) {
@@ -101,10 +95,7 @@ void read_functions(lua_State* state, const Chart& chart, KnownNames& known) {
   }
 }
 
-int read(lua_State* state) {
-  const auto& reading = *static_cast<Reading*>(lua_touserdata(state, 1));
-  const Behavior::Parts& parts = *reading.parts;
-  KnownNames& known = *reading.known;
+void read(lua_State* state, const Behavior::Parts& parts, KnownNames& known) {
   for (std::size_t i = 0; i < parts.chart.machines.size(); ++i) {
     const std::string& chunk = parts.chart.states[parts.chart.machines[i].root].chunk;
     for (KnownNames::Shape* machine : {&known.machine, &known.machines[chunk]}) {
@@ -146,7 +137,6 @@ int read(lua_State* state) {
     read_keys(state, machine.vars, known.vars[chunk]);
     read_keys(state, machine.arguments, known.parameters[chunk]);
   }
-  return 0;
 }
 
 }  // namespace
@@ -159,13 +149,8 @@ std::vector<std::string> KnownNames::Shape::names() const {
 
 KnownNames read_known_names(Behavior::Parts& parts) {
   KnownNames known;
-  Reading reading{&parts, &known};
-  if (!parts.lua->call(read, &reading, parts.settings.limits.load_instructions, 0)) {
-    const ScriptError& error = parts.lua->error();
-    throw InputError({error.file.data(), error.line, 0, error.message.data()});
-  }
-  known.motion_fields = {"cancel", "done", "outcome", "reason", "wait"};
-  known.armed_fields = {"cancel", "fired", "outcome"};
+  parts.lua->call_or_throw([&](lua_State* state) { read(state, parts, known); },
+                           parts.settings.limits.load_instructions, 0);
   for (const ScriptParameter& parameter : parts.lua->core().parameters) {
     known.parameters[parameter.chunk].push_back(parameter.name);
   }

@@ -20,7 +20,7 @@ struct KnownNames {
   };
   Shape machine, snapshot, module, globals;  // machine: `m` of all machines together
   std::map<std::string, Shape> machines;     // `m` of the machines in each behavior's file
-  std::vector<std::string> object_methods, motion_fields, armed_fields;
+  std::vector<std::string> object_methods;
   std::map<std::string, std::vector<std::string>> parameters;  // by the file that declares them
   std::map<std::string, std::vector<std::string>> vars;        // by the file of the behavior
   std::map<std::string, Shape> modules;  // the author's, by their names in `require`; one that is no table is open

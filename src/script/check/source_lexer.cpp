@@ -14,7 +14,6 @@ constexpr std::array<std::string_view, 22> keywords{
 constexpr std::array<std::string_view, 8> long_symbols{"...", "..", "==", "~=", "<=", ">=", "::", "//"};
 
 bool digit(char c) noexcept { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-bool in_name(char c) noexcept { return starts_name(c) || digit(c); }
 
 class Lexer {
  public:
@@ -22,9 +21,9 @@ class Lexer {
     if (text_.starts_with('#')) skip_line();
   }
 
-  std::vector<SourceToken> run() {
+  Tokens run() {
     while (at_ < text_.size()) step();
-    add(SourceToken::Kind::end, "");
+    add(TokenKind::end, "");
     return std::move(tokens_);
   }
 
@@ -58,8 +57,7 @@ class Lexer {
     const std::size_t start = at_;
     while (in_name(here())) ++at_;
     const std::string_view word = text_.substr(start, at_ - start);
-    const bool key = std::find(keywords.begin(), keywords.end(), word) != keywords.end();
-    add(key ? SourceToken::Kind::keyword : SourceToken::Kind::name, word);
+    add(is_keyword(word) ? TokenKind::keyword : TokenKind::name, word);
   }
 
   void number() {
@@ -69,7 +67,7 @@ class Lexer {
            (!hex && (here() == '+' || here() == '-') && (text_[at_ - 1] == 'e' || text_[at_ - 1] == 'E'))) {
       ++at_;
     }
-    add(SourceToken::Kind::number, text_.substr(start, at_ - start));
+    add(TokenKind::number, text_.substr(start, at_ - start));
   }
 
   void quoted(char quote) {
@@ -80,7 +78,7 @@ class Lexer {
       line_ += here() == '\n' ? 1 : 0;
       ++at_;
     }
-    tokens_.push_back({SourceToken::Kind::text, std::string(text_.substr(start, at_ - start)), first});
+    tokens_.push_back({TokenKind::text, std::string(text_.substr(start, at_ - start)), first});
     ++at_;
   }
 
@@ -94,7 +92,7 @@ class Lexer {
     const std::string close = "]" + std::string(level, '=') + "]";
     const std::size_t found = std::min(text_.find(close, start), text_.size());
     const std::string_view inside = text_.substr(start, found - start);
-    if (keep) add(SourceToken::Kind::text, inside);
+    if (keep) add(TokenKind::text, inside);
     line_ += static_cast<int>(std::count(inside.begin(), inside.end(), '\n'));
     at_ = std::min(found + close.size(), text_.size());
     return true;
@@ -103,37 +101,35 @@ class Lexer {
   void symbol() {
     for (const std::string_view longer : long_symbols) {
       if (!text_.substr(at_).starts_with(longer)) continue;
-      add(SourceToken::Kind::symbol, longer);
+      add(TokenKind::symbol, longer);
       at_ += longer.size();
       return;
     }
-    add(SourceToken::Kind::symbol, text_.substr(at_, 1));
+    add(TokenKind::symbol, text_.substr(at_, 1));
     ++at_;
   }
 
   std::string_view text_;
   std::size_t at_ = 0;
   int line_ = 1;
-  std::vector<SourceToken> tokens_;
+  Tokens tokens_;
 };
 
 // Behind a value: what goes on with it is no name, and no keyword but these.
 bool begins_statement(const SourceToken& token) {
-  if (token.kind == SourceToken::Kind::keyword) return token.text != "and" && token.text != "or";
-  return token.kind == SourceToken::Kind::name || token.is("::");
+  if (token.kind == TokenKind::keyword) return token.text != "and" && token.text != "or";
+  return token.kind == TokenKind::name || token.is("::");
 }
 
 bool may_end_value(const SourceToken& token) {
-  if (token.kind == SourceToken::Kind::symbol || token.kind == SourceToken::Kind::keyword) {
-    for (const char* last : {")", "}", "]", "...", "end", "nil", "true", "false"}) {
-      if (token.is(last)) return true;
-    }
-    return false;
-  }
-  return token.kind != SourceToken::Kind::end;
+  if (token.kind == TokenKind::symbol || token.kind == TokenKind::keyword)
+    return token.is_any({")", "}", "]", "...", "end", "nil", "true", "false"});
+  return token.kind != TokenKind::end;
 }
 
 }  // namespace
+
+bool is_keyword(std::string_view word) noexcept { return std::ranges::find(keywords, word) != keywords.end(); }
 
 std::string_view line_of_text(std::string_view text, int line) noexcept {
   for (int i = 1; i < line; ++i) {
@@ -144,42 +140,39 @@ std::string_view line_of_text(std::string_view text, int line) noexcept {
   return text.substr(0, text.find('\n'));
 }
 
-std::vector<SourceToken> lex_source(std::string_view text) { return Lexer(text).run(); }
+Tokens lex_source(std::string_view text) { return Lexer(text).run(); }
 
-std::size_t end_of_call(const std::vector<SourceToken>& tokens, std::size_t at) {
-  if (tokens[at].kind == SourceToken::Kind::text && (at == 0 || !tokens[at - 1].is("("))) return at + 1;
+std::size_t end_of_call(const Tokens& tokens, std::size_t at) {
+  if (tokens[at].kind == TokenKind::text && (at == 0 || !tokens[at - 1].is("("))) return at + 1;
   const bool bracket = at > 0 && tokens[at - 1].is("(");
   int depth = bracket ? 1 : 0;
-  for (; tokens[at].kind != SourceToken::Kind::end; ++at) {
-    for (const char* opening : {"(", "{", "["}) depth += tokens[at].is(opening) ? 1 : 0;
-    for (const char* closing : {")", "}", "]"}) depth -= tokens[at].is(closing) ? 1 : 0;
+  for (; tokens[at].kind != TokenKind::end; ++at) {
+    depth += opens_bracket(tokens[at]);
     if (depth == 0) return at + 1;
   }
   return at;
 }
 
-int opens(const SourceToken& token) {
-  for (const char* word : {"(", "{", "[", "function", "if", "do", "repeat"}) {
-    if (token.is(word)) return 1;
-  }
-  for (const char* word : {")", "}", "]", "end", "until"}) {
-    if (token.is(word)) return -1;
-  }
-  return 0;
+int opens_block(const SourceToken& token) {
+  return token.is_any({"function", "if", "do", "repeat"}) ? 1 : token.is_any({"end", "until"}) ? -1 : 0;
 }
 
-std::size_t end_of_block(const std::vector<SourceToken>& tokens, std::size_t at) {
-  for (int depth = 0; tokens[at].kind != SourceToken::Kind::end; ++at) {
+int opens_bracket(const SourceToken& token) {
+  return token.is_any({"(", "{", "["}) ? 1 : token.is_any({")", "}", "]"}) ? -1 : 0;
+}
+
+std::size_t end_of_block(const Tokens& tokens, std::size_t at) {
+  for (int depth = 0; tokens[at].kind != TokenKind::end; ++at) {
     depth += opens(tokens[at]);
     if (depth <= 0) return at;
   }
   return at;
 }
 
-std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::size_t at) {
+std::vector<std::size_t> parts_of(const Tokens& tokens, std::size_t at) {
   std::vector<std::size_t> parts;
   int depth = 0;
-  for (bool fresh = true; tokens[at].kind != SourceToken::Kind::end; ++at) {
+  for (bool fresh = true; tokens[at].kind != TokenKind::end; ++at) {
     const int change = opens(tokens[at]);
     if (depth + change < 0) break;
     if (std::exchange(fresh, false)) parts.push_back(at);
@@ -189,11 +182,10 @@ std::vector<std::size_t> parts_of(const std::vector<SourceToken>& tokens, std::s
   return parts;
 }
 
-std::vector<std::size_t> values_of(const std::vector<SourceToken>& tokens, std::size_t at) {
+std::vector<std::size_t> values_of(const Tokens& tokens, std::size_t at) {
   std::vector<std::size_t> values{at};
   int depth = 0;
-  for (bool whole = false; tokens[at].kind != SourceToken::Kind::end;
-       ++at) {  // whole: a value may end before the token
+  for (bool whole = false; tokens[at].kind != TokenKind::end; ++at) {  // whole: a value may end before the token
     const SourceToken& token = tokens[at];
     const int change = opens(token);
     if (depth == 0 && (change < 0 || token.is(";") || (whole && begins_statement(token)))) break;

@@ -8,8 +8,6 @@ namespace {
 
 constexpr int steps_max = 16;  // more of them: tables that hold one another
 
-using TokenKind = SourceToken::Kind;
-
 // Whether the expression before the token is over there.
 bool ends_value(const SourceToken& after) {
   return after.kind == TokenKind::name || after.is(",") || after.is(")") || after.is("}") || after.is(";") ||
@@ -288,8 +286,6 @@ SourceMeaning SourceScopes::value_at(std::size_t at) const {
 
 namespace {
 
-using TokenKind = SourceToken::Kind;
-
 // Keys of functions that are over within their tick.
 bool is_at_once(const std::string& key) {
   return key == "enter" || key == "exit" || key == "during" || key == "action" || key == "result";
@@ -319,7 +315,7 @@ void learn_facts(const std::vector<SourceScopes*>& files, SourceFacts& facts) {
   }
 }
 
-SourceScopes::SourceScopes(std::vector<SourceToken> tokens, std::size_t file, SourceFacts& facts)
+SourceScopes::SourceScopes(Tokens tokens, std::size_t file, SourceFacts& facts)
     : tokens_(std::move(tokens)), file_(file), facts_(&facts) {
   tokens_.resize(tokens_.size() + 4, SourceToken{TokenKind::end, "", tokens_.empty() ? 1 : tokens_.back().line});
   for (const SourceToken& token : tokens_) {
@@ -327,7 +323,7 @@ SourceScopes::SourceScopes(std::vector<SourceToken> tokens, std::size_t file, So
   }
 }
 
-void SourceScopes::walk(SourceListener* listener) {
+void SourceScopes::walk(const SourceListener& listener) {
   listener_ = listener;
   blocks_.assign(1, {});
   braces_.clear();
@@ -540,7 +536,7 @@ std::size_t SourceScopes::name_at(std::size_t at) {
   if (use.assigned && use.known) assign(use, at);
   look_through(use);
   if (const std::optional<SourcePlace> callee = callee_of(use)) hand_on(use, *callee);
-  if (listener_ != nullptr) listener_->used(use, tokens_);
+  if (listener_) listener_(use, tokens_);
   return use.next;
 }
 

@@ -4,6 +4,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -141,11 +142,8 @@ struct SourceFunction {
   bool returns_value = false;  // it returns a value somewhere; functions inside it do not count
 };
 
-class SourceListener {
- public:
-  virtual ~SourceListener() = default;
-  virtual void used(const SourceUse& use, const std::vector<SourceToken>& tokens) = 0;
-};
+// Hears of each use of a name, in the order of the text.
+using SourceListener = std::function<void(const SourceUse& use, const Tokens& tokens)>;
 
 class SourceScopes {
  public:
@@ -154,7 +152,7 @@ class SourceScopes {
   using ChartStates = std::map<int, std::set<std::uint16_t>>;  // the states whose functions these are
 
   // `file` is its number among the files that share `facts`. `facts` must outlive this object.
-  SourceScopes(std::vector<SourceToken> tokens, std::size_t file, SourceFacts& facts);
+  SourceScopes(Tokens tokens, std::size_t file, SourceFacts& facts);
   // Gives the functions of the chart: only these are guards, end within their tick, or get `m` and `s`. Without this
   // call, every function counts as what its key says.
   void know_functions(ChartFunctions chart, ChartStates states) {
@@ -162,12 +160,12 @@ class SourceScopes {
     states_ = std::move(states);
   }
   // Reads the file once and adds to the facts.
-  void read() { walk(nullptr); }
-  void tell(SourceListener& listener) { walk(&listener); }
+  void read() { walk({}); }
+  void tell(const SourceListener& listener) { walk(listener); }
 
   // After tell(): all functions; the first is the file itself.
   std::vector<SourceFunction> functions() const;
-  const std::vector<SourceToken>& tokens() const noexcept { return tokens_; }
+  const Tokens& tokens() const noexcept { return tokens_; }
   std::size_t file() const noexcept { return file_; }
 
  private:
@@ -182,7 +180,7 @@ class SourceScopes {
     std::size_t blocks = 0;  // number of blocks that are open around it
   };
 
-  void walk(SourceListener* listener);
+  void walk(const SourceListener& listener);
   std::size_t step(std::size_t at);
   void symbol_at(std::size_t at);
   void return_at(std::size_t at);
@@ -216,7 +214,7 @@ class SourceScopes {
 
   Function& function(std::size_t token) { return facts_->functions[{file_, token}]; }
 
-  std::vector<SourceToken> tokens_;
+  Tokens tokens_;
   std::size_t file_ = 0;
   SourceFacts* facts_;
   std::optional<ChartFunctions> chart_;
@@ -225,7 +223,7 @@ class SourceScopes {
   std::vector<Block> blocks_;
   std::vector<Braces> braces_;
   std::map<std::string, std::size_t> next_locals_;  // locals of the next block
-  SourceListener* listener_ = nullptr;
+  SourceListener listener_;
 };
 
 // Reads the files until no new facts are learnt.

@@ -7,13 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "foreign_words.h"
 #include "source_lexer.h"
 
 namespace kadans {
 namespace {
-
-using TokenKind = SourceToken::Kind;
-using Tokens = std::vector<SourceToken>;
 
 // Signs of other languages. Lua has none of these pairs, so a pair of them is never right.
 struct ForeignSign {
@@ -43,43 +41,23 @@ constexpr ForeignSign foreign_signs[] = {
 constexpr std::string_view assigning[] = {"+", "-", "*", "/", "%", "^", ".."};  // += and its kin
 
 // Words at the begin of a statement of another language; another name follows.
-struct ForeignStart {
-  std::string_view word, hint;
-};
-constexpr ForeignStart foreign_starts[] = {
-    {"var", "Lua writes local x = ..."},
-    {"let", "Lua writes local x = ..."},
-    {"const", "Lua writes local x = ..."},
-    {"int", "Lua writes local x = ..."},
-    {"float", "Lua writes local x = ..."},
-    {"double", "Lua writes local x = ..."},
-    {"bool", "Lua writes local x = ..."},
-    {"auto", "Lua writes local x = ..."},
-    {"def", "Lua writes local function f(m) ... end"},
-    {"func", "Lua writes local function f(m) ... end"},
-    {"fn", "Lua writes local function f(m) ... end"},
-    {"lambda", "Lua writes function(m) return ... end"},
-    {"import", "Lua writes local name = require \"name\""},
-    {"from", "Lua writes local name = require \"name\""},
-    {"elif", "Lua writes elseif ... then"},
-    {"elsif", "Lua writes elseif ... then"},
-    {"case", "Lua has no switch: write if ... elseif ... end"},
-    {"try", "Lua has no try: an error is raised by error(text)"},
+const ForeignWords foreign_starts[] = {
+    {{"var", "let", "const", "int", "float", "double", "bool", "auto"}, "Lua writes local x = ..."},
+    {{"def", "func", "fn"}, "Lua writes local function f(m) ... end"},
+    {{"lambda"}, "Lua writes function(m) return ... end"},
+    {{"import", "from"}, "Lua writes local name = require \"name\""},
+    {{"elif", "elsif"}, "Lua writes elseif ... then"},
+    {{"case"}, "Lua has no switch: write if ... elseif ... end"},
+    {{"try"}, "Lua has no try: an error is raised by error(text)"},
 };
 
 constexpr std::size_t look_back_max = 500;  // tokens: a line may be as long as a file
 
-bool opens_block(const SourceToken& token) { return token.is_any({"function", "if", "do", "repeat"}); }
-bool opens_bracket(const SourceToken& token) { return token.is_any({"(", "{", "["}); }
-bool closes_bracket(const SourceToken& token) { return token.is_any({")", "}", "]"}); }
-
 bool may_end_entry(const SourceToken& token) {
-  return token.kind == TokenKind::name || token.kind == TokenKind::number || token.kind == TokenKind::text ||
-         closes_bracket(token) || token.is_any({"end", "true", "false", "nil"});
+  return token.kind == TokenKind::name || token.is_literal() || token.is_any({")", "}", "]", "end", "nil"});
 }
 bool may_begin_entry(const SourceToken& token) {
-  return token.kind == TokenKind::name || token.kind == TokenKind::number || token.kind == TokenKind::text ||
-         token.is_any({"{", "[", "function", "true", "false", "not"});
+  return token.kind == TokenKind::name || token.is_literal() || token.is_any({"{", "[", "function", "not"});
 }
 
 // An entry of a message: what stands between the quotes behind `near`.
@@ -125,9 +103,6 @@ class Explainer {
   }
   bool tell(std::size_t at, std::string_view text) { return tell_line(tokens_[at].line, text); }
   bool says(std::string_view what) const { return message_.find(what) != std::string_view::npos; }
-  bool name(std::size_t at, std::string_view word) const {
-    return tokens_[at].kind == TokenKind::name && tokens_[at].text == word;
-  }
   bool last_in_line(std::size_t at) const { return tokens_[at + 1].line > tokens_[at].line || at_end(at + 1); }
   bool first_in_line(std::size_t at) const { return tokens_[at - 1].line < tokens_[at].line || at_end(at - 1); }
   bool at_end(std::size_t at) const { return tokens_[at].kind == TokenKind::end; }
@@ -208,10 +183,8 @@ class Explainer {
       const bool goes_on = tokens_[i + 1].kind == TokenKind::name || tokens_[i + 1].kind == TokenKind::text ||
                            tokens_[i + 1].kind == TokenKind::number || tokens_[i + 1].is("{");
       if (tokens_[i + 1].line != tokens_[i].line || !goes_on) return false;
-      for (const ForeignStart& one : foreign_starts) {
-        if (tokens_[i].text == one.word) return tell(i, one.hint);
-      }
-      return false;
+      const std::string_view hint = text_of(foreign_starts, tokens_[i].text);
+      return !hint.empty() && tell(i, hint);
     });
   }
 
@@ -330,14 +303,15 @@ class Explainer {
       const SourceToken& token = tokens_[i];
       if (token.is("for") || token.is("while")) loop = i;
       const bool of_loop = token.is("do") && loop != 0;
-      if (opens_block(token) || opens_bracket(token)) {
+      const int change = opens(token);
+      if (change > 0) {
         open.push_back({i, of_loop ? tokens_[loop].line : token.line});
         if (of_loop) loop = 0;
       }
-      if (!token.is("end") && !token.is("until") && !closes_bracket(token)) continue;
+      if (change >= 0) continue;
       if (open.empty()) break;
       const Open last = open.back();
-      if (closes_bracket(token) != opens_bracket(tokens_[last.token])) break;
+      if (opens_bracket(token) != -opens_bracket(tokens_[last.token])) break;
       open.pop_back();
       if (!suspect && first_in_line(i) && indent(token.line) < indent(last.line)) suspect = last;
     }
@@ -362,11 +336,11 @@ class Explainer {
     const SourceToken& here = tokens_[at_];
     std::optional<Open> suspect;
     const std::vector<Open> open = open_at(suspect);
-    const bool unclosed = here.is(",") || closes_bracket(here) || at_end(at_) || says("'end' expected");
-    if (open.empty() || !unclosed || !opens_block(tokens_[open.back().token])) return false;
+    const bool unclosed = here.is(",") || opens_bracket(here) < 0 || at_end(at_) || says("'end' expected");
+    if (open.empty() || !unclosed || opens_block(tokens_[open.back().token]) <= 0) return false;
     if (says("' expected near") && !says("'end' expected") && !at_end(at_)) return false;
     Open missing = open.back();
-    if (suspect && opens_block(tokens_[suspect->token])) missing = *suspect;
+    if (suspect && opens_block(tokens_[suspect->token]) > 0) missing = *suspect;
     if (const std::size_t second = else_if_behind(open.back().token); second != 0)
       return tell(second, "Lua writes elseif in one word; 'else if' needs one more end");
     return tell_line(at_end(at_) ? missing.line : tokens_[at_ - 1].line, "the " + shown(missing) + " has no end");
@@ -375,14 +349,14 @@ class Explainer {
   bool bracket() {
     std::optional<Open> suspect;
     const std::vector<Open> open = open_at(suspect);
-    if (!at_end(at_) || open.empty() || !suspect || !opens_bracket(tokens_[suspect->token])) return false;
+    if (!at_end(at_) || open.empty() || !suspect || opens_bracket(tokens_[suspect->token]) <= 0) return false;
     return tell_line(suspect->line, "the " + shown(*suspect) + " is not closed");
   }
 
   bool after_file() {
     if (!says("'<eof>' expected")) return false;
     if (tokens_[at_].is("end")) return tell(at_, "there is one end too many");
-    if (closes_bracket(tokens_[at_])) return tell(at_, "there is one '" + tokens_[at_].text + "' too many");
+    if (opens_bracket(tokens_[at_]) < 0) return tell(at_, "there is one '" + tokens_[at_].text + "' too many");
     if (tokens_[at_].is(","))
       return tell(at_, "the file ends with what it returns: there is a bracket or an end too many before");
     return tell(at_, "return ends the file: what it uses stands above it");

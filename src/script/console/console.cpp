@@ -11,6 +11,7 @@
 #include "kadans/signal/nearest_name.h"
 #include "script/bindings/bindings.h"
 #include "script/bindings/snapshot_tables.h"
+#include "script/check/source_lexer.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
 #include "signal/number_text.h"
@@ -139,27 +140,17 @@ void push_new_content(lua_State* state, Console::Parts& parts) {
 
 // [-0 +1] { name = { state =, active =, outcome =, error =, parameters = } }
 void push_behaviors(lua_State* state, const std::vector<ConsoleBehavior>& behaviors) {
-  const auto text = [&](const char* name, const std::string& value) {
-    lua_pushlstring(state, value.data(), value.size());
-    lua_setfield(state, -2, name);
-  };
   lua_newtable(state);
   for (const ConsoleBehavior& behavior : behaviors) {
     lua_newtable(state);
-    text("state", behavior.state);
-    text("outcome", behavior.outcome);
-    text("error", behavior.error);
-    lua_createtable(state, static_cast<int>(behavior.active.size()), 0);
-    for (std::size_t i = 0; i < behavior.active.size(); ++i) {
-      lua_pushlstring(state, behavior.active[i].data(), behavior.active[i].size());
-      lua_rawseti(state, -2, static_cast<int>(i + 1));
-    }
+    set_field(state, "state", behavior.state.c_str());
+    set_field(state, "outcome", behavior.outcome.c_str());
+    set_field(state, "error", behavior.error.c_str());
+    push_texts(state, behavior.active);
     lua_setfield(state, -2, "active");
     lua_newtable(state);
-    for (const ScriptParameter& parameter : behavior.parameters) {
-      lua_pushnumber(state, parameter.value);
-      lua_setfield(state, -2, parameter.name.c_str());
-    }
+    for (const ScriptParameter& parameter : behavior.parameters)
+      set_field(state, parameter.name.c_str(), parameter.value);
     make_read_only(state, "parameters");
     lua_setfield(state, -2, "parameters");
     make_read_only(state, "a behavior");
@@ -202,8 +193,7 @@ void add_names(lua_State* state, Naming& naming) {
   }
 }
 
-int find_names(lua_State* state) {
-  Naming& naming = *static_cast<Naming*>(lua_touserdata(state, 1));
+void find_names(lua_State* state, Naming& naming) {
   for (const int root : {naming.parts.environment, naming.parts.content}) {
     lua_settop(state, 1);
     lua_rawgeti(state, LUA_REGISTRYINDEX, root);
@@ -215,7 +205,6 @@ int find_names(lua_State* state) {
     }
     if (lua_istable(state, -1)) add_names(state, naming);
   }
-  return 0;
 }
 
 }  // namespace
@@ -278,9 +267,8 @@ void ValueTree::refill(lua_State* state, std::span<const double> values) const {
   lua_settop(state, top);
 }
 
-// Makes the environment. The argument on the stack is the Parts. Raises.
-int open_console(lua_State* state) {
-  auto& parts = *static_cast<Console::Parts*>(lua_touserdata(state, 1));
+// Makes the environment. Raises.
+void open_console(lua_State* state, Console::Parts& parts) {
   push_new_content(state, parts);
   lua_pushvalue(state, -1);
   parts.content = luaL_ref(state, LUA_REGISTRYINDEX);
@@ -300,7 +288,6 @@ int open_console(lua_State* state) {
   lua_setfenv(state, -2);
   lua_call(state, 0, 1);
   parts.show = luaL_ref(state, LUA_REGISTRYINDEX);
-  return 0;
 }
 
 // [-0 +0] Refills s, signals, parameters and behaviors.
@@ -323,7 +310,8 @@ std::vector<std::string> console_names(Console::Parts& parts, const std::string&
     from = at + 1;
   }
   naming.begin = path.substr(from);
-  (void)parts.lua.call(find_names, &naming, parts.settings.limits.tick_instructions, 0);
+  (void)parts.lua.call([&](lua_State* state) { find_names(state, naming); }, parts.settings.limits.tick_instructions,
+                       0);
   std::ranges::sort(naming.found);
   naming.found.erase(std::unique(naming.found.begin(), naming.found.end()), naming.found.end());
   for (std::string& name : naming.found) name.insert(0, path, 0, from);
@@ -331,18 +319,6 @@ std::vector<std::string> console_names(Console::Parts& parts, const std::string&
 }
 
 namespace {
-
-std::vector<std::string> parameter_names(const ParameterTable& table) {
-  std::vector<std::string> names;
-  for (ParameterId id = 0; id < table.size(); ++id) names.push_back(table.info(id).name);
-  return names;
-}
-
-std::vector<std::string> signal_names(const SignalTable& table) {
-  std::vector<std::string> names;
-  for (SignalId id = 0; id < table.size(); ++id) names.push_back(table.info(id).name);
-  return names;
-}
 
 Chart console_chart() {
   Chart chart;
@@ -379,20 +355,18 @@ void push_line(lua_State* state, Evaluation& evaluation) {
   lua_setfenv(state, -2);
 }
 
-int evaluate_line(lua_State* state) {
-  Evaluation& evaluation = *static_cast<Evaluation*>(lua_touserdata(state, 1));
+void evaluate_line(lua_State* state, Evaluation& evaluation) {
   push_line(state, evaluation);
   refill_console(state, evaluation.parts, evaluation.view);
   const int before = lua_gettop(state) - 1;
   lua_call(state, 0, LUA_MULTRET);
   const int results = lua_gettop(state) - before;
-  if (results == 0) return 0;
+  if (results == 0) return;
   luaL_checkstack(state, results + 2, "too many values");
   lua_rawgeti(state, LUA_REGISTRYINDEX, evaluation.parts.show);
   lua_insert(state, before + 1);
   lua_call(state, results, 1);
   evaluation.text = lua_tostring(state, -1);
-  return 0;
 }
 
 std::vector<ConsoleBehavior> behaviors_of(const ScriptHost& host) {
@@ -452,9 +426,7 @@ std::vector<std::string> command_names() {
   return names;
 }
 
-bool continues_word(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == ':';
-}
+bool continues_word(char c) { return in_name(c) || c == '.' || c == ':'; }
 
 Console::Reply run_for(const std::string& argument) {
   const std::optional<double> seconds = number_of<double>(argument);
@@ -476,15 +448,16 @@ Console::Parts::Parts(const Settings& wanted, const Catalog& offered, ScriptHost
            .limits = wanted.limits,
            .voice = this}),
       chart(console_chart()),
-      signals(signal_names(offered.signals)),
-      parameters(parameter_names(offered.parameters)) {
+      signals(offered.signals.names()),
+      parameters(offered.parameters.names()) {
   bindings.catalog = &catalog;
   lua.core().bindings = &bindings;
 }
 
 Console::Console(const Settings& settings, const Catalog& catalog, ScriptHost& host)
     : parts_(std::make_unique<Parts>(settings, catalog, host)) {
-  if (!parts_->lua.call(open_console, parts_.get(), settings.limits.load_instructions, settings.limits.load_wall_ns))
+  const auto open = [this](lua_State* state) { open_console(state, *parts_); };
+  if (!parts_->lua.call(open, settings.limits.load_instructions, settings.limits.load_wall_ns))
     throw InputError({.message = "the console: " + parts_->lua.error().text()});
 }
 
@@ -521,7 +494,8 @@ Console::Reply Console::run_lua(const View& view) noexcept {
   const std::uint32_t nothing_sent = parts.nowhere.last_sequence();
   parts.bindings.begin(sender, view.snapshot, view.snapshot.time_ns);
   const ScriptLimits& limits = parts.settings.limits;
-  const bool done = parts.lua.call(evaluate_line, &evaluation, limits.tick_instructions, limits.tick_wall_ns);
+  const bool done = parts.lua.call([&](lua_State* state) { evaluate_line(state, evaluation); },
+                                   limits.tick_instructions, limits.tick_wall_ns);
   Reply reply;
   if (evaluation.incomplete) return sender.discard(), Reply{.text = {}, .incomplete = true};
   parts.pending.clear();

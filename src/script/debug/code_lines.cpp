@@ -1,7 +1,6 @@
 #include "code_lines.h"
 
 #include <algorithm>
-#include <cctype>
 #include <memory>
 #include <string_view>
 
@@ -50,8 +49,6 @@ int add_function(lua_State* state) {
   return 0;
 }
 
-bool of_word(char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; }
-
 // The name beside the first `function` of the line: behind it, or before "=".
 std::string name_in(std::string_view line) {
   constexpr std::string_view keyword = "function";
@@ -59,12 +56,12 @@ std::string name_in(std::string_view line) {
   if (at == std::string_view::npos) return "";
   std::size_t begin = std::min(line.find_first_not_of(' ', at + keyword.size()), line.size());
   std::size_t end = begin;
-  while (end < line.size() && (of_word(line[end]) || line[end] == '.' || line[end] == ':')) ++end;
+  while (end < line.size() && (in_name(line[end]) || line[end] == '.' || line[end] == ':')) ++end;
   if (end == begin) {
     end = line.find_last_not_of(" =", at == 0 ? 0 : at - 1);
     end = end == std::string_view::npos ? 0 : end + 1;
     begin = end;
-    while (begin > 0 && of_word(line[begin - 1])) --begin;
+    while (begin > 0 && in_name(line[begin - 1])) --begin;
   }
   const std::string_view name = line.substr(begin, end - begin);
   const std::size_t dot = name.find_last_of(".:");

@@ -55,8 +55,7 @@ bool Inspection::guarded(Work work) {
   LuaCore& core = behavior_.parts().lua->core();
   core.depth = core.coroutines = 0;
   core.budget.begin(lua_, instructions_max, 0);
-  const bool well = lua_cpcall(lua_, call, &work) == 0;
-  return well;
+  return lua_cpcall(lua_, call, &work) == 0;
 }
 
 Inspection::Inspection(Behavior& behavior, lua_State* running) : behavior_(behavior), lua_(nullptr) {
@@ -111,8 +110,8 @@ void Inspection::add_states(StateIndex from) {
   }
 }
 
-std::uint32_t Inspection::add(Group group) {
-  groups_.push_back(group);
+std::uint32_t Inspection::add(Lister lister) {
+  groups_.push_back(std::move(lister));
   return static_cast<std::uint32_t>(groups_.size());
 }
 
@@ -198,7 +197,8 @@ ShownValue Inspection::shown(const std::string& name) {
   ShownValue value{.name = name, .text = text_of(index, false), .type = luaL_typename(lua_, index)};
   if (lua_istable(lua_, index)) {
     if (push_content(lua_, index)) lua_replace(lua_, index);
-    value.fields = add({.kind = Kind::table, .reference = luaL_ref(lua_, LUA_REGISTRYINDEX)});
+    const int reference = luaL_ref(lua_, LUA_REGISTRYINDEX);
+    value.fields = add([this, reference](auto& to) { list_table(reference, to); });
   } else {
     lua_settop(lua_, index - 1);
   }
@@ -257,18 +257,16 @@ void Inspection::list_table(int reference, std::vector<ShownValue>& to) {
 }
 
 void Inspection::list_scopes(std::size_t frame, std::vector<ShownValue>& to) {
-  const Spot& spot = spots_[frame];
-  const auto group = [&](const char* name, Group of) { to.push_back({name, "", "", add(of)}); };
+  const Spot spot = spots_[frame];
+  const auto group = [&](const char* name, Lister lister) { to.push_back({name, "", "", add(std::move(lister))}); };
   if (spot.thread != nullptr) {
-    group("locals", {.kind = Kind::locals, .frame = frame});
-    group("upvalues", {.kind = Kind::upvalues, .frame = frame});
+    group("locals", [this, spot](auto& values) { list_locals(spot, values); });
+    group("upvalues", [this, spot](auto& values) { list_upvalues(spot, values); });
   }
   for (const char* field : {"vars", "args"}) {
-    if (push_machine_field(spot.state, field)) {
-      to.push_back(shown(field));
-    }
+    if (push_machine_field(spot.state, field)) to.push_back(shown(field));
   }
-  group("params", {.kind = Kind::params, .frame = frame});
+  group("params", [this, spot](auto& values) { list_params(spot, values); });
   lua_rawgeti(lua_, LUA_REGISTRYINDEX, behavior_.parts().tables.snapshot);
   to.push_back(shown("s"));
 }
@@ -282,19 +280,8 @@ std::vector<ShownValue> Inspection::scopes(std::size_t frame) {
 std::vector<ShownValue> Inspection::fields(std::uint32_t number) {
   std::vector<ShownValue> all;
   if (number == 0 || number > groups_.size()) return all;
-  const Group group = groups_[number - 1];
-  (void)guarded([&] {
-    switch (group.kind) {
-      case Kind::locals:
-        return list_locals(spots_[group.frame], all);
-      case Kind::upvalues:
-        return list_upvalues(spots_[group.frame], all);
-      case Kind::params:
-        return list_params(spots_[group.frame], all);
-      case Kind::table:
-        return list_table(group.reference, all);
-    }
-  });
+  const Lister list = groups_[number - 1];  // a copy: it adds groups
+  (void)guarded([&] { list(all); });
   return all;
 }
 
@@ -320,10 +307,8 @@ void Inspection::push_names(const Spot& spot) {
   }
   for (int i = 1; const char* name = push_local(spot, i); ++i) lua_setfield(lua_, names, name);
   lua_newtable(lua_);
-  each_param(spot, [&](const ScriptParameter& parameter, double value) {
-    lua_pushnumber(lua_, value);
-    lua_setfield(lua_, -2, parameter.name.c_str());
-  });
+  each_param(spot,
+             [&](const ScriptParameter& parameter, double value) { set_field(lua_, parameter.name.c_str(), value); });
   lua_setfield(lua_, names, "params");
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -55,12 +56,6 @@ class Inspection {
   [[nodiscard]] bool evaluate(std::size_t frame, const std::string& lua, ShownValue& value);
 
  private:
-  enum class Kind : std::uint8_t { locals, upvalues, params, table };
-  struct Group {
-    Kind kind;
-    std::size_t frame = 0;
-    int reference = 0;  // registry: of a table
-  };
   struct Spot {                   // of a frame
     lua_State* thread = nullptr;  // nullptr: of the chart
     int level = 0;
@@ -70,7 +65,9 @@ class Inspection {
   void add_frames(lua_State* thread, bool outermost);
   void add_states(StateIndex from);
   std::string function_name(lua_State* thread, int level, bool outermost) const;
-  std::uint32_t add(Group group);
+  // Lists what is in a group or in a table.
+  using Lister = std::function<void(std::vector<ShownValue>& to)>;
+  std::uint32_t add(Lister lister);
   bool push_function(const Spot& spot);
   const char* push_local(const Spot& spot, int number);
   bool push_machine_field(StateIndex state, const char* field);
@@ -92,7 +89,7 @@ class Inspection {
   lua_State* lua_;  // of its own, in which everything here is done
   std::vector<ShownFrame> frames_;
   std::vector<Spot> spots_;
-  std::vector<Group> groups_;
+  std::vector<Lister> groups_;
 };
 
 }  // namespace kadans

@@ -44,6 +44,30 @@ inline LuaCore& core_of(lua_State* state) noexcept {
   return *static_cast<LuaCore*>(core);
 }
 
+// [-0 +1] Pushes entry `at` of the table that a registry reference stands for.
+inline void push_entry(lua_State* state, int table, int at) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, table);
+  lua_rawgeti(state, -1, at);
+  lua_remove(state, -2);
+}
+// [-1 +0] Gives it the value at the top of the stack.
+inline void set_entry(lua_State* state, int table, int at) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, table);
+  lua_insert(state, -2);
+  lua_rawseti(state, -2, at);
+  lua_pop(state, 1);
+}
+
+// [-0 +0] Sets a field of the table at the top of the stack.
+inline void set_field(lua_State* state, const char* key, const char* text) {
+  lua_pushstring(state, text);
+  lua_setfield(state, -2, key);
+}
+inline void set_field(lua_State* state, const char* key, double number) {
+  lua_pushnumber(state, number);
+  lua_setfield(state, -2, key);
+}
+
 // Notes the innermost script line in `error`. When there is none (a tail call leaves no trace), it notes the line where
 // the function that was called last begins. Never allocates.
 void note_place(lua_State* state, ScriptError& error) noexcept;

@@ -137,6 +137,10 @@ bool LuaState::call(int (*function)(lua_State*), void* argument, std::uint64_t i
   return status == 0 && !core_->budget.breached();
 }
 
+void* LuaState::argument_of(lua_State* state) noexcept { return lua_touserdata(state, 1); }
+
+void LuaState::throw_error() const { throw InputError({error().file.data(), error().line, 0, error().message.data()}); }
+
 bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   Source source;
   source.path = path;

@@ -61,6 +61,17 @@ class LuaState {
   // dropped. Errors unwind through the function, so it must not hold objects that need a destructor.
   [[nodiscard]] bool call(int (*function)(lua_State*), void* argument, std::uint64_t instructions,
                           std::int64_t wall_ns) noexcept;
+  // The same with work(state), of which what was said of the function holds.
+  template <typename Work>
+  [[nodiscard]] bool call(Work work, std::uint64_t instructions, std::int64_t wall_ns) noexcept {
+    const auto function = [](lua_State* state) { return (*static_cast<Work*>(argument_of(state)))(state), 0; };
+    return call(function, &work, instructions, wall_ns);
+  }
+  // Throws InputError in place of false.
+  template <typename Work>
+  void call_or_throw(Work work, std::uint64_t instructions, std::int64_t wall_ns) {
+    if (!call(work, instructions, wall_ns)) throw_error();
+  }
 
   // Compiles a text file and leaves the function on the stack of `state`. False: the error message is on the stack.
   bool load_file(lua_State* state, const std::filesystem::path& path);
@@ -81,6 +92,8 @@ class LuaState {
   std::size_t used_bytes() const noexcept;
 
  private:
+  static void* argument_of(lua_State* state) noexcept;
+  [[noreturn]] void throw_error() const;
   void collect_in_time(int kB) noexcept;
 
   Settings settings_;

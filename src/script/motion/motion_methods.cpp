@@ -8,6 +8,7 @@
 #include "motion_options.h"
 #include "script/bindings/bindings.h"
 #include "script/lua/script_error.h"
+#include "script/sandbox/handle.h"
 #include "script/sandbox/sandbox.h"
 #include "task_targets.h"
 
@@ -20,10 +21,10 @@ constexpr double peak_per_mean = 4, acceleration_per_way = 5.5;
 constexpr double least = 1e-3;  // of a limit
 
 // [-0 +1] The handle of a motion for commit() to number. nullptr: there is no place for it.
-Motion* start_motion(lua_State* state, std::uint32_t object, std::uint32_t count, double duration_s) {
+Motion* start_motion(lua_State* state, const ObjectInfo& object, std::uint32_t count, double duration_s) {
   Bindings& bindings = bindings_of(state);
   Motion* motion = push_motion(state, count);
-  motion->object = object;
+  motion->object = object_number(*bindings.catalog, object);
   motion->duration_s = duration_s;
   motion->asked_ns = bindings.now_ns;
   if (bindings.motion_count == bindings.motions.size()) return nullptr;
@@ -72,7 +73,8 @@ Command minimum_jerk(const MotionOptions& options, const MotionTarget& target) {
   return {.kind = CommandKind::set_point, .index = target.id, .value = target.value, .duration_s = options.time_s};
 }
 
-int send_motion(lua_State* state, std::uint32_t object, const MotionOptions& options, const MotionTargets& targets) {
+int send_motion(lua_State* state, const ObjectInfo& object, const MotionOptions& options,
+                const MotionTargets& targets) {
   const double duration_s = duration_of(options, targets);
   Motion* motion = start_motion(state, object, targets.count, duration_s);
   for (std::uint32_t i = 0; i < targets.count; ++i) {
@@ -157,8 +159,7 @@ int foresee(lua_State* state, const ObjectInfo& object, const MotionTargets& tar
 // object:move(pose, { time_s = }) -> motion | nil, "queue_full" | nil, why, number, words (foresee). The pose is a
 // name, a table joint = rad, or a table of tasks (task_targets.h).
 int move(lua_State* state) {
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   const MotionOptions options = read_motion_options(state, 3, MotionOption::move, "move", "rad");
   if (options.relative && lua_type(state, 2) == LUA_TSTRING)
     return luaL_error(state, "move: relative = true needs a table joint = offset, not the pose '%s'",
@@ -173,15 +174,14 @@ int move(lua_State* state) {
   for (std::uint32_t i = 0; i < tasks.count; ++i) {
     if (!bindings_of(state).send(tasks.commands[i])) return queue_full(state);
   }
-  return send_motion(state, number, options, targets);
+  return send_motion(state, object, options, targets);
 }
 
 // object:set(setpoint, value [, { time_s = }]) -> motion | nil, "queue_full" | nil, why, number, words, as move.
 int set(lua_State* state) {
   constexpr double set_instructions = 40;
-  std::uint32_t number = 0;
   core_of(state).budget.charge(state, set_instructions);
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   const SetpointId id = read_setpoint(state, 2, object);
   const double value = luaL_checknumber(state, 3);
   const char* unit = bindings_of(state).catalog->setpoints[id].unit.c_str();
@@ -190,14 +190,13 @@ int set(lua_State* state) {
   targets.add(id, value);
   place_targets(state, options, options.trapezoid, targets);
   if (const int told = foresee(state, object, targets, {}, duration_of(options, targets)); told > 0) return told;
-  return send_motion(state, number, options, targets);
+  return send_motion(state, object, options, targets);
 }
 
 // object:follow(pose, { velocity_max_rad_s =, acceleration_max_rad_s2 = }) -> true | nil, "queue_full". Without a
 // handle, so that it may be called in every tick.
 int follow(lua_State* state) {
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   const MotionOptions options = read_motion_options(state, 3, MotionOption::follow, "follow", "rad");
   charge_pose(state, object);
   MotionTargets targets;
@@ -206,7 +205,7 @@ int follow(lua_State* state) {
   for (const MotionTarget& target : targets) {
     if (!bindings_of(state).send(trapezoid(options, target, 0))) return queue_full(state);
   }
-  return lua_pushboolean(state, 1), 1;
+  return tell_sent(state, true);
 }
 
 // The curves of a motion through points, one a joint.
@@ -288,14 +287,13 @@ void check_curves(lua_State* state, Curves& curves) {
 // object:move_through({ { pose, time_s = }, ... } [, { relative = true }]) -> motion | nil, "queue_full". A curve with
 // continuous velocity and acceleration through the points, each time_s after the one before; to rest at the last one.
 int move_through(lua_State* state) {
-  std::uint32_t number = 0;
-  const ObjectInfo& object = check_object(state, number);
+  const ObjectInfo& object = check_object(state);
   const MotionOptions options = read_motion_options(state, 3, MotionOption::through, "move_through", "rad");
   lua_settop(state, 3);
   Curves curves;
   const double duration_s = read_points(state, object, options, curves);
   check_curves(state, curves);
-  Motion* motion = start_motion(state, number, curves.count, duration_s);
+  Motion* motion = start_motion(state, object, curves.count, duration_s);
   for (std::uint32_t i = 0; i < curves.count; ++i) {
     const Curves::Joint& curve = curves.joints[i];
     for (std::uint32_t via = 0; via < curve.spline.size(); ++via) {
@@ -326,10 +324,7 @@ int nested(lua_State* state) {
 void open_motion_methods(lua_State* state) {
   const luaL_Reg methods[] = {
       {"move", nested<move>}, {"move_through", nested<move_through>}, {"set", nested<set>}, {"follow", nested<follow>}};
-  for (const luaL_Reg& method : methods) {
-    lua_pushcfunction(state, method.func);
-    lua_setfield(state, -2, method.name);
-  }
+  set_functions(state, methods);
 }
 
 }  // namespace kadans

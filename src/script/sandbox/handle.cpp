@@ -12,27 +12,23 @@ void open_kind(lua_State* state, const HandleKey& key) {
   lua_rawset(state, LUA_REGISTRYINDEX);
 }
 
-namespace {
-
-// [-0 +1]
-void push_functions(lua_State* state, std::span<const luaL_Reg> functions) {
-  lua_createtable(state, 0, static_cast<int>(functions.size()) + 1);
+void set_functions(lua_State* state, std::span<const luaL_Reg> functions) {
   for (const luaL_Reg& function : functions) {
     lua_pushcfunction(state, function.func);
     lua_setfield(state, -2, function.name);
   }
 }
 
-}  // namespace
-
 void open_kind(lua_State* state, const HandleKey& key, std::span<const luaL_Reg> functions) {
-  push_functions(state, functions);
+  lua_createtable(state, 0, static_cast<int>(functions.size()) + 1);
+  set_functions(state, functions);
   open_kind(state, key);
 }
 
 void open_kind(lua_State* state, const HandleKey& key, std::span<const luaL_Reg> methods, lua_CFunction read_field) {
   lua_createtable(state, 0, 2);
-  push_functions(state, methods);
+  lua_createtable(state, 0, static_cast<int>(methods.size()) + 1);
+  set_functions(state, methods);
   lua_pushcclosure(state, read_field, 1);
   lua_setfield(state, -2, "__index");
   open_kind(state, key);

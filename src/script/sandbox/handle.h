@@ -10,6 +10,8 @@ namespace kadans {
 
 using HandleKey = char;  // a constant of the file that makes the kind: its address counts
 
+// [-0 +0] Puts the functions into the table at the top of the stack.
+void set_functions(lua_State* state, std::span<const luaL_Reg> functions);
 // [-1 +0] The table at the top of the stack is the metatable of the kind from now on.
 void open_kind(lua_State* state, const HandleKey& key);
 // [-0 +0] Opens a kind whose metatable has these functions.

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "kadans/signal/input_error.h"
+#include "script/bindings/bindings.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_core.h"
@@ -40,7 +40,6 @@ struct Testing {
     int function = LUA_NOREF;
   };
   std::vector<Test> tests;
-  int running = LUA_NOREF;           // the function of the test that runs
   std::array<char, 1024> message{};  // of what went wrong where nothing may raise
   std::string text;                  // given to Lua; a member, since Lua may raise
   std::vector<std::string> texts;    // likewise
@@ -56,27 +55,37 @@ int raise(lua_State* state, const Testing& testing) {
   return lua_error(state);
 }
 
-Played* played_in(lua_State* state) {
+// The stage whose number is the first argument.
+Played& played_in(lua_State* state) {
   Testing& testing = testing_of(state);
   const auto number = static_cast<std::size_t>(lua_tointeger(state, 1));
-  return number < testing.played.size() ? &testing.played[number] : nullptr;
+  if (number >= testing.played.size()) luaL_error(state, "this behavior was played in another test");
+  return testing.played[number];
 }
 
-void keep_message(Testing& testing, const std::exception& error) {
-  std::snprintf(testing.message.data(), testing.message.size(), "%s", error.what());
-}
-
-bool make_stage(Testing& testing, const char* file, const char* robot, const char* plant,
-                const char* scenario) noexcept {
+// Does what may throw, outside of Lua. False: the message says why.
+template <typename Work>
+bool attempt(Testing& testing, Work work) noexcept {
   try {
-    const std::filesystem::path beside = testing.file.parent_path() / file;
-    const auto path = std::filesystem::exists(beside) ? beside : testing.root / file;
-    testing.played.push_back({testing.stages.make(path, {robot, plant, scenario}), {}, LUA_NOREF});
+    work();
     return true;
   } catch (const std::exception& error) {
-    keep_message(testing, error);
+    std::snprintf(testing.message.data(), testing.message.size(), "%s", error.what());
     return false;
   }
+}
+
+void make_stage(Testing& testing, const char* file, const TestStages::Options& options) {
+  const std::filesystem::path beside = testing.file.parent_path() / file;
+  const auto path = std::filesystem::exists(beside) ? beside : testing.root / file;
+  testing.played.push_back({testing.stages.make(path, options), {}, LUA_NOREF});
+}
+
+int push_text(lua_State* state, const std::string& text) { return lua_pushlstring(state, text.data(), text.size()), 1; }
+
+// True, or why not.
+int push_answer(lua_State* state, const std::string& why) {
+  return why.empty() ? (lua_pushboolean(state, 1), 1) : push_text(state, why);
 }
 
 // play(file, robot, plant, scenario) -> number.
@@ -84,31 +93,20 @@ int play(lua_State* state) {
   Testing& testing = testing_of(state);
   const char* file = luaL_checkstring(state, 1);
   if (testing.played.size() >= stages_max) return luaL_error(state, "a test plays 8 behaviors at most");
-  if (!make_stage(testing, file, luaL_checkstring(state, 2), luaL_checkstring(state, 3), luaL_checkstring(state, 4)))
-    return raise(state, testing);
+  const char* const with[] = {luaL_checkstring(state, 2), luaL_checkstring(state, 3), luaL_checkstring(state, 4)};
+  if (!attempt(testing, [&] { make_stage(testing, file, {with[0], with[1], with[2]}); })) return raise(state, testing);
   Played& played = testing.played.back();
   played.snapshot = played.tables.open(state, played.stage->catalog());
   lua_pushinteger(state, static_cast<lua_Integer>(testing.played.size() - 1));
   return 1;
 }
 
-bool go_on(Testing& testing, Played& played, double seconds) noexcept {
-  try {
-    played.stage->advance(seconds);
-    return true;
-  } catch (const std::exception& error) {
-    keep_message(testing, error);
-    return false;
-  }
-}
-
 // advance(number, seconds).
 int advance(lua_State* state) {
-  Played* played = played_in(state);
-  if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
+  TestStage& stage = *played_in(state).stage;
   const double seconds = lua_tonumber(state, 2);
   core_of(state).budget.charge(state, advance_instructions + second_instructions * seconds);
-  if (!go_on(testing_of(state), *played, seconds)) return raise(state, testing_of(state));
+  if (!attempt(testing_of(state), [&] { stage.advance(seconds); })) return raise(state, testing_of(state));
   return 0;
 }
 
@@ -124,16 +122,6 @@ bool read_text(Testing& testing, const TestStage& stage, const char* key) noexce
   return false;
 }
 
-// [-0 +1] { "act.arm.wave", "act.leg.step" }
-void push_active(lua_State* state, Testing& testing, const TestStage& stage) {
-  testing.texts = stage.active();
-  lua_createtable(state, static_cast<int>(testing.texts.size()), 0);
-  for (std::size_t i = 0; i < testing.texts.size(); ++i) {
-    lua_pushlstring(state, testing.texts[i].data(), testing.texts[i].size());
-    lua_rawseti(state, -2, static_cast<int>(i + 1));
-  }
-}
-
 std::optional<bool> look_for(Testing& testing, const TestStage& stage, const char* path) {
   const std::optional<bool> in = stage.in(path);
   if (!in) testing.text = "the behavior has no state '" + std::string(path) + "'" + hint_text(path, stage.paths());
@@ -142,14 +130,12 @@ std::optional<bool> look_for(Testing& testing, const TestStage& stage, const cha
 
 // is_in(number, path) -> whether this state is active; nil, why: there is none.
 int is_in(lua_State* state) {
-  Played* played = played_in(state);
-  if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
+  const TestStage& stage = *played_in(state).stage;
   Testing& testing = testing_of(state);
-  const std::optional<bool> in = look_for(testing, *played->stage, luaL_checkstring(state, 2));
+  const std::optional<bool> in = look_for(testing, stage, luaL_checkstring(state, 2));
   if (in) return lua_pushboolean(state, *in ? 1 : 0), 1;
   lua_pushnil(state);
-  lua_pushlstring(state, testing.text.data(), testing.text.size());
-  return 2;
+  return 1 + push_text(state, testing.text);
 }
 
 // [-0 +1] What the text gives.
@@ -162,32 +148,23 @@ int push_value(lua_State* state, Testing& testing, const std::string& text) {
 
 // read(number, key): what the behavior is in, or a field of the snapshot.
 int read(lua_State* state) {
-  Played* played = played_in(state);
+  Played& played = played_in(state);
   const char* key = luaL_checkstring(state, 2);
-  if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
   Testing& testing = testing_of(state);
-  if (read_text(testing, *played->stage, key)) {
-    lua_pushlstring(state, testing.text.data(), testing.text.size());
-    return 1;
-  }
-  if (std::strcmp(key, "active") == 0) return push_active(state, testing, *played->stage), 1;
-  if (std::strcmp(key, "result") == 0) return push_value(state, testing, played->stage->result());
-  if (std::strcmp(key, "orders") == 0) return push_value(state, testing, played->stage->orders());
-  if (std::strcmp(key, "messages") == 0) return push_value(state, testing, played->stage->messages());
-  const Snapshot& snapshot = played->stage->snapshot();
-  played->tables.refill(snapshot, snapshot.time_ns);
-  lua_rawgeti(state, LUA_REGISTRYINDEX, played->snapshot);
+  const TestStage& stage = *played.stage;
+  if (read_text(testing, stage, key)) return push_text(state, testing.text);
+  if (std::strcmp(key, "active") == 0) return push_texts(state, testing.texts = stage.active()), 1;
+  if (std::strcmp(key, "result") == 0) return push_value(state, testing, stage.result());
+  if (std::strcmp(key, "orders") == 0) return push_value(state, testing, stage.orders());
+  if (std::strcmp(key, "messages") == 0) return push_value(state, testing, stage.messages());
+  played.tables.refill(stage.snapshot(), stage.snapshot().time_ns);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, played.snapshot);
   lua_getfield(state, -1, key);
   return 1;
 }
 
-bool change_stage(TestStage& stage, const char* what, const char* name, double value) {
-  if (std::strcmp(what, "parameter") == 0) return stage.set_parameter(name, value);
-  return stage.set_sensor(name, value);
-}
-
 // emit(number, "event", name, data) -> true, or why not. What raises comes before the event is made.
-int emit(lua_State* state, Testing& testing, Played& played) {
+int emit(lua_State* state, Testing& testing, TestStage& stage) {
   luaL_checktype(state, 4, LUA_TTABLE);
   testing.event = {.name = lua_tostring(state, 3), .who = "test"};
   for (lua_pushnil(state); lua_next(state, 4) != 0; lua_pop(state, 1)) {
@@ -201,31 +178,23 @@ int emit(lua_State* state, Testing& testing, Played& played) {
     if (type == LUA_TBOOLEAN) field.value = lua_toboolean(state, -1) != 0;
     if (type == LUA_TSTRING) field.value = lua_tostring(state, -1);
   }
-  testing.text = played.stage->emit(testing.event);
-  testing.text.empty() ? lua_pushboolean(state, 1) : lua_pushlstring(state, testing.text.data(), testing.text.size());
-  return 1;
+  return push_answer(state, testing.text = stage.emit(testing.event));
 }
 
-// change(number, "ends" or "plays", name, value) -> true, or why not.
-int change_played(lua_State* state, Testing& testing, Played& played, bool ends) {
-  const char* name = luaL_checkstring(state, 3);
-  const char* value = luaL_checkstring(state, 4);
-  testing.text = ends ? played.stage->end_play(name) : played.stage->set_playing(name, value);
-  testing.text.empty() ? lua_pushboolean(state, 1) : lua_pushlstring(state, testing.text.data(), testing.text.size());
-  return 1;
-}
-
-// change(number, what, name, value) -> whether it was known.
+// change(number, what, name, value) -> whether it was known; of "event", "ends" and "plays": true, or why not.
 int change(lua_State* state) {
-  Played* played = played_in(state);
-  if (played == nullptr) return luaL_error(state, "this behavior was played in another test");
+  TestStage& stage = *played_in(state).stage;
+  Testing& testing = testing_of(state);
   const char* what = luaL_checkstring(state, 2);
   const char* name = luaL_checkstring(state, 3);
-  if (std::strcmp(what, "event") == 0) return emit(state, testing_of(state), *played);
-  const bool ends = std::strcmp(what, "ends") == 0;
-  if (ends || std::strcmp(what, "plays") == 0) return change_played(state, testing_of(state), *played, ends);
-  lua_pushboolean(state, change_stage(*played->stage, what, name, luaL_checknumber(state, 4)) ? 1 : 0);
-  return 1;
+  if (std::strcmp(what, "event") == 0) return emit(state, testing, stage);
+  if (std::strcmp(what, "ends") == 0) return push_answer(state, testing.text = stage.end_play(name));
+  if (std::strcmp(what, "plays") == 0)
+    return push_answer(state, testing.text = stage.set_playing(name, luaL_checkstring(state, 4)));
+  const double value = luaL_checknumber(state, 4);
+  const bool known =
+      std::strcmp(what, "parameter") == 0 ? stage.set_parameter(name, value) : stage.set_sensor(name, value);
+  return lua_pushboolean(state, known ? 1 : 0), 1;
 }
 
 // add_test(name, function).
@@ -241,21 +210,19 @@ int add_test(lua_State* state) {
 }
 
 // What the last one played is gone.
-int run_test(lua_State* state) {
-  auto& testing = *static_cast<Testing*>(lua_touserdata(state, 1));
+void run_test(lua_State* state, int function) {
   lua_gc(state, LUA_GCCOLLECT, 0);
   lua_gc(state, LUA_GCSTOP, 0);
   core_of(state).heap.forgive();
-  lua_rawgeti(state, LUA_REGISTRYINDEX, testing.running);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, function);
   lua_call(state, 0, 0);
-  return 0;
 }
 
 // What went wrong in it, "" when nothing did.
 std::string problem_of(Testing& testing, const Testing::Test& test) {
   testing.played.clear();
-  testing.running = test.function;
-  if (testing.lua.call(run_test, &testing, test_instructions_max, 0)) return "";
+  const auto run = [&](lua_State* state) { run_test(state, test.function); };
+  if (testing.lua.call(run, test_instructions_max, 0)) return "";
   const ScriptError& error = testing.lua.error();
   if (error.breach != ScriptBreach::instructions) return error.text();
   ScriptError stopped = error;
@@ -281,9 +248,8 @@ void set_in_module(lua_State* state, const char* name) {
   lua_pop(state, 4);
 }
 
-int run_file(lua_State* state) {
-  auto& testing = *static_cast<Testing*>(lua_touserdata(state, 1));
-  if (luaL_loadbuffer(state, test_prelude, sizeof test_prelude - 1, "=kadans test") != 0) return lua_error(state);
+void run_file(lua_State* state, Testing& testing) {
+  if (luaL_loadbuffer(state, test_prelude, sizeof test_prelude - 1, "=kadans test") != 0) lua_error(state);
   push_environment(state);
   lua_setfenv(state, -2);
   for (const lua_CFunction function : {play, advance, read, change, add_test, is_in}) {
@@ -292,9 +258,8 @@ int run_file(lua_State* state) {
   }
   lua_call(state, 6, 5);
   open_test_names(state);
-  if (!testing.lua.load_file(state, testing.file)) return lua_error(state);
+  if (!testing.lua.load_file(state, testing.file)) lua_error(state);
   lua_call(state, 0, 0);
-  return 0;
 }
 
 }  // namespace
@@ -308,12 +273,9 @@ std::vector<TestOutcome> run_behavior_tests(const std::filesystem::path& root, c
                                             TestStages& stages, const std::string& only) {
   const ScriptLimits limits{.memory_bytes = memory_max_bytes};
   LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string(), .limits = limits});
-  Testing testing{lua, stages, root, file, {}, {}, LUA_NOREF, {}, {}, {}};
+  Testing testing{lua, stages, root, file, {}, {}, {}, {}, {}};
   testing.played.reserve(stages_max);
-  if (!lua.call(run_file, &testing, load_instructions_max, 0)) {
-    const ScriptError& error = lua.error();
-    throw InputError({error.file.data(), error.line, 0, error.message.data()});
-  }
+  lua.call_or_throw([&](lua_State* state) { run_file(state, testing); }, load_instructions_max, 0);
   std::vector<TestOutcome> outcomes;
   for (const Testing::Test& test : testing.tests) {
     if (test.name.find(only) == std::string::npos) continue;
