@@ -49,7 +49,7 @@ std::vector<std::string> words_for_there(const PushOptions& options, const std::
 }
 
 void refuse_untested(const Delivery& delivery, const fs::path& root) {
-  if (TestedContents(root).passed(delivery.hash())) return;
+  if (has_passed(root, delivery.hash())) return;
   throw InputError({.file = delivery.robot,
                     .message =
                         "the suite has not passed with these files: run 'kadans test' without selectors. Nothing "

@@ -260,12 +260,11 @@ std::vector<ScenarioConfig> scenarios_of(const MarginOptions& options) {
   const bool named = !options.scenarios.empty();
   std::vector<ScenarioConfig> own;
   std::string other;
-  for (const FoundScenario& found : find_scenarios(folder, options.scenarios)) {
-    if (!found.record.empty()) continue;
-    ScenarioConfig scenario = read_scenario_config(found.file);
+  for (ScenarioConfig& scenario : find_scenarios(folder, options.scenarios)) {
+    if (!scenario.record.empty()) continue;
     if (!fs::equivalent(scenario.robot, options.robot)) {
-      other = found.name + " is of " + scenario.robot;
-    } else if (named || std::ranges::find(found.tags, "margin") != found.tags.end()) {
+      other = scenario.name + " is of " + scenario.robot;
+    } else if (named || std::ranges::find(scenario.tags, "margin") != scenario.tags.end()) {
       own.push_back(std::move(scenario));
     }
   }
