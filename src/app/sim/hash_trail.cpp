@@ -19,6 +19,12 @@ void HashTrail::between_ticks(const RunMark& mark) {
   next_ns_ = (mark.time_ns / every_ns_ + 1) * every_ns_;
 }
 
+std::vector<std::uint64_t> HashTrail::hashes() const {
+  std::vector<std::uint64_t> hashes;
+  for (const HashMark& mark : marks_) hashes.push_back(mark.hash);
+  return hashes;
+}
+
 std::string marks_text(const std::vector<HashMark>& marks) {
   std::string text;
   for (const HashMark& mark : marks) {

@@ -71,30 +71,18 @@ class JudgedRun : public RunObserver {
   }
 
   int print(const RunResult& result, bool json, bool verbose, const std::string& repeat, const HashTrail* trail) {
+    const RunReport report{.result = result,
+                           .log = run_.log(),
+                           .title = judge_.name + (judge_.doc.empty() ? "" : ": " + judge_.doc),
+                           .record = "",
+                           .repeat = repeat,
+                           .evidence = evidence_->around(result.checks),
+                           .hashes = trail == nullptr ? std::vector<std::uint64_t>() : trail->hashes()};
     if (json) {
-      ReportContext context{.log = run_.log(),
-                            .quantities = {},
-                            .metrics = {},
-                            .evidence = evidence_->around(result.checks),
-                            .record = "",
-                            .hashes = {},
-                            .branch = {},
-                            .lost = {}};
-      if (trail != nullptr) {
-        for (const HashMark& mark : trail->marks()) context.hashes.push_back(mark.hash);
-      }
-      std::puts(json_report(result, context).c_str());
+      std::puts(json_report(report).c_str());
     } else {
-      const std::vector<ReportTrace> none;
-      const ReportSubject subject{.result = result,
-                                  .log = run_.log(),
-                                  .model = run_.assembly().robot().model,
-                                  .traces = none,
-                                  .title = judge_.name + (judge_.doc.empty() ? "" : ": " + judge_.doc),
-                                  .record = "",
-                                  .repeat = repeat};
       const std::string text =
-          text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = verbose});
+          text_report(report, {.color = stdout_takes_color(), .unicode = true, .verbose = verbose});
       std::fputs(text.c_str(), stdout);
       for (const std::string& differs : {run_.parting(), run_.decided_otherwise()}) {
         if (!differs.empty()) std::printf("  differs from the record %s\n", differs.c_str());

@@ -248,7 +248,7 @@ class Suite final : public JobWatcher {
   const TestOptions& options_;
   std::vector<PlannedRun> runs_;
   GoldenHashes* golden_;  // or nullptr
-  SuiteStyle style_;
+  ReportStyle style_;
   JobProgress progress_;
   bool stop_ = false;
   std::vector<std::pair<std::size_t, RunOutcome>> ended_;
