@@ -56,24 +56,6 @@ void refuse_untested(const Delivery& delivery, const fs::path& root) {
                         "was pushed"});
 }
 
-// A descriptor of a nameless file with the delivery in it.
-int packed(const Delivery& delivery) {
-  std::string name = (fs::temp_directory_path() / "kadans-push-XXXXXX").string();
-  const int made = mkstemp(name.data());
-  if (made < 0) throw InputError({.file = name, .message = "no temporary file can be made there"});
-  close(made);
-  int descriptor = -1;
-  try {
-    write_delivery(delivery, name);
-    descriptor = open(name.c_str(), O_RDONLY | O_CLOEXEC);
-  } catch (...) {
-    unlink(name.c_str());
-    throw;
-  }
-  unlink(name.c_str());
-  return descriptor;
-}
-
 }  // namespace
 
 void add_push(CLI::App& app, PushOptions& options) {
@@ -108,11 +90,9 @@ int run_push(const PushOptions& options) {
   }
   const Delivery delivery = gather_delivery(robot);
   if (options.tested) refuse_untested(delivery, project_root(robot));
-  const int file = packed(delivery);
-  if (file < 0) throw InputError({.message = "the packed files cannot be read again"});
-  const int code = host.run(words_for_there(options, delivery.name), file, false);
-  close(file);
-  return code;
+  const MemoryFile packed;
+  write_delivery(delivery, "/proc/self/fd/" + std::to_string(packed.descriptor()));
+  return host.run(words_for_there(options, delivery.name), packed.descriptor(), false);
 }
 
 namespace {
