@@ -239,9 +239,8 @@ void add_new_control_object(CLI::App& made, NewControlObjectOptions& options) {
       ->add_option("--from-c", options.from_c,
                    "Wrap the C code in this folder, made by 20-sim, Simulink Coder or OpenModelica")
       ->type_name("FOLDER");
-  object->add_option("--period", options.period_s, "Time between two steps of that code (default: what it says)")
-      ->type_name("S")
-      ->check(number_within(1e-5, 10.0));
+  add_number(*object, "--period", options.period_s, 1e-5, 10.0, "S",
+             "Time between two steps of that code (default: what it says)");
   object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
 }
 

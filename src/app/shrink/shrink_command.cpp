@@ -427,25 +427,18 @@ void add_shrink(CLI::App& app, ShrinkOptions& options) {
                    "Scenario that fails (JSON), or the folder of a sweep's results, or the file of one case in it")
       ->required()
       ->type_name("PATH");
-  shrink->add_option("--seed", options.seed, "Seed of the run (default: the scenario's)")
-      ->type_name("N")
-      ->check(any_seed());
+  add_seed(*shrink, options.seed, "Seed of the run (default: the scenario's)");
   shrink->add_option("--set", options.set, "A quantity of the run, as of kadans sim; it is taken away where it can be")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);
   shrink->add_option("--play", options.play, "Behaviors to play instead of the scenario's: \"squat, wave\"")
       ->type_name("LIST");
-  shrink->add_option("--case", options.number, "Case of the sweep (default: the first that failed)")
-      ->type_name("N")
-      ->check(whole_within(0, sweep_cases_max));
+  add_whole(*shrink, "--case", options.number, 0, sweep_cases_max,
+            "Case of the sweep (default: the first that failed)");
   shrink->add_option("--check", options.check, "Name of the check that shall fail (default: the one that fails first)")
       ->type_name("NAME");
-  shrink->add_option("--max-runs", options.runs_max, "Stop after so many runs (default: 2000)")
-      ->type_name("N")
-      ->check(whole_within(1, 1'000'000));
-  shrink->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
+  add_whole(*shrink, "--max-runs", options.runs_max, 1, 1'000'000, "Stop after so many runs (default: 2000)");
+  add_jobs(*shrink, options.jobs);
   shrink->add_option("--out", options.out, "File of the result (default: NAME_shrunk.json in this folder)")
       ->type_name("FILE");
   shrink->add_flag("--overwrite", options.overwrite, "Replace the file when it is there");

@@ -223,9 +223,8 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
           ->add_option("--then-simulate", options.then_simulate,
                        "Of a run on threads: from --at on, its engines go on in this scenario's world, with its checks")
           ->type_name("SCENARIO");
-  CLI::Option* at = replay->add_option("--at", options.at_s, "Second of the record from which that is simulated")
-                        ->type_name("S")
-                        ->check(number_within(0.001, scenario_duration_max_s))
+  CLI::Option* at = add_number(*replay, "--at", options.at_s, 0.001, scenario_duration_max_s, "S",
+                               "Second of the record from which that is simulated")
                         ->needs(then);
   then->needs(at);
   replay

@@ -89,12 +89,9 @@ void refuse_simulation(const SimOptions& options) {
 void add_sim(CLI::App& app, SimOptions& options) {
   CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
   sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->type_name("FILE");
-  sim->add_option("--seed", options.seed, "Seed of all random numbers (default: the scenario's)")
-      ->type_name("N")
-      ->check(any_seed());
-  sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
-      ->type_name("S")
-      ->check(number_within(0.001, scenario_duration_max_s));
+  add_seed(*sim, options.seed, "Seed of all random numbers (default: the scenario's)");
+  add_number(*sim, "--duration", options.duration_s, 0.001, scenario_duration_max_s, "S",
+             "Seconds to simulate (default: the scenario's)");
   sim->add_option("--play", options.play, "Behaviors to play instead of the scenario's: \"squat, wave\"")
       ->type_name("LIST");
   sim->add_option("--set", options.set, "Change a quantity of the robot or its world, such as ground.friction=0.3")
@@ -123,16 +120,14 @@ void add_sim(CLI::App& app, SimOptions& options) {
                   "With --from, once or more: \"NAME: push LINK=X,Y,Z; set NAME=NUMBER; play LIST\"")
       ->type_name("BRANCH")
       ->allow_extra_args(false);
-  sim->add_option("--hash-every", options.hash_every_s, "With --json: print the state hash every S seconds")
-      ->type_name("S")
-      ->check(number_within(0.001, scenario_duration_max_s));
+  add_number(*sim, "--hash-every", options.hash_every_s, 0.001, scenario_duration_max_s, "S",
+             "With --json: print the state hash every S seconds");
   add_report_options(*sim, options.report, "Write a page about the run, NAME-SEED.html, into a folder", "always");
   add_ctl_service(*sim, options.ctl);
   add_live_service(*sim, options.live);
   add_ros2_service(*sim, options.ros2);
-  sim->add_option("--speed", options.speed, "With --live or --ros2: speed as a multiple of the wall clock's")
-      ->type_name("X")
-      ->check(number_within(0.01, 100.0));
+  add_number(*sim, "--speed", options.speed, 0.01, 100.0, "X",
+             "With --live or --ros2: speed as a multiple of the wall clock's");
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");
   sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
 }

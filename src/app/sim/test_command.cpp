@@ -272,13 +272,9 @@ void add_test(CLI::App& app, TestOptions& options) {
   test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
       ->type_name("PATH|TAG|NAME...");
   test->add_option("--in", options.folder, "Folder of scenarios (default: config/scenarios)")->type_name("FOLDER");
-  test->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
-  test->add_option("--repeat", options.repeat, "Runs of each scenario, each with the next seed")
-      ->type_name("N")
-      ->check(whole_within(1, 1'000'000));
-  test->add_option("--seed", options.seed, "First seed (default: each scenario's)")->type_name("N")->check(any_seed());
+  add_jobs(*test, options.jobs);
+  add_whole(*test, "--repeat", options.repeat, 1, 1'000'000, "Runs of each scenario, each with the next seed");
+  add_seed(*test, options.seed, "First seed (default: each scenario's)");
   test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
   test->add_flag("--rerun-failed", options.rerun_failed, "Run only the scenarios that failed the last time");
   test->add_flag("--list", options.list, "List the scenarios, but do not run them");

@@ -305,15 +305,9 @@ void add_margin(CLI::App& app, MarginOptions& options) {
                    "or pattern over quantities (default: these six). Can be given several times")
       ->type_name("NAME[=STEP]")
       ->allow_extra_args(false);
-  margin->add_option("--seeds", options.seeds, "Runs with different seeds that must all pass (default: 8)")
-      ->type_name("N")
-      ->check(whole_within(1, 10'000));
-  margin->add_option("--seed", options.seed, "Seed from which theirs come (default: 1)")
-      ->type_name("N")
-      ->check(any_seed());
-  margin->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
+  add_whole(*margin, "--seeds", options.seeds, 1, 10'000, "Runs with different seeds that must all pass (default: 8)");
+  add_seed(*margin, options.seed, "Seed from which theirs come (default: 1)");
+  add_jobs(*margin, options.jobs);
   margin
       ->add_option("--out", options.out,
                    "Folder of the results; runs that have a result there are not run again (default: margins)")

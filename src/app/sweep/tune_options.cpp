@@ -32,24 +32,15 @@ void verify(const TunedAxis& axis, const Parameter& parameter, Problems& problem
 void add_tune(CLI::App& app, TuneOptions& options) {
   CLI::App* tune = app.add_subcommand("tune", "Search for the parameters with the best score in scenarios");
   tune->add_option("plan", options.plan, "Plan: the parameters and the score (JSON)")->required()->type_name("PLAN");
-  tune->add_option("--seed", options.seed, "Seed of the search and of its runs (default: the plan's)")
-      ->type_name("N")
-      ->check(any_seed());
-  tune->add_option("--generations", options.generations, "Number of generations (default: the plan's)")
-      ->type_name("N")
-      ->check(whole_within(1, 10'000));
-  tune->add_option("--runs", options.runs, "Runs of each candidate (default: the plan's)")
-      ->type_name("N")
-      ->check(whole_within(1, 10'000));
-  tune->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
+  add_seed(*tune, options.seed, "Seed of the search and of its runs (default: the plan's)");
+  add_whole(*tune, "--generations", options.generations, 1, 10'000, "Number of generations (default: the plan's)");
+  add_whole(*tune, "--runs", options.runs, 1, 10'000, "Runs of each candidate (default: the plan's)");
+  add_jobs(*tune, options.jobs);
   tune->add_option("--shard", options.shard,
                    "Run only this part of each generation; all parts share the folder of results")
       ->type_name("PART/PARTS");
-  tune->add_option("--wait", options.wait_s, "Seconds to wait for the other parts of a generation (default: 600)")
-      ->type_name("S")
-      ->check(number_within(0.0, 1e9));
+  add_number(*tune, "--wait", options.wait_s, 0.0, 1e9, "S",
+             "Seconds to wait for the other parts of a generation (default: 600)");
   tune->add_option("--out", options.out,
                    "Folder of the results; runs that have a result there are not run again (default: in tunings/)")
       ->type_name("FOLDER");
