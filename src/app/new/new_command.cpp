@@ -11,6 +11,7 @@
 #include "new_files.h"
 #include "realtime/machine/child_process.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -19,13 +20,12 @@ namespace fs = std::filesystem;
 void write_new_files(const std::vector<fs::path>& fresh, const std::vector<NewFile>& files) {
   std::error_code error;
   for (const fs::path& path : fresh) {
-    if (fs::exists(path, error))
-      throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
+    if (fs::exists(path, error)) refuse(path, "is there already; nothing is overwritten");
   }
   for (const NewFile& file : files) {
     const fs::path folder = file.path.parent_path();
     fs::create_directories(folder, error);
-    if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
+    if (error) refuse(folder, "cannot be made: " + error.message());
     write_durably(file.path, file.text);
     std::printf("%s\n", file.path.c_str());
   }

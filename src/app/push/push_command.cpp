@@ -26,6 +26,7 @@
 #include "realtime/machine/child_process.h"
 #include "remote/ctl/ctl_folder.h"
 #include "remote_host.h"
+#include "signal/input_file.h"
 #include "tested_contents.h"
 
 namespace kadans {
@@ -50,10 +51,9 @@ std::vector<std::string> words_for_there(const PushOptions& options, const std::
 
 void refuse_untested(const Delivery& delivery, const fs::path& root) {
   if (has_passed(root, delivery.hash())) return;
-  throw InputError({.file = delivery.robot,
-                    .message =
-                        "the suite has not passed with these files: run 'kadans test' without selectors. Nothing "
-                        "was pushed"});
+  refuse(delivery.robot,
+         "the suite has not passed with these files: run 'kadans test' without selectors. Nothing "
+         "was pushed");
 }
 
 }  // namespace
@@ -100,10 +100,10 @@ namespace {
 // Copies what comes in on stdin. Throws InputError when it is too much, and when the disk does not take it.
 void take_in(const fs::path& file) {
   const int to = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (to < 0) throw InputError({.file = file.string(), .message = std::generic_category().message(errno)});
+  if (to < 0) refuse(file, std::generic_category().message(errno));
   const auto fail = [&](const std::string& why) {
     close(to);
-    throw InputError({.file = file.string(), .message = why});
+    refuse(file, why);
   };
   std::vector<char> part(std::size_t{1} << 16U);
   std::uint64_t all = 0;

@@ -7,6 +7,7 @@
 #include "app/live/record_pictures.h"
 #include "kadans/signal/nearest_name.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 #include "version.h"
 
 namespace kadans {
@@ -175,7 +176,7 @@ fs::path write_run_page(const RunPage& page, const ReportOptions& place) {
   add_film(page, place, report);
   std::error_code error;
   fs::create_directories(place.folder, error);
-  if (error) throw InputError({.file = place.folder, .message = "cannot be made: " + error.message()});
+  if (error) refuse(place.folder, "cannot be made: " + error.message());
   const fs::path file = fs::path(place.folder) / report_file(page.name, page.run.result.seed);
   write_durably(file, html_report(report));
   return file;

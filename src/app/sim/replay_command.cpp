@@ -16,6 +16,7 @@
 #include "ordered_events.h"
 #include "repeated_run.h"
 #include "run_branches.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "telemetry/reading/record_comparison.h"
 #include "telemetry/record/recorder.h"
@@ -353,10 +354,8 @@ class RepetitionRecord final : public RunObserver {
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   const bool flight = is_flight_record(options.record);
   if (flight && !options.with.empty())
-    throw InputError(
-        {.file = "--with",
-         .message = "is for complete records; " + options.record +
-                    " is a flight record: behaviors are not repeated, and its state is that of its files"});
+    refuse("--with", "is for complete records; " + options.record +
+                         " is a flight record: behaviors are not repeated, and its state is that of its files");
   const UnpackedInputs unpacked(inputs, options.record, options.allow_plugins, options.with);
   const ScenarioConfig scenario = unpacked_scenario(inputs, options.record, unpacked);
   RepeatedRun repeated(options.record, scenario, unpacked, inputs.fact("root"),
@@ -386,17 +385,14 @@ int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
   std::error_code none;
   if (fs::equivalent(options.record, options.written, none))
-    throw InputError({.file = "--record", .message = options.written + " is the record that is repeated"});
+    refuse("--record", options.written + " is the record that is repeated");
   if (!options.then_simulate.empty()) return run_then_simulation(options);
   if (inputs.fact("clock") == clock_of_threads) return repeat_run(options, inputs);
   if (!options.with.empty())
-    throw InputError(
-        {.file = "--with",
-         .message = "is for records of kadans run; " + options.record + " was simulated: change its files"});
+    refuse("--with", "is for records of kadans run; " + options.record + " was simulated: change its files");
   if (!options.written.empty())
-    throw InputError({.file = "--record",
-                      .message = "is for records of kadans run; " + options.record +
-                                 " was simulated: kadans sim writes another record of it"});
+    refuse("--record", "is for records of kadans run; " + options.record +
+                           " was simulated: kadans sim writes another record of it");
   std::unique_ptr<UnpackedInputs> unpacked;
   if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record, options.allow_plugins);
   RunChoices choices = choices_of(inputs.run, options.record);

@@ -8,6 +8,7 @@
 #include "app/terminal.h"
 #include "input_files.h"
 #include "repeated_run.h"
+#include "signal/input_file.h"
 #include "sim_run.h"
 
 namespace kadans {
@@ -33,43 +34,36 @@ int go_on(const SimOptions& options) {
   if (options.duration_s) choices.duration_s = options.duration_s;
   const double at_s = static_cast<double>(continuation.from.at.time_ns) / 1e9;
   if (!(*choices.duration_s > at_s))
-    throw InputError(
-        {.file = "--duration", .message = "must be more than the " + number_text(at_s) + " s of the checkpoint"});
+    refuse("--duration", "must be more than the " + number_text(at_s) + " s of the checkpoint");
   SimRun sim(options, choices, std::move(continuation));
   catch_interrupts();
   return sim.run();
 }
 
 void refuse_wrong_mixtures(const SimOptions& options) {
-  const auto refuse_option = [](const char* option, const std::string& why) {
-    throw InputError(InputProblem{.file = option, .message = why});
-  };
   if (options.from.empty() && options.scenario.empty())
     throw InputError({.message = "name a scenario, or a checkpoint with --from"});
   if (!options.from.empty() && !options.scenario.empty())
-    refuse_option("--from", "a checkpoint has its own scenario: name one of the two");
+    refuse("--from", "a checkpoint has its own scenario: name one of the two");
   if (options.from.empty()) {
-    if (!options.branches.empty()) refuse_option("--branch", "parts from a checkpoint: it goes with --from");
-    if (!options.push.empty()) refuse_option("--push", "parts from a checkpoint: it goes with --from");
-    if (options.allow_plugins)
-      refuse_option("--allow-plugins", "is for the plug-ins of a checkpoint: it goes with --from");
+    if (!options.branches.empty()) refuse("--branch", "parts from a checkpoint: it goes with --from");
+    if (!options.push.empty()) refuse("--push", "parts from a checkpoint: it goes with --from");
+    if (options.allow_plugins) refuse("--allow-plugins", "is for the plug-ins of a checkpoint: it goes with --from");
     return;
   }
-  if (options.seed) refuse_option("--seed", "a checkpoint goes on with the seed that it began with");
-  if (!options.checkpoints.empty()) refuse_option("--checkpoint", "does not go with --from");
-  if (options.watch) refuse_option("--watch", "does not go with --from");
-  if (options.live.wanted()) refuse_option("--live", "does not go with --from");
-  if (options.ros2.wanted()) refuse_option("--ros2", "does not go with --from");
+  if (options.seed) refuse("--seed", "a checkpoint goes on with the seed that it began with");
+  if (!options.checkpoints.empty()) refuse("--checkpoint", "does not go with --from");
+  if (options.watch) refuse("--watch", "does not go with --from");
+  if (options.live.wanted()) refuse("--live", "does not go with --from");
+  if (options.ros2.wanted()) refuse("--ros2", "does not go with --from");
   if (!options.branches.empty() && !(options.set.empty() && options.play.empty() && options.push.empty()))
-    refuse_option("--branch", "says itself what to set, play and push");
+    refuse("--branch", "says itself what to set, play and push");
 }
 
 // What a repeated record does not take.
 void refuse_simulation(const SimOptions& options) {
   const auto refuse_option = [&](bool given, const char* option) {
-    if (given)
-      throw InputError(
-          {.file = option, .message = "is for simulations: " + options.scenario + " repeats a record as it was"});
+    if (given) refuse(option, "is for simulations: " + options.scenario + " repeats a record as it was");
   };
   refuse_option(options.seed.has_value(), "--seed");
   refuse_option(!options.play.empty(), "--play");

@@ -31,6 +31,7 @@
 #include "played_behaviors.h"
 #include "script/check/check_behavior.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -293,7 +294,7 @@ int run_test(const TestOptions& options) {
   const fs::path root = project_root(fs::current_path() / "kadans");
   const fs::path folder = options.folder.empty() ? root / "config" / "scenarios" : fs::path(options.folder);
   const std::vector<ScenarioConfig> scenarios = find_scenarios(folder, options.selectors);
-  if (scenarios.empty()) throw InputError({.file = folder.string(), .message = "there is no scenario here"});
+  if (scenarios.empty()) refuse(folder, "there is no scenario here");
   const fs::path failed_file = state_file("failed-" + std::to_string(std::hash<std::string>()(fs::absolute(root))));
   std::vector<PlannedRun> runs = plan_runs(options, scenarios, failed_file);
   if (runs.empty()) std::fputs("nothing failed the last time\n", options.json ? stderr : stdout);

@@ -68,7 +68,7 @@ Asked asked_of(const std::string& text, double tick_s) {
   if (equals == std::string::npos) return asked;
   const auto step = number_of<double>(std::string_view(text).substr(equals + 1));
   if (!step || !(*step >= 1e-6 && *step <= 1e6))
-    refuse("--quantity", {},
+    refuse("--quantity",
            "'" + text + "': the step behind '=' must be a number from 1e-6 to 1e6, such as ground.friction=0.02");
   asked.step = *step;
   return asked;
@@ -103,7 +103,7 @@ class Nominal {
     if (found == 0) return false;
     if (asked.step == 0) asked.step = std::abs(asked.nominal) / 20;
     if (!(asked.step > 0))
-      refuse("--quantity", {}, asked.name + " is 0: say in which steps it shall grow, such as " + asked.name + "=0.01");
+      refuse("--quantity", asked.name + " is 0: say in which steps it shall grow, such as " + asked.name + "=0.01");
     return true;
   }
   const std::vector<std::string>& names() const { return quantities_.names(); }
@@ -124,10 +124,9 @@ class Nominal {
       asked.unit = range.unit;
     }
     if (asked.nominal != value(index))
-      refuse("--quantity", {},
-             asked.name + " chooses quantities of different values, " + number_text(asked.nominal) + " and " +
-                 number_text(value(index)) + " (" + quantities_.names()[index] +
-                 "): choose one, or their factors (_scale)");
+      refuse("--quantity", asked.name + " chooses quantities of different values, " + number_text(asked.nominal) +
+                               " and " + number_text(value(index)) + " (" + quantities_.names()[index] +
+                               "): choose one, or their factors (_scale)");
     asked.low = std::max(asked.low, range.min);
     asked.high = std::min(asked.high, range.max);
   }
@@ -182,7 +181,7 @@ class MarginRuns {
     std::size_t expected = 0;
     for (CaseRow& row : results.rows()) {
       if (row.index != expected++) return std::nullopt;
-      if (row.status == RunStatus::refused) refuse(row.scenario, {}, "refuses a run; this tells why: " + row.repeat);
+      if (row.status == RunStatus::refused) refuse(row.scenario, "refuses a run; this tells why: " + row.repeat);
       if (row.status != RunStatus::passed) return std::move(row);
     }
     return std::nullopt;
@@ -269,10 +268,9 @@ std::vector<ScenarioConfig> scenarios_of(const MarginOptions& options) {
     }
   }
   if (own.empty())
-    refuse(options.robot, {},
-           named ? "none of the scenarios is of this robot: " + other
-                 : "no scenario of this robot in " + folder.string() +
-                       " has the tag 'margin': name a scenario in which its margins are measured");
+    refuse(options.robot, named ? "none of the scenarios is of this robot: " + other
+                                : "no scenario of this robot in " + folder.string() +
+                                      " has the tag 'margin': name a scenario in which its margins are measured");
   return own;
 }
 

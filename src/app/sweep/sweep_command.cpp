@@ -29,7 +29,7 @@ HeatMapOptions map_of(const MergeOptions& options, const SweepManifest& manifest
                      .y = chosen(options.y, manifest.map_y),
                      .metric = chosen(options.metric, manifest.map_metric)};
   if (map.x.empty() || map.y.empty())
-    refuse("--heat-map", {}, "the plan names no heat_map; name two quantities with --x and --y");
+    refuse("--heat-map", "the plan names no heat_map; name two quantities with --x and --y");
   return map;
 }
 

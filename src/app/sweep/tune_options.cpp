@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 #include "sweep_subjects.h"
 
 namespace kadans {
@@ -55,9 +56,8 @@ void add_tune(CLI::App& app, TuneOptions& options) {
 int start_tune_program(char** argv) {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "kadans-tune";
   execv(program.c_str(), argv);
-  throw InputError(InputProblem{.file = program.string(),
-                                .message = std::string("cannot be started (") + std::strerror(errno) +
-                                           "): tuning is a program of its own, built where libpagmo-dev is installed"});
+  refuse(program, std::string("cannot be started (") + std::strerror(errno) +
+                      "): tuning is a program of its own, built where libpagmo-dev is installed");
 }
 
 Robot tuned_robot(const TunePlan& plan, const PluginGate& gate) {

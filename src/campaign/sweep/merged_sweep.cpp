@@ -9,14 +9,14 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include "signal/input_file.h"
+
 namespace kadans {
 namespace {
 
 void refuse_mixed(const SweepResults& a, const SweepResults& b) {
   const std::string other = difference(a.manifest(), b.manifest());
-  if (!other.empty())
-    throw InputError(
-        {.file = b.folder().string(), .message = "is of another sweep than " + a.folder().string() + ": " + other});
+  if (!other.empty()) refuse(b.folder(), "is of another sweep than " + a.folder().string() + ": " + other);
 }
 
 // A case that two folders hold must have come out the same.
@@ -28,10 +28,9 @@ void add(std::vector<CaseRow>& rows, std::vector<const SweepResults*>& from, Cas
     return;
   }
   if (known == row) return;
-  throw InputError({.file = part.folder().string(),
-                    .message = "case " + std::to_string(row.index) + " came out different from that in " +
-                               from[row.index]->folder().string() + " (state " + row.state_hash + " and " +
-                               known.state_hash + "); again: " + row.repeat});
+  refuse(part.folder(), "case " + std::to_string(row.index) + " came out different from that in " +
+                            from[row.index]->folder().string() + " (state " + row.state_hash + " and " +
+                            known.state_hash + "); again: " + row.repeat);
 }
 
 std::string quoted(const std::string& text) {
@@ -56,8 +55,7 @@ MergedSweep merge(const std::vector<SweepResults>& parts) {
     refuse_mixed(parts.front(), part);
     for (CaseRow& row : part.rows()) {
       if (row.index >= rows.size())
-        throw InputError({.file = part.folder().string(),
-                          .message = "case " + std::to_string(row.index) + " is none of this sweep"});
+        refuse(part.folder(), "case " + std::to_string(row.index) + " is none of this sweep");
       add(rows, from, std::move(row), part);
     }
   }
@@ -126,8 +124,7 @@ class Database {
   void run(const std::string& sql) { check(sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr)); }
   void check(int result) const {
     if (result == SQLITE_OK || result == SQLITE_DONE) return;
-    throw InputError(
-        {.file = file_.string(), .message = std::string("cannot be written: ") + sqlite3_errmsg(database_)});
+    refuse(file_, std::string("cannot be written: ") + sqlite3_errmsg(database_));
   }
   sqlite3* get() const noexcept { return database_; }
 
@@ -228,7 +225,7 @@ void write_cases(Database& database, const MergedSweep& sweep) {
 
 void write_sqlite(const MergedSweep& sweep, const fs::path& file) {
   if (table_columns(sweep).size() > columns_max)
-    throw InputError({.file = file.string(), .message = "the sweep has too many quantities for SQLite; use --csv"});
+    refuse(file, "the sweep has too many quantities for SQLite; use --csv");
   const fs::path temporary = file.string() + "." + std::to_string(getpid()) + ".part";
   std::error_code ignored;
   fs::remove(temporary, ignored);

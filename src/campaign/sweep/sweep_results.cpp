@@ -10,6 +10,7 @@
 #include "config/json/json_value.h"
 #include "kadans/signal/content_hash.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -47,15 +48,14 @@ Json to_json(const SweepManifest& manifest) {
 
 SweepManifest read_manifest(const fs::path& folder) {
   const fs::path file = folder / manifest_file;
-  if (!fs::exists(file))
-    throw InputError({.file = folder.string(), .message = "holds no results of a sweep: there is no sweep.json"});
+  if (!fs::exists(file)) refuse(folder, "holds no results of a sweep: there is no sweep.json");
   try {
     const Json json = parse_foreign_json(read_input_file(file), file.string());
     SweepManifest manifest;
     visit_facts(manifest, [&json](const char* key, auto& value) { json.at(key).get_to(value); });
     return manifest;
   } catch (const Json::exception& error) {
-    throw InputError({.file = file.string(), .message = std::string("cannot be read: ") + error.what()});
+    refuse(file, std::string("cannot be read: ") + error.what());
   }
 }
 
@@ -140,9 +140,7 @@ SweepResults::SweepResults(fs::path folder, const SweepManifest& manifest)
   if (fs::exists(folder_ / manifest_file)) {
     const std::string other = difference(read_manifest(folder_), manifest_);
     if (!other.empty())
-      throw InputError(
-          {.file = folder_.string(),
-           .message = "holds the results of another sweep: " + other + "; name another folder with --out"});
+      refuse(folder_, "holds the results of another sweep: " + other + "; name another folder with --out");
     return;
   }
   write_durably(folder_ / manifest_file, json_text(to_json(manifest_), 2) + "\n");
@@ -185,13 +183,10 @@ std::vector<CaseRow> SweepResults::rows() const {
     if (file.filename().string().starts_with('.') || file.extension() != ".json") continue;
     try {
       const Json json = parse_foreign_json(read_input_file(file), file.string());
-      if (json.at("plan") != manifest_.plan)
-        throw InputError({.file = file.string(), .message = "is a result of another sweep than sweep.json beside it"});
+      if (json.at("plan") != manifest_.plan) refuse(file, "is a result of another sweep than sweep.json beside it");
       rows.push_back(row_from(json));
     } catch (const Json::exception& error) {
-      throw InputError(
-          {.file = file.string(),
-           .message = std::string("is no result of a case: ") + error.what() + "; remove it and run the sweep again"});
+      refuse(file, std::string("is no result of a case: ") + error.what() + "; remove it and run the sweep again");
     }
   }
   std::ranges::sort(rows, {}, &CaseRow::index);

@@ -12,6 +12,7 @@
 #include "config/json/foreign_json.h"
 #include "config/json/problems.h"
 #include "kadans/campaign/statistics.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "telemetry/plot.h"
 
@@ -189,8 +190,7 @@ Axis axis_of(const MergedSweep& sweep, const std::string& name) {
   for (const CaseRow& row : sweep.rows) {
     if (const double value = value_of(row, name); std::isfinite(value)) values.insert(value);
   }
-  if (values.empty())
-    throw InputError({.file = "--heat-map", .message = unknown_name("quantity", name, sweep.quantities)});
+  if (values.empty()) refuse("--heat-map", unknown_name("quantity", name, sweep.quantities));
   Axis axis{.name = name, .values = {}, .low = *values.begin(), .high = *values.rbegin()};
   if (values.size() <= values_max) axis.values.assign(values.begin(), values.end());
   return axis;
@@ -223,7 +223,7 @@ class Picture {
         fields_(x_.size() * y_.size()) {
     const auto& metrics = sweep.manifest.metrics;
     if (!options.metric.empty() && std::ranges::find(metrics, options.metric) == metrics.end())
-      throw InputError({.file = "--heat-map", .message = unknown_name("metric", options.metric, metrics)});
+      refuse("--heat-map", unknown_name("metric", options.metric, metrics));
     for (const CaseRow& row : sweep.rows) add(row);
     if (!options.metric.empty()) find_range();
     title_ = sweep.manifest.sweep + ": " + (options.metric.empty() ? "share that passed" : "mean of " + options.metric);
