@@ -49,12 +49,8 @@ void read_report(const Json& json, RunOutcome& run) {
   for (const Json& trace : json.value("evidence", Json::array())) run.traces.push_back(trace_of(trace));
   for (const Json& line : json.value("transitions", Json::array())) run.transitions.push_back(line);
   for (const Json& line : json.at("errors")) run.errors.push_back(line);
-  const Json quantities = json.value("quantities", Json::object());
-  for (const auto& [quantity, value] : quantities.items()) {
-    run.quantities.push_back({quantity, number(value)});
-  }
-  const Json metrics = json.value("metrics", Json::object());
-  for (const auto& [metric, value] : metrics.items()) run.metrics.push_back({metric, number(value)});
+  run.quantities = named_numbers(json, "quantities");
+  run.metrics = named_numbers(json, "metrics");
 }
 
 // The last lines of what a process said when it broke down.
@@ -101,6 +97,13 @@ RunOutcome read_run_outcome(const JobOutcome& outcome) {
                          strsignal(outcome.signal) + ")");
   if (run.status != RunStatus::passed && run.status != RunStatus::failed) add_last_words(outcome.err, run);
   return run;
+}
+
+std::vector<QuantityValue> named_numbers(const Json& report, const char* key) {
+  std::vector<QuantityValue> all;
+  const Json members = report.value(key, Json::object());
+  for (const auto& [name, value] : members.items()) all.push_back({name, number(value)});
+  return all;
 }
 
 std::string run_json(const RunOutcome& run) {

@@ -73,11 +73,9 @@ MergedSweep merge(const std::vector<SweepResults>& parts) {
 }
 
 double value_of(const CaseRow& row, const std::string& name) {
-  for (const MetricValue& metric : row.metrics) {
-    if (metric.name == name) return metric.value;
-  }
-  for (const QuantityValue& quantity : row.quantities) {
-    if (quantity.name == name) return quantity.value;
+  for (const auto* values : {&row.metrics, &row.quantities}) {
+    const auto found = std::ranges::find(*values, name, &QuantityValue::name);
+    if (found != values->end()) return found->value;
   }
   return std::numeric_limits<double>::quiet_NaN();
 }

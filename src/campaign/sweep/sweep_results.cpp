@@ -59,14 +59,6 @@ SweepManifest read_manifest(const fs::path& folder) {
   }
 }
 
-std::vector<std::pair<std::string, double>> numbers(const Json& json, const char* key) {
-  std::vector<std::pair<std::string, double>> all;
-  const Json members = json.value(key, Json::object());
-  for (const auto& [name, value] : members.items())
-    all.emplace_back(name, value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
-  return all;
-}
-
 CaseRow row_from(const Json& json) {
   CaseRow row{.index = json.at("case"),
               .id = json.at("id"),
@@ -75,8 +67,8 @@ CaseRow row_from(const Json& json) {
               .failed = {},
               .state_hash = json.value("state_hash", ""),
               .simulated_s = json.value("duration_s", 0.0),
-              .quantities = {},
-              .metrics = {},
+              .quantities = named_numbers(json, "quantities"),
+              .metrics = named_numbers(json, "metrics"),
               .repeat = json.at("repeat")};
   const std::string status = json.at("status");
   for (const RunStatus one : {RunStatus::passed, RunStatus::failed, RunStatus::refused, RunStatus::timed_out}) {
@@ -94,8 +86,6 @@ CaseRow row_from(const Json& json) {
     }
     row.failed += (row.failed.empty() ? "" : "; ") + check_name;
   }
-  for (const auto& [quantity, value] : numbers(json, "quantities")) row.quantities.push_back({quantity, value});
-  for (const auto& [metric, value] : numbers(json, "metrics")) row.metrics.push_back({metric, value});
   return row;
 }
 

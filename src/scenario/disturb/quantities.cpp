@@ -49,6 +49,12 @@ std::vector<std::pair<double*, double>> values_in_presets(Catalog& catalog, Para
 
 }  // namespace
 
+void put_value(std::vector<QuantityValue>& values, const std::string& name, double value) {
+  const auto known = std::ranges::find(values, name, &QuantityValue::name);
+  if (known == values.end()) return values.push_back({name, value});
+  known->value = value;
+}
+
 Quantities::Quantities(PlantVariant& variant, Catalog& catalog, bool further_robot) {
   PlantSettings& plant = variant.plant;
   if (!further_robot) add_world(plant);
@@ -203,12 +209,7 @@ bool Quantities::apply(std::size_t index, double value, TextPlace place, std::ve
   }
   quantities_[index].set(value);
   quantities_[index].value = value;
-  const auto known = std::ranges::find(done, names_[index], &QuantityValue::name);
-  if (known == done.end()) {
-    done.push_back({names_[index], value});
-  } else {
-    known->value = value;
-  }
+  put_value(done, names_[index], value);
   return true;
 }
 
