@@ -47,16 +47,14 @@ const std::vector<KnownMargin>& known_margins() {
 }
 
 // A quantity, or several that get the same value, in both directions.
-struct Asked {
-  std::string name;
-  std::vector<std::string> patterns;
-  double nominal = 0, step = 0, low = 0, high = 0;
-  std::string unit;
+struct Asked : Margin {
+  double low = -HUGE_VAL, high = HUGE_VAL;
 };
 
 Asked asked_of(const std::string& text, double tick_s) {
   const std::size_t equals = text.find('=');
-  Asked asked{.name = text.substr(0, equals), .patterns = {}, .low = -HUGE_VAL, .high = HUGE_VAL, .unit = {}};
+  Asked asked;
+  asked.name = text.substr(0, equals);
   asked.patterns = {asked.name};
   for (const KnownMargin& known : known_margins()) {
     if (known.name != asked.name) continue;
@@ -194,14 +192,8 @@ class MarginRuns {
 };
 
 Margin measured(MarginRuns& runs, const Asked& asked, double end) {
-  Margin margin{.name = asked.name,
-                .patterns = asked.patterns,
-                .unit = asked.unit,
-                .nominal = asked.nominal,
-                .step = asked.step,
-                .end = end,
-                .failed = {},
-                .failure = {}};
+  Margin margin = asked;
+  margin.end = end;
   MarginSearch search(asked.nominal, asked.step, end);
   for (auto value = search.next(); value && !interrupted(); value = search.next()) {
     const std::optional<CaseRow> failure = runs.first_failure(asked.patterns, *value);
