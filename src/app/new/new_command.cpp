@@ -7,10 +7,10 @@
 
 #include "app/terminal.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/output_file.h"
 #include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "realtime/machine/child_process.h"
-#include "signal/durable_file.h"
 #include "signal/input_file.h"
 
 namespace kadans {
@@ -23,10 +23,7 @@ void write_new_files(const std::vector<fs::path>& fresh, const std::vector<NewFi
     if (fs::exists(path, error)) refuse(path, "is there already; nothing is overwritten");
   }
   for (const NewFile& file : files) {
-    const fs::path folder = file.path.parent_path();
-    fs::create_directories(folder, error);
-    if (error) refuse(folder, "cannot be made: " + error.message());
-    write_durably(file.path, file.text);
+    write_output_file(file.path, file.text);
     std::printf("%s\n", file.path.c_str());
   }
   std::fflush(stdout);

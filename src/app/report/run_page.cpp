@@ -6,8 +6,7 @@
 
 #include "app/live/record_pictures.h"
 #include "kadans/signal/nearest_name.h"
-#include "signal/durable_file.h"
-#include "signal/input_file.h"
+#include "kadans/signal/output_file.h"
 #include "version.h"
 
 namespace kadans {
@@ -174,11 +173,8 @@ fs::path write_run_page(const RunPage& page, const ReportOptions& place) {
                     .program = std::string("kadans ") + version};
   add_plot(page, report);
   add_film(page, place, report);
-  std::error_code error;
-  fs::create_directories(place.folder, error);
-  if (error) refuse(place.folder, "cannot be made: " + error.message());
   const fs::path file = fs::path(place.folder) / report_file(page.name, page.run.result.seed);
-  write_durably(file, html_report(report));
+  write_output_file(file, html_report(report));
   return file;
 }
 
