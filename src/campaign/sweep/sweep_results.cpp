@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -139,9 +138,7 @@ SweepResults::SweepResults(fs::path folder, const SweepManifest& manifest)
 SweepResults::SweepResults(fs::path folder) : folder_(std::move(folder)), manifest_(read_manifest(folder_)) {}
 
 fs::path SweepResults::file_of(const SweepCase& one) const {
-  char name[64];
-  std::snprintf(name, sizeof name, "%06zu-%s.json", one.index, one.id.c_str());
-  return folder_ / "cases" / name;
+  return folder_ / "cases" / printed("%06zu-%s.json", one.index, one.id.c_str());
 }
 
 // A run that took too long says something of the machine on that day: it is run again.

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "kadans/model/inertia.h"
+#include "kadans/model/kinematics.h"
 #include "kadans/signal/nearest_name.h"
 #include "kadans/signal/random.h"
 
@@ -14,13 +15,6 @@ namespace {
 constexpr NumberRange scale_range{0, 1000, ""};
 
 // Roll, pitch and yaw are those of the base's axes fixed in the world, applied in this order, as in URDF.
-Quat turned(const Quat& by, const Quat& q) {
-  return {by[0] * q[0] - by[1] * q[1] - by[2] * q[2] - by[3] * q[3],
-          by[0] * q[1] + by[1] * q[0] + by[2] * q[3] - by[3] * q[2],
-          by[0] * q[2] - by[1] * q[3] + by[2] * q[0] + by[3] * q[1],
-          by[0] * q[3] + by[1] * q[2] - by[2] * q[1] + by[3] * q[0]};
-}
-
 Quat about(std::size_t axis, double angle_rad) {
   Quat q{std::cos(angle_rad / 2), 0, 0, 0};
   q[axis + 1] = std::sin(angle_rad / 2);
@@ -117,7 +111,7 @@ void Quantities::add_start(PlantSettings& plant) {
       turn_rad_[axis] = angle_rad;
       plant.base.orientation = start;
       for (std::size_t i = 0; i < turn_rad_.size(); ++i) {
-        if (turn_rad_[i] != 0) plant.base.orientation = turned(about(i, turn_rad_[i]), plant.base.orientation);
+        if (turn_rad_[i] != 0) plant.base.orientation = multiply(about(i, turn_rad_[i]), plant.base.orientation);
       }
     });
   }
