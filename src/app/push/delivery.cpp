@@ -13,6 +13,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "app/sim/input_files.h"
 #include "config/robot/project_root.h"
 #include "config/robot/robot_config.h"
 #include "config/scenario/based_on.h"
@@ -121,13 +122,7 @@ Delivery gather_delivery(const fs::path& robot_file) {
              "name it by its absolute path");
   }
   files.add(robot.model.file);
-  for (const Link& link : robot.model.links) {
-    for (const auto* list : {&link.collisions, &link.visuals}) {
-      for (const Geometry& geometry : *list) {
-        if (const Mesh* mesh = std::get_if<Mesh>(&geometry.shape)) files.add(mesh->file);
-      }
-    }
-  }
+  for (const fs::path& mesh : mesh_files(robot.model)) files.add(mesh);
   std::error_code none;
   for (fs::recursive_directory_iterator i(root / "behaviors", none), end; !none && i != end; i.increment(none)) {
     const fs::path& path = i->path();

@@ -131,18 +131,6 @@ bool is_own(const fs::path& file) {
   return stat(file.c_str(), &found) == 0 && (found.st_uid == getuid() || found.st_uid == 0);
 }
 
-std::vector<fs::path> meshes(const RobotModel& model) {
-  std::vector<fs::path> files;
-  for (const Link& link : model.links) {
-    for (const auto* list : {&link.collisions, &link.visuals}) {
-      for (const Geometry& geometry : *list) {
-        if (const Mesh* mesh = std::get_if<Mesh>(&geometry.shape)) files.emplace_back(mesh->file);
-      }
-    }
-  }
-  return files;
-}
-
 // A file that ought to be private must not go out because of a slip in its
 // pattern, so one that no file of the project has is refused.
 void refuse_unknown_private(const RobotConfig& robot) {
@@ -211,7 +199,7 @@ void add_scripts(const fs::path& project_file, const std::string& folder, Gather
 
 void add_robot(const Assembly& assembly, Gathering& files) {
   const RobotConfig& robot = assembly.robot();
-  for (const fs::path& file : meshes(robot.model)) files.add_name(file);
+  for (const fs::path& file : mesh_files(robot.model)) files.add_name(file);
   if (!robot.plugins.empty()) {
     for (const PluginFile& plugin : read_plugin_files(robot.file)) files.add_hash(plugin.file);
   }
@@ -235,6 +223,18 @@ void add_robot(const Assembly& assembly, Gathering& files) {
 }
 
 }  // namespace
+
+std::vector<fs::path> mesh_files(const RobotModel& model) {
+  std::vector<fs::path> files;
+  for (const Link& link : model.links) {
+    for (const auto* list : {&link.collisions, &link.visuals}) {
+      for (const Geometry& geometry : *list) {
+        if (const Mesh* mesh = std::get_if<Mesh>(&geometry.shape)) files.emplace_back(mesh->file);
+      }
+    }
+  }
+  return files;
+}
 
 std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly) {
   Gathering files(scenario.file, assembly);

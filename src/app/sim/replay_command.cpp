@@ -7,6 +7,7 @@
 
 #include "app/assembly/assembly.h"
 #include "app/commands.h"
+#include "app/log/log_verbs.h"
 #include "app/option_checks.h"
 #include "app/run/observers.h"
 #include "app/services.h"
@@ -108,10 +109,6 @@ class Replay final : public RunObserver {
   RunResult result_;
   bool at_end_ = false;
 };
-
-std::string plural(std::uint64_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
 
 // Everything that the report needs.
 struct Findings {

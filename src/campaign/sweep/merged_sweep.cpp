@@ -33,11 +33,15 @@ void add(std::vector<CaseRow>& rows, std::vector<const SweepResults*>& from, Cas
                             known.state_hash + "); again: " + row.repeat);
 }
 
+// In quotes, each quote in it twice: as CSV and SQL have it.
 std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string all = "\"";
   for (const char c : text) all += c == '"' ? std::string("\"\"") : std::string(1, c);
   return all + '"';
+}
+
+std::string csv_field(const std::string& text) {
+  return text.find_first_of(",\"\r\n") == std::string::npos ? text : quoted(text);
 }
 
 void append_number(std::string& line, double value) {
@@ -90,15 +94,15 @@ std::vector<std::string> table_columns(const MergedSweep& sweep) {
 
 std::string csv_table(const MergedSweep& sweep) {
   std::string text;
-  for (const std::string& column : table_columns(sweep)) text += (text.empty() ? "" : ",") + quoted(column);
+  for (const std::string& column : table_columns(sweep)) text += (text.empty() ? "" : ",") + csv_field(column);
   for (const CaseRow& row : sweep.rows) {
-    text += "\r\n" + std::to_string(row.index) + ',' + row.id + ',' + quoted(row.scenario) + ',' +
-            std::to_string(row.seed) + ',' + name(row.status) + ',' + quoted(row.failed);
+    text += "\r\n" + std::to_string(row.index) + ',' + row.id + ',' + csv_field(row.scenario) + ',' +
+            std::to_string(row.seed) + ',' + name(row.status) + ',' + csv_field(row.failed);
     append_number(text, row.simulated_s);
     text += ',' + row.state_hash;
     for (const std::string& quantity : sweep.quantities) append_number(text, value_of(row, quantity));
     for (const std::string& metric : sweep.manifest.metrics) append_number(text, value_of(row, metric));
-    text += ',' + quoted(row.repeat);
+    text += ',' + csv_field(row.repeat);
   }
   return text + "\r\n";
 }
@@ -166,12 +170,6 @@ class Insertion {
   int column_ = 0;
 };
 
-std::string identifier(const std::string& name) {
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + '"';
-}
-
 void write_sweep(Database& database, const SweepManifest& manifest) {
   database.run("CREATE TABLE sweep (key TEXT PRIMARY KEY, value) WITHOUT ROWID");
   Insertion insertion(database, "sweep", 2);
@@ -195,7 +193,7 @@ std::string cases_table(const MergedSweep& sweep) {
       "TEXT, "
       "simulated_s REAL, state_hash TEXT";
   for (const auto* names : {&sweep.quantities, &sweep.manifest.metrics}) {
-    for (const std::string& name : *names) sql += ", " + identifier(name) + " REAL";
+    for (const std::string& name : *names) sql += ", " + quoted(name) + " REAL";
   }
   return sql + ", repeat TEXT)";
 }
