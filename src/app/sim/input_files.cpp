@@ -28,7 +28,6 @@
 #include "version.h"
 
 namespace kadans {
-
 namespace {
 
 // The build id in a segment of ELF notes; "" when there is none. A note is its head, its name and its content, each
@@ -61,8 +60,6 @@ int add_part(dl_phdr_info* info, std::size_t, void* target) {
   return 0;
 }
 
-}  // namespace
-
 // The exact parts of the running program: its version, and the linker's build id of the program and of each loaded
 // shared library. Two programs with the same parts compute the same numbers from the same inputs. The names are
 // "kadans", "version", "machine", "libm.so.6" ...; a part without a build id has "".
@@ -71,8 +68,6 @@ TextMap program_parts() {
   dl_iterate_phdr(add_part, &parts);
   return parts;
 }
-
-namespace {
 
 namespace fs = std::filesystem;
 

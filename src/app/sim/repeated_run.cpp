@@ -387,17 +387,16 @@ bool RepeatedRun::read_behavior_tick() {
 }
 
 void RepeatedRun::repeat_behavior_tick() {
-  write_files();
+  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs();
+  for (const BehaviorInput& input : inputs) write_file(input);
   CommandQueue& queue = assembly_.control().exchange().commands;
-  std::vector<Command> waiting;
   const auto take_all = [&queue] {
     std::vector<Command> all;
     for (Command command; queue.try_pop(command);) all.push_back(command);
     return all;
   };
-  waiting = take_all();
+  const std::vector<Command> waiting = take_all();
   sent_ = 0;
-  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs();
   for (const BehaviorInput& input : inputs) {
     if (input.kind == BehaviorInput::Kind::newer && input.number < hand_overs_.up.size() &&
         !hand_overs_.up[input.number]->feed(input.bytes))
@@ -426,10 +425,6 @@ void RepeatedRun::repeat_behavior_tick() {
       std::ranges::count(inputs, BehaviorInput::Kind::sent, [](const BehaviorInput& input) { return input.kind; }));
   if (led()) fed_ = sent_before_;
   if (plays()) compare_events();
-}
-
-void RepeatedRun::write_files() {
-  for (const BehaviorInput& input : next_behaviors_->inputs()) write_file(input);
 }
 
 void RepeatedRun::write_file(const BehaviorInput& input) {
