@@ -169,14 +169,11 @@ void ReducedScenario::take_quantities(const std::vector<QuantityValue>& values, 
 }
 
 Reduction ReducedScenario::all() const {
-  Reduction all{.disturbances = std::vector<bool>(disturbances_.size(), true),
-                .quantities = std::vector<bool>(quantities_.size(), true),
-                .share = std::vector<double>(disturbances_.size(), 1),
-                .until_s = std::vector<std::optional<double>>(disturbances_.size()),
-                .digits = 17,
-                .seeded = true,
-                .duration_s = duration_s()};
-  return all;
+  return {.disturbances = std::vector<bool>(disturbances_.size(), true),
+          .quantities = std::vector<bool>(quantities_.size(), true),
+          .share = std::vector<double>(disturbances_.size(), 1),
+          .until_s = std::vector<std::optional<double>>(disturbances_.size()),
+          .duration_s = duration_s()};
 }
 
 JsonValue ReducedScenario::reduced(const Reduction& reduction) const {
