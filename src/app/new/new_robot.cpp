@@ -115,7 +115,7 @@ return k.behavior "roll" {
 }
 )";
 
-constexpr std::string_view test_template = R"(-- kadans behavior test behaviors/@name@/@behavior@_test.lua
+constexpr std::string_view motion_test_template = R"(-- kadans behavior test behaviors/@name@/@behavior@_test.lua
 local k = require "kadans"
 
 describe("@behavior@", function()
@@ -538,7 +538,7 @@ int run_new_robot(const NewRobotOptions& options) {
   const auto add_behavior = [&](const std::string& behavior, std::string text) {
     files.push_back({behaviors / (behavior + ".lua"), std::move(text)});
     files.push_back({behaviors / (behavior + "_test.lua"),
-                     filled_template(test_template, {{"@name@", name}, {"@behavior@", behavior}})});
+                     filled_template(motion_test_template, {{"@name@", name}, {"@behavior@", behavior}})});
   };
   const bool rolls = !stance.wheels.empty();
   if (rolls) add_behavior("roll", roll_text(model, stance));
