@@ -1,4 +1,4 @@
-#include "scenario/simulated_sight.h"
+#include "scenario/simulated_perception.h"
 
 #include <cmath>
 
