@@ -19,7 +19,7 @@ constexpr std::size_t code_files_max = 500, code_values_max = 1000;
 struct CodeFile {
   fs::path path;
   std::string text;
-  std::string bare;  // without comments
+  std::string bare{};  // without comments
 };
 
 std::string without_comments(const std::string& text) {
@@ -59,7 +59,7 @@ std::vector<CodeFile> code_files(const fs::path& folder) {
     if (files.size() == code_files_max)
       refuse(folder,
              "holds more than " + std::to_string(code_files_max) + " files of C: name the folder of one model's code");
-    CodeFile file{.path = entry.path(), .text = read_input_file(entry.path().string()), .bare = {}};
+    CodeFile file{.path = entry.path(), .text = read_input_file(entry.path().string())};
     refuse_long_lines(file);
     file.bare = without_comments(file.text);
     files.push_back(std::move(file));
@@ -135,8 +135,7 @@ void read_name_table(const std::vector<CodeFile>& files, const std::string& tabl
     std::size_t index = 0;
     for (std::sregex_iterator i(body.begin(), body.end(), text), end; i != end; ++i, ++index) {
       const std::string at = "[" + std::to_string(index) + "]";
-      add_value(values, {.name = (*i)[1], .access = (array == "P" ? before + "_P" : array) + at, .unit = {}, .doc = {}},
-                file.path);
+      add_value(values, {.name = (*i)[1], .access = (array == "P" ? before + "_P" : array) + at}, file.path);
     }
     return;
   }
@@ -156,8 +155,7 @@ void read_element_comments(const std::vector<CodeFile>& files, const std::string
       refuse(name.second, "names " + array + "[" + std::to_string(index) + "] in a comment, but not " + array + "[" +
                               std::to_string(next - 1) + "]: looked for all of them, such as `" + array +
                               "[0] = 0.0; /* name */`");
-    add_value(values, {.name = name.first, .access = array + "[" + std::to_string(index) + "]", .unit = {}, .doc = {}},
-              name.second);
+    add_value(values, {.name = name.first, .access = array + "[" + std::to_string(index) + "]"}, name.second);
   }
 }
 
@@ -227,14 +225,11 @@ void read_struct(const std::vector<CodeFile>& files, const std::string& variable
           refuse(other.path, "looked for numbers in " + type + ", found the field " + name + " of the type " +
                                  (*i)[1].str() + ": let the model have no buses there");
         const int count = (*i)[3].matched ? std::stoi((*i)[3]) : 0;
-        if (count == 0)
-          add_value(values, {.name = name, .access = variable + "." + name, .unit = {}, .doc = {}}, other.path);
+        if (count == 0) add_value(values, {.name = name, .access = variable + "." + name}, other.path);
         for (int at = 0; at < count; ++at) {
           const std::string index = std::to_string(at);
-          add_value(
-              values,
-              {.name = name + "_" + index, .access = variable + "." + name + "[" + index + "]", .unit = {}, .doc = {}},
-              other.path);
+          add_value(values, {.name = name + "_" + index, .access = variable + "." + name + "[" + index + "]"},
+                    other.path);
         }
       }
       return;

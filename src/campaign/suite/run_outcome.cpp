@@ -33,8 +33,7 @@ EvidenceTrace trace_of(const Json& json) {
                       .signal = json.at("signal"),
                       .unit = json.at("unit"),
                       .from_s = number(json.at("from_s")),
-                      .to_s = number(json.at("to_s")),
-                      .values = {}};
+                      .to_s = number(json.at("to_s"))};
   for (const Json& value : json.at("values")) trace.values.push_back(number(value));
   return trace;
 }

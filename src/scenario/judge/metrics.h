@@ -45,7 +45,7 @@ struct EvidenceTrace {
   std::string check;
   std::string signal, unit;
   double from_s = 0, to_s = 0;
-  std::vector<double> values;  // evenly spaced over that time
+  std::vector<double> values{};  // evenly spaced over that time
 };
 
 class Evidence final : public RunObserver {
