@@ -178,7 +178,7 @@ class Gathering {
   }
   void know_private(const RobotConfig& robot) {
     refuse_unknown_private(robot);
-    private_ = names_of(robot.record.private_files);
+    std::ranges::copy(names_of(robot.record.private_files), std::back_inserter(private_));
   }
 
   Folders folders_;
