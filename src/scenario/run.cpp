@@ -77,16 +77,13 @@ class Run {
     result_.commands_sent = parts_.behaviors.commands().sent();
     result_.commands_refused = parts_.behaviors.commands().refused() + parts_.control.inbox().state().refused;
     result_.checks = checks_.results();
-    const bool all_passed =
-        std::all_of(result_.checks.begin(), result_.checks.end(), [](const CheckResult& c) { return c.passed; });
-    result_.passed = all_passed && result_.error.empty() && !result_.interrupted && !parts_.log.has_errors();
+    result_.passed = std::ranges::all_of(result_.checks, &CheckResult::passed) && result_.error.empty() &&
+                     !result_.interrupted && !parts_.log.has_errors();
     return std::move(result_);
   }
 
  private:
-  bool stop_asked() const {
-    return std::any_of(observers_.begin(), observers_.end(), [](const RunObserver* o) { return o->stop_asked(); });
-  }
+  bool stop_asked() const { return std::ranges::any_of(observers_, &RunObserver::stop_asked); }
 
   void step() {
     steps_.step();

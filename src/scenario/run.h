@@ -18,7 +18,6 @@
 #include "scenario/judge/checks.h"
 #include "scenario/judge/truth_signals.h"
 #include "simulated_perception.h"
-#include "simulated_sight.h"
 
 namespace kadans {
 

@@ -11,11 +11,12 @@
 #include "kadans/signal/input_error.h"
 
 namespace kadans {
-namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+void refuse(const std::filesystem::path& file, const std::string& why) {
   throw InputError({.file = file.string(), .message = why});
 }
+
+namespace {
 
 std::string reason() { return std::generic_category().message(errno); }
 

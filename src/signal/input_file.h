@@ -1,4 +1,4 @@
-// Files from outside, read whole.
+// Files from outside, read whole, and the error that names one.
 #pragma once
 
 #include <cstddef>
@@ -16,5 +16,8 @@ std::string read_input_file(const std::filesystem::path& file, std::size_t size_
 
 // Throws as read_input_file() does, without reading: for code that reads a file piece by piece.
 void check_input_file(const std::filesystem::path& file);
+
+// Throws InputError: "FILE: why". Also of options: refuse("--seed", ...).
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why);
 
 }  // namespace kadans

@@ -64,4 +64,9 @@ std::optional<Number> number_of(std::string_view text, Base... base) {
   return number;
 }
 
+// Rounded to so many digits.
+inline double with_digits(double value, int digits) {
+  return number_of<double>(printed("%.*g", digits, value)).value_or(value);
+}
+
 }  // namespace kadans

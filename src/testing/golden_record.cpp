@@ -1,13 +1,13 @@
 #include "kadans/testing/golden_record.h"
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <ostream>
 #include <sstream>
 #include <stdexcept>
 
+#include "signal/number_text.h"
 #include "telemetry/plot.h"
 
 namespace kadans::testing {
@@ -60,11 +60,7 @@ void GoldenRecord::write(const std::filesystem::path& file) const {
   for (std::size_t i = 0; i < columns_.size(); ++i) out << (i > 0 ? "," : "") << columns_[i];
   out << '\n';
   for (const std::vector<double>& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      char text[32];
-      std::snprintf(text, sizeof text, "%s%.9g", i > 0 ? "," : "", row[i]);
-      out << text;
-    }
+    for (std::size_t i = 0; i < row.size(); ++i) out << (i > 0 ? "," : "") << printed("%.9g", row[i]);
     out << '\n';
   }
   if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
@@ -92,9 +88,8 @@ GoldenResult GoldenRecord::compare_to(const std::filesystem::path& file, const G
       golden[column].push_back(value);
       if (!result.same || rows >= rows_.size() || fits(value, rows_[rows][column], tolerance)) continue;
       differs = column;
-      char text[160];
-      std::snprintf(text, sizeof text, " in row %zu: %.9g, golden is %.9g", rows, rows_[rows][column], value);
-      result = {false, columns_[column] + text, {}, {}};
+      const double found = rows_[rows][column];
+      result = {false, columns_[column] + printed(" in row %zu: %.9g, golden is %.9g", rows, found, value), {}, {}};
     }
   }
   if (differs < columns_.size()) {

@@ -37,10 +37,10 @@ class Injection {
 
   void recover();
   void sensor();
-  void joint_sensor(SensorFaultKind kind);
-  void imu_sensor(SensorFaultKind kind);
-  void foot_sensor(SensorFaultKind kind);
-  void plan(SensorFaultKind kind, SensorKind place, std::size_t index, double size);
+  void joint_sensor(ScenarioFault::Kind kind);
+  void imu_sensor(ScenarioFault::Kind kind);
+  void foot_sensor(ScenarioFault::Kind kind);
+  void plan(ScenarioFault::Kind kind, SensorKind place, std::size_t index, double size);
   void command();
   void flood();
   void actuation();

@@ -6,7 +6,7 @@
 
 namespace kadans::failures {
 
-void Injection::plan(SensorFaultKind kind, SensorKind place, std::size_t index, double size) {
+void Injection::plan(ScenarioFault::Kind kind, SensorKind place, std::size_t index, double size) {
   constexpr std::array<const char*, 6> kinds{"silent", "stuck", "offset", "noise", "jump", "not finite"};
   constexpr std::array<const char*, 3> places{"joint", "imu", "foot"};
   begin(std::string(kinds[static_cast<std::size_t>(kind)]) + " " + places[static_cast<std::size_t>(place)] + " " +
@@ -15,7 +15,7 @@ void Injection::plan(SensorFaultKind kind, SensorKind place, std::size_t index, 
 }
 
 void Injection::sensor() {
-  const auto kind = static_cast<SensorFaultKind>(pick(6));
+  const auto kind = static_cast<ScenarioFault::Kind>(pick(6));
   switch (pick(3)) {
     case 0:
       return joint_sensor(kind);
@@ -26,8 +26,8 @@ void Injection::sensor() {
   }
 }
 
-void Injection::joint_sensor(SensorFaultKind kind) {
-  using enum SensorFaultKind;
+void Injection::joint_sensor(ScenarioFault::Kind kind) {
+  using enum ScenarioFault::Kind;
   const std::size_t joint = pick(joints);
   plan(kind, SensorKind::joint, joint, sign() * random_.uniform(0.15, 1.5));
   const double was_rad = robot_.plant.truth().position_rad[joint];
@@ -36,7 +36,7 @@ void Injection::joint_sensor(SensorFaultKind kind) {
   for (int i = 0; i < 600; ++i) {
     // A reading that is stuck is wrong from when the motor has gone on.
     const double gone_rad = std::abs(robot_.plant.truth().position_rad[joint] - was_rad);
-    if (kind == stuck && robot_.first(FaultCode::sensor_stuck) < 0 &&
+    if (kind == sensor_stuck && robot_.first(FaultCode::sensor_stuck) < 0 &&
         gone_rad < robot_.limits().sensors.stuck_motion_rad) {
       shows = std::max(shows, robot_.ticks() - promised(FaultCode::sensor_stuck) + 1);
     }
@@ -47,7 +47,7 @@ void Injection::joint_sensor(SensorFaultKind kind) {
                                            FaultCode::sensor_jump,   FaultCode::sensor_not_finite};
   const FaultCode code = codes[static_cast<std::size_t>(kind)];
   const std::int64_t found = robot_.first(code);
-  if (kind == stuck) {  // effort may tell sooner than motion
+  if (kind == sensor_stuck) {  // effort may tell sooner than motion
     require(found >= onset_ && found < std::max(shows, onset_) + promised(code) + 1,
             "stuck was found in tick " + std::to_string(found));
   } else {
@@ -59,52 +59,52 @@ void Injection::joint_sensor(SensorFaultKind kind) {
   recover();
 }
 
-void Injection::imu_sensor(SensorFaultKind kind) {
-  using enum SensorFaultKind;
+void Injection::imu_sensor(ScenarioFault::Kind kind) {
+  using enum ScenarioFault::Kind;
   plan(kind, SensorKind::imu, 0, sign() * random_.uniform(24, 60));
   robot_.run(1);
   const SafetyLevel at_once = robot_.safety.robot_level();
   robot_.run(400);
   switch (kind) {
-    case silent:
+    case sensor_silent:
       require_found(FaultCode::imu_silent, onset_);
       break;
-    case stuck:
+    case sensor_stuck:
       require_found(FaultCode::imu_stuck, onset_ + 1);
       break;  // the first repetition
-    case not_finite:
+    case sensor_not_finite:
       require_found(FaultCode::imu_not_finite, onset_);
       break;
     default:
       require_found(FaultCode::imu_jump, onset_);
       require_level(at_once, SafetyLevel::limited, "the robot at once");
   }
-  const bool lost = kind == silent || kind == stuck || kind == not_finite;
-  const SafetyLevel rung = lost ? SafetyLevel::hold : kind == jump ? SafetyLevel::normal : SafetyLevel::limited;
+  const bool lost = kind == sensor_silent || kind == sensor_stuck || kind == sensor_not_finite;
+  const SafetyLevel rung = lost ? SafetyLevel::hold : kind == sensor_jump ? SafetyLevel::normal : SafetyLevel::limited;
   require_level(robot_.safety.robot_level(), rung, "the robot");
 }
 
-void Injection::foot_sensor(SensorFaultKind kind) {
-  using enum SensorFaultKind;
+void Injection::foot_sensor(ScenarioFault::Kind kind) {
+  using enum ScenarioFault::Kind;
   plan(kind, SensorKind::foot, pick(2), sign() * random_.uniform(5e4, 1e6));
   robot_.run(1);
   const SafetyLevel at_once = robot_.safety.robot_level();
   robot_.run(200);
   switch (kind) {
-    case silent:
+    case sensor_silent:
       require_found(FaultCode::foot_silent, onset_);
       break;
-    case stuck:
+    case sensor_stuck:
       require_found(FaultCode::foot_stuck, onset_ + 1);
       break;
-    case not_finite:
+    case sensor_not_finite:
       require_found(FaultCode::foot_not_finite, onset_);
       break;
     default:
       require_found(FaultCode::foot_jump, onset_);
       require_level(at_once, SafetyLevel::limited, "the robot at once");
   }
-  const SafetyLevel rung = kind == jump ? SafetyLevel::normal : SafetyLevel::limited;
+  const SafetyLevel rung = kind == sensor_jump ? SafetyLevel::normal : SafetyLevel::limited;
   require_level(robot_.safety.robot_level(), rung, "the robot");
 }
 

@@ -80,7 +80,7 @@ class Rig {
   void move(std::size_t joint, double position_rad, double duration_s) { send(to(joint, position_rad, duration_s)); }
   void move(const std::string& pose, double duration_s);
   // From the next reading on.
-  void spoil(SensorFaultKind kind, SensorKind place, std::size_t index = 0, double size = 0) {
+  void spoil(ScenarioFault::Kind kind, SensorKind place, std::size_t index = 0, double size = 0) {
     faulty.add({.kind = kind, .place = place, .index = index, .from_ns = time_ns + 1, .size = size});
   }
   void heal() { faulty.clear(); }

@@ -26,7 +26,7 @@ class Counting final : public BehaviorHost {
 };
 
 // What comes out of each of so many ticks; -1: nothing.
-std::vector<double> sent(const FaultyHost::Fault& fault, int ticks) {
+std::vector<double> sent(const PlannedFault& fault, int ticks) {
   Counting host;
   FaultyHost faulty(host);
   faulty.add(fault);
@@ -48,16 +48,16 @@ std::vector<double> sent(const FaultyHost::Fault& fault, int ticks) {
 }  // namespace
 
 TEST_CASE("Late commands come so many ticks later, once, however long the fault lasts") {
-  const FaultyHost::Fault late{
-      .kind = FaultyHost::Kind::late, .from_ns = 2 * tick_ns, .until_ns = 8 * tick_ns, .ticks = 2};
+  const PlannedFault late{
+      .kind = ScenarioFault::Kind::commands_late, .from_ns = 2 * tick_ns, .until_ns = 8 * tick_ns, .size = 2};
   CHECK(sent(late, 8) == std::vector<double>{0, 1, -1, -1, 2, 3, 4, 5});
 }
 
 TEST_CASE("Lost commands leave their transaction empty, and values that are not finite reach the control engine") {
-  CHECK(sent({.kind = FaultyHost::Kind::lost, .from_ns = tick_ns, .until_ns = 3 * tick_ns}, 4) ==
+  CHECK(sent({.kind = ScenarioFault::Kind::commands_lost, .from_ns = tick_ns, .until_ns = 3 * tick_ns}, 4) ==
         std::vector<double>{0, -1, -1, 3});
   const std::vector<double> spoiled =
-      sent({.kind = FaultyHost::Kind::not_finite, .from_ns = tick_ns, .until_ns = 2 * tick_ns}, 3);
+      sent({.kind = ScenarioFault::Kind::commands_not_finite, .from_ns = tick_ns, .until_ns = 2 * tick_ns}, 3);
   CHECK(std::isnan(spoiled[1]));
   CHECK(spoiled[2] == 2);
 }

@@ -37,7 +37,7 @@ struct Subject {
     log.message(0, BehaviorLog::Severity::error, "squat", "squat.lua:12: attempt to call a nil value");
   }
   std::string text(const ReportStyle& style) const {
-    return text_report({result, log, model, traces, "squat", "squat.mcap", "kadans sim squat.json --seed 7"}, style);
+    return text_report({result, log, "squat", "squat.mcap", "kadans sim squat.json --seed 7", traces}, style);
   }
 };
 
@@ -47,7 +47,7 @@ bool has(const std::string& text, const char* part) { return text.find(part) != 
 
 TEST_CASE("The JSON report is one line and one object with the promised keys") {
   const Subject subject;
-  const std::string text = json_report(subject.result, {.log = subject.log, .record = "squat.mcap"});
+  const std::string text = json_report({.result = subject.result, .log = subject.log, .record = "squat.mcap"});
   CHECK(text.find('\n') == std::string::npos);
   const auto json = nlohmann::json::parse(text);
   CHECK(json["scenario"] == "squat");

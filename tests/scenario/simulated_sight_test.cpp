@@ -1,10 +1,9 @@
-#include "scenario/simulated_sight.h"
-
 #include <cmath>
 
 #include <doctest/doctest.h>
 
 #include "kadans/model/kinematics.h"
+#include "scenario/simulated_perception.h"
 
 namespace simulated_sight_test {
 

@@ -7,7 +7,6 @@
 #include <set>
 #include <string_view>
 
-#include "kadans/signal/input_error.h"
 #include "signal/input_file.h"
 
 namespace kadans {
@@ -20,7 +19,7 @@ constexpr std::size_t code_files_max = 500, code_values_max = 1000;
 struct CodeFile {
   fs::path path;
   std::string text;
-  std::string bare;  // without comments
+  std::string bare{};  // without comments
 };
 
 std::string without_comments(const std::string& text) {
@@ -45,25 +44,22 @@ void refuse_long_lines(const CodeFile& file) {
   if (file.path.extension() == ".xml") return;
   for (std::size_t at = 0; at < file.text.size();) {
     const std::size_t end = std::min(file.text.find('\n', at), file.text.size());
-    if (end - at > line_max)
-      throw InputError({.file = file.path.string(),
-                        .message = "has a line of more than " + std::to_string(line_max) + " characters"});
+    if (end - at > line_max) refuse(file.path, "has a line of more than " + std::to_string(line_max) + " characters");
     at = end + 1;
   }
 }
 
 std::vector<CodeFile> code_files(const fs::path& folder) {
   std::error_code error;
-  if (!fs::is_directory(folder, error)) throw InputError({.file = folder.string(), .message = "is no folder"});
+  if (!fs::is_directory(folder, error)) refuse(folder, "is no folder");
   std::vector<CodeFile> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const std::string ending = entry.path().extension().string();
     if (!entry.is_regular_file() || (ending != ".c" && ending != ".h" && ending != ".xml")) continue;
     if (files.size() == code_files_max)
-      throw InputError({.file = folder.string(),
-                        .message = "holds more than " + std::to_string(code_files_max) +
-                                   " files of C: name the folder of one model's code"});
-    CodeFile file{.path = entry.path(), .text = read_input_file(entry.path().string()), .bare = {}};
+      refuse(folder,
+             "holds more than " + std::to_string(code_files_max) + " files of C: name the folder of one model's code");
+    CodeFile file{.path = entry.path(), .text = read_input_file(entry.path().string())};
     refuse_long_lines(file);
     file.bare = without_comments(file.text);
     files.push_back(std::move(file));
@@ -87,11 +83,8 @@ std::string plain_name(const std::string& written) {
 
 void add_value(std::vector<CodeValue>& values, CodeValue value, const fs::path& file) {
   value.name = plain_name(value.name);
-  if (value.name.empty())
-    throw InputError({.file = file.string(), .message = "has a name in its tables that is empty"});
-  if (values.size() == code_values_max)
-    throw InputError(
-        {.file = file.string(), .message = "has more than " + std::to_string(code_values_max) + " values"});
+  if (value.name.empty()) refuse(file, "has a name in its tables that is empty");
+  if (values.size() == code_values_max) refuse(file, "has more than " + std::to_string(code_values_max) + " values");
   for (int i = 2; std::ranges::any_of(values, [&](const CodeValue& other) { return other.name == value.name; }); ++i)
     value.name = plain_name(value.name) + "_" + std::to_string(i);
   values.push_back(std::move(value));
@@ -142,8 +135,7 @@ void read_name_table(const std::vector<CodeFile>& files, const std::string& tabl
     std::size_t index = 0;
     for (std::sregex_iterator i(body.begin(), body.end(), text), end; i != end; ++i, ++index) {
       const std::string at = "[" + std::to_string(index) + "]";
-      add_value(values, {.name = (*i)[1], .access = (array == "P" ? before + "_P" : array) + at, .unit = {}, .doc = {}},
-                file.path);
+      add_value(values, {.name = (*i)[1], .access = (array == "P" ? before + "_P" : array) + at}, file.path);
     }
     return;
   }
@@ -160,12 +152,10 @@ void read_element_comments(const std::vector<CodeFile>& files, const std::string
   int next = 0;
   for (const auto& [index, name] : names) {
     if (index != next++)
-      throw InputError({.file = name.second.string(),
-                        .message = "names " + array + "[" + std::to_string(index) + "] in a comment, but not " + array +
-                                   "[" + std::to_string(next - 1) + "]: looked for all of them, such as `" + array +
-                                   "[0] = 0.0; /* name */`"});
-    add_value(values, {.name = name.first, .access = array + "[" + std::to_string(index) + "]", .unit = {}, .doc = {}},
-              name.second);
+      refuse(name.second, "names " + array + "[" + std::to_string(index) + "] in a comment, but not " + array + "[" +
+                              std::to_string(next - 1) + "]: looked for all of them, such as `" + array +
+                              "[0] = 0.0; /* name */`");
+    add_value(values, {.name = name.first, .access = array + "[" + std::to_string(index) + "]"}, name.second);
   }
 }
 
@@ -180,9 +170,8 @@ GeneratedCode read_twenty_sim(const std::vector<CodeFile>& files, const CodeFile
                                  R"(\s*\(\s*\w+\s*\*\s*\w+\s*,\s*\w+\s*\*\s*\w+\s*,\s*\w+\s+\w+\s*\))");
     if (std::regex_search(header.bare, with_arrays)) continue;
     const std::smatch other = first_match(header.bare, ("\\b" + wanted + R"(\s*\([^)]*\))").c_str());
-    throw InputError({.file = header.path.string(),
-                      .message = "looked for " + wanted + " (XXDouble *u, XXDouble *y, XXDouble t), found " +
-                                 (other.empty() ? std::string("none") : other[0].str())});
+    refuse(header.path, "looked for " + wanted + " (XXDouble *u, XXDouble *y, XXDouble t), found " +
+                            (other.empty() ? std::string("none") : other[0].str()));
   }
   read_name_table(files, "input", "u", code.inputs);
   read_name_table(files, "output", "y", code.outputs);
@@ -190,12 +179,11 @@ GeneratedCode read_twenty_sim(const std::vector<CodeFile>& files, const CodeFile
   if (code.inputs.empty()) read_element_comments(files, "u", code.inputs);
   if (code.outputs.empty()) read_element_comments(files, "y", code.outputs);
   if (code.inputs.empty() || code.outputs.empty())
-    throw InputError(
-        {.file = header.path.parent_path().string(),
-         .message = std::string("looked for the names of its ") +
-                    (code.inputs.empty() ? "inputs: a table xx_input_names, or `u[0] = 0.0; /* name */`"
-                                         : "outputs: a table xx_output_names, or `y[0] = 0.0; /* name */`") +
-                    "; found neither in " + list_of(files)});
+    refuse(header.path.parent_path(),
+           std::string("looked for the names of its ") +
+               (code.inputs.empty() ? "inputs: a table xx_input_names, or `u[0] = 0.0; /* name */`"
+                                    : "outputs: a table xx_output_names, or `y[0] = 0.0; /* name */`") +
+               "; found neither in " + list_of(files));
   for (const CodeFile& file : files) {
     const std::smatch step = first_match(file.bare, R"(_step_size\s*=\s*([0-9.]+(?:[eE][-+]?\d+)?))");
     if (!step.empty()) code.step_s = std::stod(step[1]);
@@ -234,25 +222,20 @@ void read_struct(const std::vector<CodeFile>& files, const std::string& variable
       for (std::sregex_iterator i(fields.begin(), fields.end(), field), end; i != end; ++i) {
         const std::string name = (*i)[2];
         if (!scalars.contains((*i)[1]))
-          throw InputError({.file = other.path.string(),
-                            .message = "looked for numbers in " + type + ", found the field " + name + " of the type " +
-                                       (*i)[1].str() + ": let the model have no buses there"});
+          refuse(other.path, "looked for numbers in " + type + ", found the field " + name + " of the type " +
+                                 (*i)[1].str() + ": let the model have no buses there");
         const int count = (*i)[3].matched ? std::stoi((*i)[3]) : 0;
-        if (count == 0)
-          add_value(values, {.name = name, .access = variable + "." + name, .unit = {}, .doc = {}}, other.path);
+        if (count == 0) add_value(values, {.name = name, .access = variable + "." + name}, other.path);
         for (int at = 0; at < count; ++at) {
           const std::string index = std::to_string(at);
-          add_value(
-              values,
-              {.name = name + "_" + index, .access = variable + "." + name + "[" + index + "]", .unit = {}, .doc = {}},
-              other.path);
+          add_value(values, {.name = name + "_" + index, .access = variable + "." + name + "[" + index + "]"},
+                    other.path);
         }
       }
       return;
     }
-    throw InputError({.file = file.path.string(),
-                      .message = "declares " + variable + " of the type " + type +
-                                 ": looked for its struct, found none in " + list_of(files)});
+    refuse(file.path, "declares " + variable + " of the type " + type + ": looked for its struct, found none in " +
+                          list_of(files));
   }
 }
 
@@ -265,19 +248,17 @@ GeneratedCode read_simulink(const std::vector<CodeFile>& files, const CodeFile& 
     const std::string wanted = model + word;
     if (std::regex_search(header.bare, std::regex("\\b" + wanted + R"(\s*\(\s*(?:void)?\s*\))"))) continue;
     const std::smatch other = first_match(header.bare, ("\\b" + wanted + R"(\s*\([^)]*\))").c_str());
-    throw InputError({.file = header.path.string(),
-                      .message = "looked for " + wanted + "(void), found " +
-                                 (other.empty() ? std::string("none") : other[0].str()) +
-                                 ": generate it with nonreusable code and a single step function"});
+    refuse(header.path, "looked for " + wanted + "(void), found " +
+                            (other.empty() ? std::string("none") : other[0].str()) +
+                            ": generate it with nonreusable code and a single step function");
   }
   read_struct(files, model + "_U", code.inputs);
   read_struct(files, model + "_Y", code.outputs);
   read_struct(files, model + "_P", code.parameters);
   if (code.inputs.empty() || code.outputs.empty())
-    throw InputError({.file = header.path.string(),
-                      .message = "looked for `extern ExtU_" + model + "_T " + model +
-                                 "_U;` and ..._Y with their structs, found no " +
-                                 (code.inputs.empty() ? "inputs" : "outputs")});
+    refuse(header.path, "looked for `extern ExtU_" + model + "_T " + model +
+                            "_U;` and ..._Y with their structs, found no " +
+                            (code.inputs.empty() ? "inputs" : "outputs"));
   for (const CodeFile& file : files) {
     std::smatch step = first_match(file.bare, R"(stepSize0\s*=\s*([0-9.]+(?:[eE][-+]?\d+)?))");
     if (step.empty()) step = first_match(file.text, R"(Sample time: \[([0-9.]+(?:[eE][-+]?\d+)?)s)");
@@ -302,14 +283,13 @@ GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& descr
   GeneratedCode code{.shape = GeneratedCode::Shape::fmu, .tool = "OpenModelica (FMI 2.0)"};
   const std::string& xml = description.text;
   const std::string head = element_of(xml, "<fmiModelDescription"), part = element_of(xml, "<CoSimulation");
-  const auto refuse = [&](const std::string& message) {
-    throw InputError({.file = description.path.string(), .message = message});
-  };
   if (head.empty() || attribute(head, "fmiVersion") != "2.0")
-    refuse("looked for fmiVersion=\"2.0\", found " +
-           (head.empty() ? "no fmiModelDescription" : "\"" + attribute(head, "fmiVersion") + "\""));
+    refuse(description.path,
+           "looked for fmiVersion=\"2.0\", found " +
+               (head.empty() ? "no fmiModelDescription" : "\"" + attribute(head, "fmiVersion") + "\""));
   if (part.empty())
     refuse(
+        description.path,
         "looked for <CoSimulation modelIdentifier=...>, found none: let the FMU be of co-simulation (fmuType=\"cs\")");
   code.guid = attribute(head, "guid");
   const std::string identifier = attribute(part, "modelIdentifier");
@@ -325,8 +305,8 @@ GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& descr
     if (!prefix.empty() && code.before.empty()) code.before = prefix[1];
   }
   if (!source)
-    refuse("looked for fmi2DoStep in sources of C beside it, found none in " + list_of(files) + ": let the FMU of " +
-           identifier + " have its sources");
+    refuse(description.path, "looked for fmi2DoStep in sources of C beside it, found none in " + list_of(files) +
+                                 ": let the FMU of " + identifier + " have its sources");
   for (std::size_t at = 0; (at = xml.find("<ScalarVariable", at)) != std::string::npos; ++at) {
     const std::string whole = xml.substr(at, xml.find("</ScalarVariable>", at) - at);
     const std::string of = element_of(whole, "<ScalarVariable"), real = element_of(whole, "<Real");
@@ -338,10 +318,11 @@ GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& descr
     if (values == nullptr || (causality == "parameter" && attribute(of, "variability") == "fixed")) continue;
     if (real.empty()) {
       if (causality == "parameter") continue;
-      refuse("looked for Real " + causality + "s, found '" + attribute(of, "name") + "' of another type");
+      refuse(description.path,
+             "looked for Real " + causality + "s, found '" + attribute(of, "name") + "' of another type");
     }
     if (!std::regex_match(number, std::regex(R"(\d{1,9})")))
-      refuse("'" + attribute(of, "name") + "' has no valueReference");
+      refuse(description.path, "'" + attribute(of, "name") + "' has no valueReference");
     add_value(*values,
               {.name = attribute(of, "name"),
                .access = number,
@@ -350,8 +331,8 @@ GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& descr
               description.path);
   }
   if (code.inputs.empty() || code.outputs.empty())
-    refuse("looked for ScalarVariables with causality=\"input\" and \"output\", found no " +
-           std::string(code.inputs.empty() ? "inputs" : "outputs"));
+    refuse(description.path, "looked for ScalarVariables with causality=\"input\" and \"output\", found no " +
+                                 std::string(code.inputs.empty() ? "inputs" : "outputs"));
   return code;
 }
 
@@ -374,16 +355,13 @@ GeneratedCode read_generated_code(const fs::path& folder) {
     if (!step.empty()) code = read_simulink(files, file, step[1]);
   }
   if (!code)
-    throw InputError(
-        {.file = folder.string(),
-         .message = "is no code that is known: looked for XXInitializeSubmodel in a header (20-sim), `extern void "
-                    "MODEL_step(void);` in a header (Simulink Coder), and modelDescription.xml with sources "
-                    "(OpenModelica, FMI 2.0); found " +
-                    list_of(files)});
+    refuse(folder,
+           "is no code that is known: looked for XXInitializeSubmodel in a header (20-sim), `extern void "
+           "MODEL_step(void);` in a header (Simulink Coder), and modelDescription.xml with sources "
+           "(OpenModelica, FMI 2.0); found " +
+               list_of(files));
   take_files(files, *code);
-  if (code->sources.empty())
-    throw InputError(
-        {.file = folder.string(), .message = "looked for sources of C to compile, found " + list_of(files)});
+  if (code->sources.empty()) refuse(folder, "looked for sources of C to compile, found " + list_of(files));
   return *code;
 }
 

@@ -19,7 +19,7 @@ namespace kadans {
 struct CodeValue {
   std::string name;    // words of a-z, A-Z, 0-9 and _ joined by dots
   std::string access;  // "model_U.reference", "xx_P[3]"; of an FMU its value reference
-  std::string unit, doc;
+  std::string unit{}, doc{};
 };
 
 struct GeneratedCode {

@@ -7,10 +7,11 @@
 
 #include "app/terminal.h"
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/output_file.h"
 #include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "realtime/machine/child_process.h"
-#include "signal/durable_file.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -19,14 +20,10 @@ namespace fs = std::filesystem;
 void write_new_files(const std::vector<fs::path>& fresh, const std::vector<NewFile>& files) {
   std::error_code error;
   for (const fs::path& path : fresh) {
-    if (fs::exists(path, error))
-      throw InputError({.file = path.string(), .message = "is there already; nothing is overwritten"});
+    if (fs::exists(path, error)) refuse(path, "is there already; nothing is overwritten");
   }
   for (const NewFile& file : files) {
-    const fs::path folder = file.path.parent_path();
-    fs::create_directories(folder, error);
-    if (error) throw InputError({.file = folder.string(), .message = "cannot be made: " + error.message()});
-    write_durably(file.path, file.text);
+    write_output_file(file.path, file.text);
     std::printf("%s\n", file.path.c_str());
   }
   std::fflush(stdout);

@@ -9,8 +9,8 @@
 
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "kadans/signal/input_error.h"
 #include "new_files.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -239,9 +239,8 @@ void add_new_control_object(CLI::App& made, NewControlObjectOptions& options) {
       ->add_option("--from-c", options.from_c,
                    "Wrap the C code in this folder, made by 20-sim, Simulink Coder or OpenModelica")
       ->type_name("FOLDER");
-  object->add_option("--period", options.period_s, "Time between two steps of that code (default: what it says)")
-      ->type_name("S")
-      ->check(number_within(1e-5, 10.0));
+  add_number(*object, "--period", options.period_s, 1e-5, 10.0, "S",
+             "Time between two steps of that code (default: what it says)");
   object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
 }
 
@@ -251,8 +250,7 @@ int run_new_control_object(const NewControlObjectOptions& options) {
   const std::string& type = options.name;
   refuse_bad_name(type, "a control object", "knee_damper");
   if (!options.from_c.empty()) return run_new_from_c(options, options.plugin ? plugin_template : program_template);
-  if (options.period_s)
-    throw InputError(InputProblem{.file = "--period", .message = "is that of C code: it goes with --from-c"});
+  if (options.period_s) refuse("--period", "is that of C code: it goes with --from-c");
   const std::string class_name = class_name_of(type);
   const auto filled = [&](std::string_view text) {
     return filled_template(text, {{"@type@", type}, {"@Class@", class_name}});

@@ -8,7 +8,6 @@
 
 #include "app/terminal.h"
 #include "generated_code.h"
-#include "kadans/signal/input_error.h"
 #include "new_files.h"
 #include "signal/input_file.h"
 #include "signal/number_text.h"
@@ -279,11 +278,10 @@ int run_new_from_c(const NewControlObjectOptions& options, std::string_view main
   const bool any_step = code.shape == GeneratedCode::Shape::fmu;
   if (options.period_s) code.step_s = *options.period_s;
   if (!any_step && !(code.step_s > 0))
-    throw InputError({.file = options.from_c,
-                      .message =
-                          "does not say how often a step of it is taken: looked for xx_step_size = ... (20-sim), "
-                          "stepSize0 = ... and \"Sample time: [...s\" (Simulink Coder), found none; give it by "
-                          "--period S"});
+    refuse(options.from_c,
+           "does not say how often a step of it is taken: looked for xx_step_size = ... (20-sim), "
+           "stepSize0 = ... and \"Sample time: [...s\" (Simulink Coder), found none; give it by "
+           "--period S");
   const std::string& type = options.name;
   const fs::path folder = fs::path(options.folder) / type;
   std::vector<NewFile> files;

@@ -115,7 +115,7 @@ return k.behavior "roll" {
 }
 )";
 
-constexpr std::string_view test_template = R"(-- kadans behavior test behaviors/@name@/@behavior@_test.lua
+constexpr std::string_view motion_test_template = R"(-- kadans behavior test behaviors/@name@/@behavior@_test.lua
 local k = require "kadans"
 
 describe("@behavior@", function()
@@ -524,9 +524,8 @@ int run_new_robot(const NewRobotOptions& options) {
   const StandingPose stance = find_stance(model);
   const std::vector<JointHold> holds = hold_joints(model, stance);
   if (std::ranges::none_of(holds, [](const JointHold& hold) { return hold.stiffness_Nm_per_rad > 0; }))
-    throw InputError(
-        {.file = options.urdf,
-         .message = "no joint of it has a motor: <limit effort=...> says which torque it has, an MJCF's <actuator>"});
+    refuse(options.urdf,
+           "no joint of it has a motor: <limit effort=...> says which torque it has, an MJCF's <actuator>");
 
   Json robot = robot_json(description, name, stance, holds);
   const std::string srdf = options.srdf.empty() ? touching_srdf(model, name, stance) : read_input_file(options.srdf);
@@ -539,7 +538,7 @@ int run_new_robot(const NewRobotOptions& options) {
   const auto add_behavior = [&](const std::string& behavior, std::string text) {
     files.push_back({behaviors / (behavior + ".lua"), std::move(text)});
     files.push_back({behaviors / (behavior + "_test.lua"),
-                     filled_template(test_template, {{"@name@", name}, {"@behavior@", behavior}})});
+                     filled_template(motion_test_template, {{"@name@", name}, {"@behavior@", behavior}})});
   };
   const bool rolls = !stance.wheels.empty();
   if (rolls) add_behavior("roll", roll_text(model, stance));
@@ -550,7 +549,7 @@ int run_new_robot(const NewRobotOptions& options) {
     std::error_code error;
     fs::create_directories(models / "meshes", error);
     fs::copy_file(from, models / "meshes" / to, error);
-    if (error) throw InputError({.file = from, .message = "cannot be copied: " + error.message()});
+    if (error) refuse(from, "cannot be copied: " + error.message());
   }
   std::fflush(stdout);
   for (const InputProblem& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.text().c_str());

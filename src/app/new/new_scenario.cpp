@@ -20,6 +20,7 @@
 #include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "new_subject.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -191,10 +192,9 @@ WrittenScenario pushed(const NewSubject& subject, const Json& json, const fs::pa
     push.impulse_Ns *= written ? 2 : 0.5;
   }
   if (best) return *best;
-  throw InputError({.file = subject.file().string(),
-                    .message = "does not come to rest within " + std::to_string(static_cast<int>(quiet_s)) +
-                               " s after a push, however small: let it hold first (`kadans sim` of a scenario without "
-                               "checks shows what it does), or name what it shall do: --play LIST"});
+  refuse(subject.file(), "does not come to rest within " + std::to_string(static_cast<int>(quiet_s)) +
+                             " s after a push, however small: let it hold first (`kadans sim` of a scenario without "
+                             "checks shows what it does), or name what it shall do: --play LIST");
 }
 
 WrittenScenario played(const NewSubject& subject, Json json, const fs::path& file, const std::string& list) {

@@ -7,7 +7,7 @@
 
 #include "app/author/behavior_stage.h"
 #include "config/robot/project_root.h"
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -80,10 +80,9 @@ NewSubject read_subject(const NewPartOptions& options) {
   const bool outside = subject.robot_file.starts_with("..") ||
                        (!options.folder.empty() && named.lexically_relative(root).string().starts_with(".."));
   if (outside) {
-    throw InputError({.file = file.string(),
-                      .message = "lies in another project than " + here.string() +
-                                 "; a project has its robots in config/NAME/robot.json, and a folder models or "
-                                 "behaviors: `kadans new robot` makes one"});
+    refuse(file, "lies in another project than " + here.string() +
+                     "; a project has its robots in config/NAME/robot.json, and a folder models or "
+                     "behaviors: `kadans new robot` makes one");
   }
   subject.system = make_control_system(subject.robot);
   return subject;
@@ -117,9 +116,9 @@ AsideJoint joint_aside(const NewSubject& subject) {
     }
   }
   if (best == model.joints.size())
-    throw InputError({.file = subject.file().string(),
-                      .message = "no control set of it has an object that leads a joint by its position "
-                                 "(docs/control.md), so there is nothing that a first behavior could move"});
+    refuse(subject.file(),
+           "no control set of it has an object that leads a joint by its position "
+           "(docs/control.md), so there is nothing that a first behavior could move");
   const bool slider = model.joints[best].type == JointType::prismatic;
   const double wanted = (slider ? 0.1 : 1) * (carried.foot[best] ? 0.05 : 0.3);
   found.joint = &model.joints[best];

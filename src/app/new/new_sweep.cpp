@@ -17,6 +17,7 @@
 #include "new_files.h"
 #include "new_subject.h"
 #include "scenario/disturb/quantities.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -57,9 +58,8 @@ fs::path scenario_for(const NewPartOptions& options) {
   for (std::size_t i = 0; i < std::min<std::size_t>(all.size(), 8); ++i)
     names += (i == 0 ? ": " : ", ") + fs::proximate(all[i]).string();
   if (all.size() > 8) names += " and " + std::to_string(all.size() - 8) + " more";
-  throw InputError({.file = subject.file().string(),
-                    .message = all.empty() ? "has no scenario yet: `kadans new scenario NAME` writes one"
-                                           : "has several scenarios, name one: --scenario FILE" + names});
+  refuse(subject.file(), all.empty() ? "has no scenario yet: `kadans new scenario NAME` writes one"
+                                     : "has several scenarios, name one: --scenario FILE" + names);
 }
 
 bool one_matches(const std::vector<std::string>& names, const std::string& begin, const std::string& end) {
@@ -112,7 +112,7 @@ int run_new_sweep(const NewPartOptions& options) {
   const NewSubject subject = read_subject(of);
   std::error_code ignored;
   if (!fs::equivalent(scenario.robot, subject.file(), ignored))
-    throw InputError({.file = scenario_file.string(), .message = "is a scenario of another robot, " + scenario.robot});
+    refuse(scenario_file, "is a scenario of another robot, " + scenario.robot);
   const fs::path file = subject.project / "config/sweeps" / (options.name + ".json");
   const std::string from_root =
       fs::proximate(fs::weakly_canonical(scenario_file), fs::weakly_canonical(subject.project)).string();

@@ -13,6 +13,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "app/sim/input_files.h"
 #include "config/robot/project_root.h"
 #include "config/robot/robot_config.h"
 #include "config/scenario/based_on.h"
@@ -33,12 +34,8 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 3> project_folders{"config", "models", "behaviors"};
 constexpr std::size_t delivery_max_bytes = std::size_t{64} << 20U;  // as for the files in a record
 
-[[noreturn]] void refuse_file(const fs::path& file, const std::string& why) {
-  throw InputError({.file = file.string(), .message = why});
-}
-
 [[noreturn]] void fail_there(const fs::path& file, const char* what) {
-  refuse_file(file, what + (": " + std::generic_category().message(errno)));
+  refuse(file, what + (": " + std::generic_category().message(errno)));
 }
 
 bool lies_in_project_folder(const std::string& path) {
@@ -55,13 +52,13 @@ class Collection {
   void add(const fs::path& file) {
     const std::string path = fs::absolute(file).lexically_normal().lexically_relative(root_).generic_string();
     if (!lies_in_project_folder(path))
-      refuse_file(file, "lies outside of config, models and behaviors of " + root_.string() + ", and cannot be pushed");
+      refuse(file, "lies outside of config, models and behaviors of " + root_.string() + ", and cannot be pushed");
     if (files_.contains(path)) return;
     std::string text = read_input_file(file, delivery_max_bytes);
     bytes_ += text.size();
     if (bytes_ > delivery_max_bytes)
-      refuse_file(file, "with this one the files have more than " + std::to_string(delivery_max_bytes >> 20U) +
-                            " MiB, too much for a push");
+      refuse(file, "with this one the files have more than " + std::to_string(delivery_max_bytes >> 20U) +
+                       " MiB, too much for a push");
     std::string hash = content_hash(text);
     files_.emplace(path, InputFile{path, std::move(hash), std::move(text)});
   }
@@ -120,18 +117,12 @@ Delivery gather_delivery(const fs::path& robot_file) {
   for (const fs::path& part : files_of(file)) files.add(part);
   for (const PluginFile& plugin : read_plugin_files(file)) {
     if (!fs::path(plugin.file).lexically_relative(root).generic_string().starts_with(".."))
-      refuse_file(plugin.file,
-                  "is native code, which is not pushed: build it on the robot's computer, outside of the project, and "
-                  "name it by its absolute path");
+      refuse(plugin.file,
+             "is native code, which is not pushed: build it on the robot's computer, outside of the project, and "
+             "name it by its absolute path");
   }
   files.add(robot.model.file);
-  for (const Link& link : robot.model.links) {
-    for (const auto* list : {&link.collisions, &link.visuals}) {
-      for (const Geometry& geometry : *list) {
-        if (const Mesh* mesh = std::get_if<Mesh>(&geometry.shape)) files.add(mesh->file);
-      }
-    }
-  }
+  for (const fs::path& mesh : mesh_files(robot.model)) files.add(mesh);
   std::error_code none;
   for (fs::recursive_directory_iterator i(root / "behaviors", none), end; !none && i != end; i.increment(none)) {
     const fs::path& path = i->path();
@@ -153,31 +144,31 @@ Delivery read_delivery(const fs::path& file) {
   McapReader reader(file.string());
   for (McapMessage message; reader.next(message);) {
   }
-  if (!reader.complete()) refuse_file(file, "came incomplete: " + reader.problem());
+  if (!reader.complete()) refuse(file, "came incomplete: " + reader.problem());
   RunInputs inputs = read_inputs(reader, file.string());
   Delivery delivery{.robot = inputs.fact("robot"), .name = inputs.fact("name"), .files = std::move(inputs.files)};
   for (const InputFile& part : delivery.files) {
-    if (!part.text) refuse_file(file, "lacks " + part.path);
+    if (!part.text) refuse(file, "lacks " + part.path);
     if (!lies_in_project_folder(part.path))
-      refuse_file(file, "holds " + part.path + ", which is neither in config, models nor behaviors");
+      refuse(file, "holds " + part.path + ", which is neither in config, models nor behaviors");
   }
   if (std::ranges::find(delivery.files, delivery.robot, &InputFile::path) == delivery.files.end())
-    refuse_file(file, "does not hold the configuration of a robot");
+    refuse(file, "does not hold the configuration of a robot");
   return delivery;
 }
 
 DeliveryFolder::DeliveryFolder(const fs::path& folder) : folder_(fs::absolute(folder).lexically_normal()) {
   if (!folder_.has_filename()) folder_ = folder_.parent_path();
-  if (folder_ == folder_.root_path()) refuse_file(folder, "is no folder for a robot");
+  if (folder_ == folder_.root_path()) refuse(folder, "is no folder for a robot");
   std::error_code error;
   fs::create_directories(folder_.parent_path(), error);
-  if (error) refuse_file(folder_.parent_path(), "cannot be made: " + error.message());
+  if (error) refuse(folder_.parent_path(), "cannot be made: " + error.message());
   const fs::path lock = beside(".lock");
   lock_ = open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
   if (lock_ < 0) fail_there(lock, "cannot be opened");
   if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
   close(lock_);
-  refuse_file(folder_, "another push is under way");
+  refuse(folder_, "another push is under way");
 }
 
 DeliveryFolder::~DeliveryFolder() {
@@ -202,7 +193,7 @@ void DeliveryFolder::lay_out(const Delivery& delivery) {
                   "# Written by kadans push.\nKADANS_ROBOT=" + shell_word((folder_ / delivery.robot).string()) + "\n");
     for (const fs::path& folder : folders) sync_folder(folder);
   } catch (const fs::filesystem_error& error) {
-    refuse_file(next(), std::string("cannot be written: ") + error.what());
+    refuse(next(), std::string("cannot be written: ") + error.what());
   }
 }
 
@@ -217,18 +208,18 @@ void DeliveryFolder::take_next() {
   std::error_code error;
   if (!fs::exists(folder_)) {
     fs::rename(next(), folder_, error);
-    if (error) refuse_file(folder_, "cannot be made: " + error.message());
+    if (error) refuse(folder_, "cannot be made: " + error.message());
     return sync_folder(folder_.parent_path());
   }
   trade(next());
   fs::remove_all(beside(".before"), error);
   fs::rename(next(), beside(".before"), error);
-  if (error) refuse_file(beside(".before"), "cannot be kept: " + error.message());
+  if (error) refuse(beside(".before"), "cannot be kept: " + error.message());
   sync_folder(folder_.parent_path());
 }
 
 void DeliveryFolder::undo() {
-  if (!fs::exists(beside(".before"))) refuse_file(folder_, "there is nothing before what is there");
+  if (!fs::exists(beside(".before"))) refuse(folder_, "there is nothing before what is there");
   trade(beside(".before"));
 }
 

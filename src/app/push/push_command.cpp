@@ -26,6 +26,7 @@
 #include "realtime/machine/child_process.h"
 #include "remote/ctl/ctl_folder.h"
 #include "remote_host.h"
+#include "signal/input_file.h"
 #include "tested_contents.h"
 
 namespace kadans {
@@ -49,29 +50,10 @@ std::vector<std::string> words_for_there(const PushOptions& options, const std::
 }
 
 void refuse_untested(const Delivery& delivery, const fs::path& root) {
-  if (TestedContents(root).passed(delivery.hash())) return;
-  throw InputError({.file = delivery.robot,
-                    .message =
-                        "the suite has not passed with these files: run 'kadans test' without selectors. Nothing "
-                        "was pushed"});
-}
-
-// A descriptor of a nameless file with the delivery in it.
-int packed(const Delivery& delivery) {
-  std::string name = (fs::temp_directory_path() / "kadans-push-XXXXXX").string();
-  const int made = mkstemp(name.data());
-  if (made < 0) throw InputError({.file = name, .message = "no temporary file can be made there"});
-  close(made);
-  int descriptor = -1;
-  try {
-    write_delivery(delivery, name);
-    descriptor = open(name.c_str(), O_RDONLY | O_CLOEXEC);
-  } catch (...) {
-    unlink(name.c_str());
-    throw;
-  }
-  unlink(name.c_str());
-  return descriptor;
+  if (has_passed(root, delivery.hash())) return;
+  refuse(delivery.robot,
+         "the suite has not passed with these files: run 'kadans test' without selectors. Nothing "
+         "was pushed");
 }
 
 }  // namespace
@@ -108,11 +90,9 @@ int run_push(const PushOptions& options) {
   }
   const Delivery delivery = gather_delivery(robot);
   if (options.tested) refuse_untested(delivery, project_root(robot));
-  const int file = packed(delivery);
-  if (file < 0) throw InputError({.message = "the packed files cannot be read again"});
-  const int code = host.run(words_for_there(options, delivery.name), file, false);
-  close(file);
-  return code;
+  const MemoryFile packed;
+  write_delivery(delivery, "/proc/self/fd/" + std::to_string(packed.descriptor()));
+  return host.run(words_for_there(options, delivery.name), packed.descriptor(), false);
 }
 
 namespace {
@@ -120,10 +100,10 @@ namespace {
 // Copies what comes in on stdin. Throws InputError when it is too much, and when the disk does not take it.
 void take_in(const fs::path& file) {
   const int to = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (to < 0) throw InputError({.file = file.string(), .message = std::generic_category().message(errno)});
+  if (to < 0) refuse(file, std::generic_category().message(errno));
   const auto fail = [&](const std::string& why) {
     close(to);
-    throw InputError({.file = file.string(), .message = why});
+    refuse(file, why);
   };
   std::vector<char> part(std::size_t{1} << 16U);
   std::uint64_t all = 0;

@@ -14,19 +14,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kept_max = 1000;
+constexpr std::size_t passed_max = 1000;
 
-std::string hash_of_name(const fs::path& root) {
-  ContentHash hash;
-  hash.add(fs::absolute(root).lexically_normal().string());
-  return hash.hex();
+fs::path passed_file(const fs::path& root) {
+  ContentHash name;
+  name.add(fs::absolute(root).lexically_normal().string());
+  return state_file("tested-" + name.hex());
 }
 
 }  // namespace
 
-TestedContents::TestedContents(const fs::path& root) : file_(state_file("tested-" + hash_of_name(root))) {}
-
-std::vector<std::string> TestedContents::hashes_of(const std::vector<fs::path>& robots) {
+std::vector<std::string> delivery_hashes(const std::vector<fs::path>& robots) {
   std::vector<std::string> hashes;
   for (const fs::path& robot : robots) {
     try {
@@ -38,26 +36,34 @@ std::vector<std::string> TestedContents::hashes_of(const std::vector<fs::path>& 
   return hashes;
 }
 
-std::vector<std::string> TestedContents::read() const {
-  std::vector<std::string> hashes;
-  std::ifstream stream(file_);
-  for (std::string line; std::getline(stream, line);) hashes.push_back(line);
-  return hashes;
+bool has_passed(const fs::path& root, const std::string& hash) {
+  return std::ranges::count(kept_lines(passed_file(root)), hash) != 0;
 }
 
-bool TestedContents::passed(const std::string& hash) const { return std::ranges::count(read(), hash) != 0; }
-
-void TestedContents::keep(const std::vector<std::string>& hashes) const {
-  if (file_.empty()) return;
-  std::vector<std::string> all = read();
+void keep_passed(const fs::path& root, const std::vector<std::string>& hashes) {
+  const fs::path file = passed_file(root);
+  std::vector<std::string> all = kept_lines(file);
   for (const std::string& hash : hashes) {
     std::erase(all, hash);
     if (!hash.empty()) all.push_back(hash);
   }
+  if (all.size() > passed_max) all.erase(all.begin(), all.end() - passed_max);
+  keep_lines(file, all);
+}
+
+std::vector<std::string> kept_lines(const fs::path& file) {
+  std::vector<std::string> lines;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+void keep_lines(const fs::path& file, const std::vector<std::string>& lines) {
+  if (file.empty()) return;
   std::string text;
-  for (std::size_t i = all.size() > kept_max ? all.size() - kept_max : 0; i < all.size(); ++i) text += all[i] + "\n";
+  for (const std::string& line : lines) text += line + "\n";
   try {
-    write_durably(file_, text);
+    write_durably(file, text);
   } catch (const InputError&) {
   }
 }

@@ -7,22 +7,16 @@
 
 namespace kadans {
 
-class TestedContents {
- public:
-  // A file of this user's for each project.
-  explicit TestedContents(const std::filesystem::path& root);
+// The hash of what a push of each of these robots would bring now, "" for one that cannot be pushed.
+std::vector<std::string> delivery_hashes(const std::vector<std::filesystem::path>& robots);
 
-  // The hash of what a push of each of these robots would bring now, "" for one that cannot be pushed.
-  static std::vector<std::string> hashes_of(const std::vector<std::filesystem::path>& robots);
+// In a file of this user's for each project, whose root this is: the newest last. The oldest of many are forgotten.
+bool has_passed(const std::filesystem::path& root, const std::string& hash);
+void keep_passed(const std::filesystem::path& root, const std::vector<std::string>& hashes);
 
-  bool passed(const std::string& hash) const;
-  // Keeps them, the newest last, and forgets the oldest of many. Errors of writing are told by a push, not by a test.
-  void keep(const std::vector<std::string>& hashes) const;
-
- private:
-  std::vector<std::string> read() const;
-
-  std::filesystem::path file_;
-};
+// The lines of a file that is kept between runs (state_file).
+std::vector<std::string> kept_lines(const std::filesystem::path& file);
+// Errors of writing are ignored: such a list is only a convenience, and whoever needs a line misses it.
+void keep_lines(const std::filesystem::path& file, const std::vector<std::string>& lines);
 
 }  // namespace kadans

@@ -6,7 +6,7 @@
 
 #include "app/live/record_pictures.h"
 #include "kadans/signal/nearest_name.h"
-#include "signal/durable_file.h"
+#include "kadans/signal/output_file.h"
 #include "version.h"
 
 namespace kadans {
@@ -39,9 +39,9 @@ void add_plot(const RunPage& page, HtmlReport& report) {
 
 void add_film(const RunPage& page, const ReportOptions& place, HtmlReport& report) {
   if (place.film == "never") report.no_film = "not asked for (--film never)";
-  if (place.film == "failed" && page.subject.result.passed)
+  if (place.film == "failed" && page.run.result.passed)
     report.no_film = "the run passed; --film always draws them all the same";
-  const double duration_s = page.subject.result.duration_s;
+  const double duration_s = page.run.result.duration_s;
   if (report.no_film.empty()) report.no_film = pictures_missing();
   if (report.no_film.empty() && !(duration_s > 0)) report.no_film = "the run has no duration";
   if (!report.no_film.empty()) return;
@@ -143,7 +143,7 @@ std::vector<PanelWish> wishes_of(const RecordOutline& record, const std::vector<
 }
 
 void add_marks(const RunPage& page, SignalPlot& plot) {
-  const RunResult& run = page.subject.result;
+  const RunResult& run = page.run.result;
   plot.marks.clear();  // the faults are taken from the run, because the record may lack them
   for (const RunFault& fault : run.faults) {
     const double share =
@@ -166,25 +166,15 @@ bool is_zero(const PlotPanel& panel) {
 }  // namespace
 
 fs::path write_run_page(const RunPage& page, const ReportOptions& place) {
-  HtmlReport report{.subject = page.subject,
+  HtmlReport report{.run = page.run,
                     .scenario = page.name,
                     .doc = page.scenario.doc,
-                    .robot = page.subject.model.name,
-                    .program = std::string("kadans ") + version,
-                    .quantities = page.quantities,
-                    .evidence = page.evidence,
-                    .plot = {},
-                    .no_plot = {},
-                    .plot_style = {},
-                    .film = {},
-                    .no_film = {}};
+                    .robot = page.robot,
+                    .program = std::string("kadans ") + version};
   add_plot(page, report);
   add_film(page, place, report);
-  std::error_code error;
-  fs::create_directories(place.folder, error);
-  if (error) throw InputError({.file = place.folder, .message = "cannot be made: " + error.message()});
-  const fs::path file = fs::path(place.folder) / report_file(page.name, page.subject.result.seed);
-  write_durably(file, html_report(report));
+  const fs::path file = fs::path(place.folder) / report_file(page.name, page.run.result.seed);
+  write_output_file(file, html_report(report));
   return file;
 }
 

@@ -11,12 +11,11 @@
 namespace kadans {
 
 struct RunPage {
-  const ReportSubject& subject;
+  const RunReport& run;
   const ScenarioConfig& scenario;
-  std::string name;    // name of the run: scenario, and branch when there is one
-  std::string record;  // file with its signals; "" when there is none
-  std::vector<QuantityValue> quantities;
-  std::vector<EvidenceTrace> evidence;
+  std::string robot;                       // its name, unless the record has another
+  std::string name;                        // name of the run: scenario, and branch when there is one
+  std::string record;                      // file with its signals; "" when there is none
   std::vector<std::string> check_signals;  // signals of the failed checks, which the plots show, too
 };
 

@@ -6,6 +6,7 @@
 #include "app/author/file_checks.h"
 #include "campaign/sweep/sweep_results.h"
 #include "kadans/signal/shell_word.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "telemetry/record/record_folder.h"
 
@@ -13,10 +14,6 @@ namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void refuse_case(const std::string& file, const std::string& why) {
-  throw InputError({.file = file, .message = why});
-}
 
 // "kadans sim FILE --seed N --set NAME=NUMBER ..."
 RunChoices choices_of_line(const std::string& line, const std::string& file) {
@@ -32,19 +29,19 @@ RunChoices choices_of_line(const std::string& line, const std::string& file) {
       known = words[i] == "--seed" && choices.seed.has_value();
     }
   }
-  if (!known) refuse_case(file, "does not say in 'repeat' how the case is run again");
+  if (!known) refuse(file, "does not say in 'repeat' how the case is run again");
   if (!fs::exists(choices.scenario))
-    refuse_case(file, "is a case of " + choices.scenario +
-                          ", which is not here: run this in the folder in which the sweep was run");
+    refuse(file, "is a case of " + choices.scenario +
+                     ", which is not here: run this in the folder in which the sweep was run");
   return choices;
 }
 
 RunChoices case_of_sweep(const ShrinkOptions& options) {
   const fs::path named = options.scenario;
   const bool one = !fs::is_directory(named);
-  if (one && options.number) refuse_case("--case", "the file is a case already");
+  if (one && options.number) refuse("--case", "the file is a case already");
   if (options.seed || !options.set.empty() || !options.play.empty())
-    refuse_case(options.scenario, "has its own seed and quantities: --seed, --set and --play go with a scenario");
+    refuse(options.scenario, "has its own seed and quantities: --seed, --set and --play go with a scenario");
   const std::string file = named.filename().string();  // "000003-0123456789abcdef.json"
   const std::string number = one ? file.substr(0, file.find('-')) : std::to_string(options.number.value_or(0));
   const bool chosen = one || options.number.has_value();
@@ -53,10 +50,10 @@ RunChoices case_of_sweep(const ShrinkOptions& options) {
   const auto found = std::ranges::find_if(
       rows, [&](const CaseRow& row) { return chosen ? row.index == index : row.status != RunStatus::passed; });
   if (found == rows.end())
-    refuse_case(options.scenario, chosen ? "has no result of case " + number
-                                         : "none of its " + std::to_string(rows.size()) + " cases failed");
+    refuse(options.scenario,
+           chosen ? "has no result of case " + number : "none of its " + std::to_string(rows.size()) + " cases failed");
   if (found->status == RunStatus::passed)
-    refuse_case(options.scenario, "case " + std::to_string(found->index) + " passed: there is nothing to shrink");
+    refuse(options.scenario, "case " + std::to_string(found->index) + " passed: there is nothing to shrink");
   return choices_of_line(found->repeat, options.scenario);
 }
 
@@ -65,12 +62,12 @@ RunChoices case_of_sweep(const ShrinkOptions& options) {
 RunChoices failing_case(const ShrinkOptions& options) {
   const fs::path named = options.scenario;
   if (fs::is_directory(named) || named.parent_path().filename() == "cases") return case_of_sweep(options);
-  if (options.number) refuse_case("--case", "goes with the results of a sweep: " + options.scenario + " is a file");
+  if (options.number) refuse("--case", "goes with the results of a sweep: " + options.scenario + " is a file");
   if (is_record(named))
-    refuse_case(options.scenario,
-                "is a record: its run cannot be changed. Shrink the scenario that it is of; a run on the wall clock is "
-                "repeated by 'kadans replay " +
-                    shell_word(options.scenario) + "'");
+    refuse(options.scenario,
+           "is a record: its run cannot be changed. Shrink the scenario that it is of; a run on the wall clock is "
+           "repeated by 'kadans replay " +
+               shell_word(options.scenario) + "'");
   require_kind(options.scenario, JsonKind::scenario);
   return options;
 }

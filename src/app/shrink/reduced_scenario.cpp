@@ -52,11 +52,6 @@ double impulse_of(const JsonValue& push) {
   return std::sqrt(square) * (impulse != nullptr ? 1 : mean * number_at(push, "duration_s", 0.1));
 }
 
-// A value with at most this many digits.
-double with_digits(double value, int digits) {
-  return digits >= 17 ? value : number_of<double>(printed("%.*g", digits, value)).value_or(value);
-}
-
 // What the merged file says differently: nothing when it cannot be said in a file that is based on the other one.
 std::optional<JsonValue> difference(const JsonValue& base, const JsonValue& other);
 
@@ -174,14 +169,11 @@ void ReducedScenario::take_quantities(const std::vector<QuantityValue>& values, 
 }
 
 Reduction ReducedScenario::all() const {
-  Reduction all{.disturbances = std::vector<bool>(disturbances_.size(), true),
-                .quantities = std::vector<bool>(quantities_.size(), true),
-                .share = std::vector<double>(disturbances_.size(), 1),
-                .until_s = std::vector<std::optional<double>>(disturbances_.size()),
-                .digits = 17,
-                .seeded = true,
-                .duration_s = duration_s()};
-  return all;
+  return {.disturbances = std::vector<bool>(disturbances_.size(), true),
+          .quantities = std::vector<bool>(quantities_.size(), true),
+          .share = std::vector<double>(disturbances_.size(), 1),
+          .until_s = std::vector<std::optional<double>>(disturbances_.size()),
+          .duration_s = duration_s()};
 }
 
 JsonValue ReducedScenario::reduced(const Reduction& reduction) const {

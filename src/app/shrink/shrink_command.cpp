@@ -21,6 +21,7 @@
 #include "kadans/signal/shell_word.h"
 #include "reduced_scenario.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 #include "trial_runs.h"
 
 namespace kadans {
@@ -31,10 +32,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double near_share = 0.01;          // how near impulses and times come to what passes
 constexpr std::int64_t whole_push = 10'000;  // the parts into which an impulse is cut
-
-[[noreturn]] void refuse_run(const std::string& file, const std::string& why) {
-  throw InputError({.file = file, .message = why});
-}
 
 class Shrinking {
  public:
@@ -55,15 +52,15 @@ class Shrinking {
     const TrialResult once = runs_.run(whole);
     if (!once.refused.empty()) refuse_all(once.refused);
     if (once.timed_out)
-      refuse_run(config_.file, "takes longer than its wall_limit_s of " + number_text(config_.wall_limit_s) +
-                                   " s: that is a matter of this machine, and no failure that repeats");
+      refuse(config_.file, "takes longer than its wall_limit_s of " + number_text(config_.wall_limit_s) +
+                               " s: that is a matter of this machine, and no failure that repeats");
     if (once.failures.empty())
-      refuse_run(config_.file, "passes with seed " + std::to_string(seed()) + ": there is no failure to shrink");
+      refuse(config_.file, "passes with seed " + std::to_string(seed()) + ": there is no failure to shrink");
     const TrialResult again = runs_.run(whole);
     if (again.state_hash != once.state_hash || again.find(once.failures.front()) == nullptr)
-      refuse_run(config_.file,
-                 "does not fail alike when it is run twice: its failure depends on more than its files and its seed, "
-                 "such as the wall clock or a plug-in of its own mind");
+      refuse(config_.file,
+             "does not fail alike when it is run twice: its failure depends on more than its files and its seed, "
+             "such as the wall clock or a plug-in of its own mind");
     wanted_ = chosen(once);
     period_s_ = once.period_s;
     scenario_.keep_check(wanted_.check);
@@ -71,7 +68,7 @@ class Shrinking {
     runs_.look_for(wanted_);
     best_ = scenario_.all();
     if (!first_failing({best_}))
-      refuse_run(config_.file, "does not fail any more when what it draws is written down: this is not to be expected");
+      refuse(config_.file, "does not fail any more when what it draws is written down: this is not to be expected");
   }
 
   // Throws TrialsInterrupted.
@@ -98,7 +95,7 @@ class Shrinking {
       text = *based;
     } else if (const TrialResult result = runs_.run({.text = text, .file = out}); result.find(wanted_) == nullptr) {
       if (!result.refused.empty()) refuse_all(result.refused);
-      refuse_run(out, "does not fail there as it did: this is not to be expected");
+      refuse(out, "does not fail there as it did: this is not to be expected");
     }
     write_durably(out, text);
     out_ = out;
@@ -127,8 +124,7 @@ class Shrinking {
     const bool known =
         std::ranges::any_of(config_.checks, [&](const ScenarioCheck& check) { return check.name == options_.check; });
     if (known)
-      refuse_run("--check",
-                 "'" + options_.check + "' passes; what fails first is '" + result.failures.front().told + "'");
+      refuse("--check", "'" + options_.check + "' passes; what fails first is '" + result.failures.front().told + "'");
     refuse_unknown("--check", {.name = options_.check, .place = {}}, "check", failed);
   }
 
@@ -396,8 +392,8 @@ std::string out_of(const ShrinkOptions& options, const ScenarioConfig& scenario)
                        : here               ? name
                                             : fs::path(scenario.file).parent_path() / name;
   if (fs::exists(out) && !options.overwrite && !is_device_or_pipe(out))
-    refuse_run(out.string(), "is there already: name another file with --out, or replace it with --overwrite");
-  if (fs::exists(out) && fs::equivalent(out, scenario.file)) refuse_run(out.string(), "is the scenario itself");
+    refuse(out, "is there already: name another file with --out, or replace it with --overwrite");
+  if (fs::exists(out) && fs::equivalent(out, scenario.file)) refuse(out, "is the scenario itself");
   return out.string();
 }
 
@@ -414,7 +410,7 @@ int run_shrink(const ShrinkOptions& options) {
   } catch (const TrialsInterrupted&) {
     return exit_interrupted;
   } catch (const TrialsSpent&) {
-    refuse_run("--max-runs", "is too little: three runs are needed to know the failure");
+    refuse("--max-runs", "is too little: three runs are needed to know the failure");
   }
   print_text(options.json ? shrinking.report_json() : shrinking.report());
   return exit_passed;
@@ -427,25 +423,18 @@ void add_shrink(CLI::App& app, ShrinkOptions& options) {
                    "Scenario that fails (JSON), or the folder of a sweep's results, or the file of one case in it")
       ->required()
       ->type_name("PATH");
-  shrink->add_option("--seed", options.seed, "Seed of the run (default: the scenario's)")
-      ->type_name("N")
-      ->check(any_seed());
+  add_seed(*shrink, options.seed, "Seed of the run (default: the scenario's)");
   shrink->add_option("--set", options.set, "A quantity of the run, as of kadans sim; it is taken away where it can be")
       ->type_name("NAME=NUMBER")
       ->allow_extra_args(false);
   shrink->add_option("--play", options.play, "Behaviors to play instead of the scenario's: \"squat, wave\"")
       ->type_name("LIST");
-  shrink->add_option("--case", options.number, "Case of the sweep (default: the first that failed)")
-      ->type_name("N")
-      ->check(whole_within(0, sweep_cases_max));
+  add_whole(*shrink, "--case", options.number, 0, sweep_cases_max,
+            "Case of the sweep (default: the first that failed)");
   shrink->add_option("--check", options.check, "Name of the check that shall fail (default: the one that fails first)")
       ->type_name("NAME");
-  shrink->add_option("--max-runs", options.runs_max, "Stop after so many runs (default: 2000)")
-      ->type_name("N")
-      ->check(whole_within(1, 1'000'000));
-  shrink->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
+  add_whole(*shrink, "--max-runs", options.runs_max, 1, 1'000'000, "Stop after so many runs (default: 2000)");
+  add_jobs(*shrink, options.jobs);
   shrink->add_option("--out", options.out, "File of the result (default: NAME_shrunk.json in this folder)")
       ->type_name("FILE");
   shrink->add_flag("--overwrite", options.overwrite, "Replace the file when it is there");

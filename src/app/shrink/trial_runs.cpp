@@ -73,11 +73,8 @@ class TrialWatch final : public RunObserver {
       if (line.severity == BehaviorLog::Severity::error) all.push_back(error(line));
     }
     if (!result.error.empty())
-      all.push_back({.what = "error " + without_numbers(result.error),
-                     .fault = {},
-                     .told = result.error,
-                     .check = {},
-                     .at_s = result.duration_s});
+      all.push_back(
+          {.what = "error " + without_numbers(result.error), .told = result.error, .at_s = result.duration_s});
     std::ranges::stable_sort(all, {}, &TrialFailure::at_s);
     return all;
   }
@@ -91,9 +88,7 @@ class TrialWatch final : public RunObserver {
   }
   static TrialFailure error(const LogLine& line) {
     return {.what = "error " + without_numbers(line.text),
-            .fault = {},
             .told = line.text,
-            .check = {},
             .at_s = 1e-9 * static_cast<double>(line.time_ns)};
   }
 
@@ -149,7 +144,6 @@ Json run_here(const Trial& trial, const TrialFailure* wanted) {
   TrialWatch watch(trial, wanted, checks, parts);
   const RunResult result = run_scenario(parts, scenario.duration_s, checks, {&watch});
   Json json{{"state_hash", hash_text(result.state_hash)},
-            {"duration_s", result.duration_s},
             {"period_s", assembly.robot().engine.control_period_s},
             {"failures", Json::array()},
             {"quantities", Json::array()}};
@@ -182,7 +176,6 @@ TrialResult result_of(const std::string& text) {
     return result;
   }
   json.at("state_hash").get_to(result.state_hash);
-  json.at("duration_s").get_to(result.duration_s);
   json.at("period_s").get_to(result.period_s);
   for (const Json& one : json.at("failures"))
     result.failures.push_back({.what = one.at("what"),
@@ -207,8 +200,7 @@ struct RunningTrial {
     if (timed_out) return result;
     if (process.exit_code() == exit_passed) return result_of(said.text());
     const std::string what = process.signal() != 0 ? "signal " + std::to_string(process.signal()) : "a broken process";
-    result.failures.push_back(
-        {.what = what, .fault = {}, .told = "the process is ended by " + what, .check = {}, .at_s = 0});
+    result.failures.push_back({.what = what, .told = "the process is ended by " + what, .at_s = 0});
     return result;
   }
 };

@@ -18,12 +18,12 @@ namespace kadans {
 
 // One thing that went wrong in a run.
 struct TrialFailure {
-  std::string what;   // "check stays up", "error ..." without its numbers, "signal 11": two failures are the same when
-                      // this and `fault` are
-  std::string fault;  // of a check that looks at the safety layer: the first fault of the run, "motor_hot of l_knee"
-  std::string told;   // for people: "stays up (plant.base.height_m > 0.7)"
-  std::string check;  // its name; "": it is none
-  double at_s = 0;    // when it was certain
+  std::string what;  // "check stays up", "error ..." without its numbers, "signal 11": two failures are the same when
+                     // this and `fault` are
+  std::string fault{};  // of a check that looks at the safety layer: the first fault of the run, "motor_hot of l_knee"
+  std::string told;     // for people: "stays up (plant.base.height_m > 0.7)"
+  std::string check{};  // its name; "": it is none
+  double at_s = 0;      // when it was certain
 
   bool same(const TrialFailure& other) const noexcept { return what == other.what && fault == other.fault; }
 };
@@ -39,7 +39,6 @@ struct TrialResult {
   std::vector<std::string> refused;  // why it could not be run
   bool timed_out = false;
   std::string state_hash;
-  double duration_s = 0;
   double period_s = 0;                 // of the control engine
   std::vector<TrialFailure> failures;  // in the order of time
   std::vector<QuantityValue> quantities;

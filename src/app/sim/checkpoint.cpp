@@ -4,6 +4,7 @@
 
 #include "app/assembly/assembly.h"
 #include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -17,7 +18,7 @@ Number fact_of(const TextMap& facts, const char* name, int base, const std::stri
   const auto found = facts.find(name);
   const std::optional<Number> number = found == facts.end() ? std::nullopt : number_of<Number>(found->second, base);
   if (number) return *number;
-  throw InputError({.file = file, .message = std::string("is a damaged checkpoint: no ") + name});
+  refuse(file, std::string("is a damaged checkpoint: no ") + name);
 }
 
 }  // namespace
@@ -42,9 +43,8 @@ Checkpoint read_checkpoint(const std::string& file) {
   Checkpoint checkpoint;
   const auto found = reader.metadata().find(metadata_name);
   if (found == reader.metadata().end()) {
-    throw InputError({.file = file,
-                      .message = "is no checkpoint" + (reader.complete() ? "" : ": " + reader.problem()) +
-                                 "; kadans sim --checkpoint writes one"});
+    refuse(file, "is no checkpoint" + (reader.complete() ? "" : ": " + reader.problem()) +
+                     "; kadans sim --checkpoint writes one");
   }
   const TextMap& facts = found->second;
   checkpoint.inputs = read_inputs(reader, file);
@@ -85,8 +85,7 @@ PlannedCheckpoint parse_checkpoint(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::optional<double> at_s = number_of<double>(std::string_view(text).substr(0, equals));
   if (equals == std::string::npos || !at_s || !(*at_s > 0) || equals + 1 == text.size())
-    throw InputError(
-        {.file = "--checkpoint", .message = "'" + text + "' must be SECONDS=FILE, such as 2.5=crouched.mcap"});
+    refuse("--checkpoint", "'" + text + "' must be SECONDS=FILE, such as 2.5=crouched.mcap");
   return {.at_s = *at_s, .file = text.substr(equals + 1)};
 }
 

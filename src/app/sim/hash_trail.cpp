@@ -1,9 +1,7 @@
 #include "hash_trail.h"
 
 #include <algorithm>
-#include <cinttypes>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 #include "config/json/fields.h"
@@ -19,13 +17,15 @@ void HashTrail::between_ticks(const RunMark& mark) {
   next_ns_ = (mark.time_ns / every_ns_ + 1) * every_ns_;
 }
 
+std::vector<std::uint64_t> HashTrail::hashes() const {
+  std::vector<std::uint64_t> hashes;
+  for (const HashMark& mark : marks_) hashes.push_back(mark.hash);
+  return hashes;
+}
+
 std::string marks_text(const std::vector<HashMark>& marks) {
   std::string text;
-  for (const HashMark& mark : marks) {
-    char line[64];
-    std::snprintf(line, sizeof line, "%" PRId64 " %016" PRIx64 "\n", mark.time_ns, mark.hash);
-    text += line;
-  }
+  for (const HashMark& mark : marks) text += std::to_string(mark.time_ns) + " " + hash_text(mark.hash) + "\n";
   return text;
 }
 

@@ -20,6 +20,7 @@ class HashTrail final : public RunObserver {
   void between_ticks(const RunMark& mark) override;
 
   const std::vector<HashMark>& marks() const noexcept { return marks_; }
+  std::vector<std::uint64_t> hashes() const;  // of the marks
 
  private:
   std::int64_t every_ns_, next_ns_;

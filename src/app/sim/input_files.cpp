@@ -28,7 +28,6 @@
 #include "version.h"
 
 namespace kadans {
-
 namespace {
 
 // The build id in a segment of ELF notes; "" when there is none. A note is its head, its name and its content, each
@@ -61,8 +60,6 @@ int add_part(dl_phdr_info* info, std::size_t, void* target) {
   return 0;
 }
 
-}  // namespace
-
 // The exact parts of the running program: its version, and the linker's build id of the program and of each loaded
 // shared library. Two programs with the same parts compute the same numbers from the same inputs. The names are
 // "kadans", "version", "machine", "libm.so.6" ...; a part without a build id has "".
@@ -71,8 +68,6 @@ TextMap program_parts() {
   dl_iterate_phdr(add_part, &parts);
   return parts;
 }
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -117,9 +112,9 @@ std::optional<std::string> read_all(const fs::path& file) {
 std::string name_in_project(const std::string& file) {
   const fs::path whole = fs::absolute(file).lexically_normal();
   std::error_code error;
-  if (!fs::is_regular_file(whole, error)) throw InputError({.file = file, .message = "there is no such file"});
+  if (!fs::is_regular_file(whole, error)) refuse(file, "there is no such file");
   std::string name = name_below(project_root(whole), whole);
-  if (name.empty()) throw InputError({.file = file, .message = "lies in no project, so it has no place in the record"});
+  if (name.empty()) refuse(file, "lies in no project, so it has no place in the record");
   return name;
 }
 
@@ -129,18 +124,6 @@ fs::path project_here() { return project_root(fs::current_path() / "x"); }
 bool is_own(const fs::path& file) {
   struct stat found {};
   return stat(file.c_str(), &found) == 0 && (found.st_uid == getuid() || found.st_uid == 0);
-}
-
-std::vector<fs::path> meshes(const RobotModel& model) {
-  std::vector<fs::path> files;
-  for (const Link& link : model.links) {
-    for (const auto* list : {&link.collisions, &link.visuals}) {
-      for (const Geometry& geometry : *list) {
-        if (const Mesh* mesh = std::get_if<Mesh>(&geometry.shape)) files.emplace_back(mesh->file);
-      }
-    }
-  }
-  return files;
 }
 
 // A file that ought to be private must not go out because of a slip in its
@@ -195,7 +178,7 @@ class Gathering {
   }
   void know_private(const RobotConfig& robot) {
     refuse_unknown_private(robot);
-    private_ = names_of(robot.record.private_files);
+    std::ranges::copy(names_of(robot.record.private_files), std::back_inserter(private_));
   }
 
   Folders folders_;
@@ -211,7 +194,7 @@ void add_scripts(const fs::path& project_file, const std::string& folder, Gather
 
 void add_robot(const Assembly& assembly, Gathering& files) {
   const RobotConfig& robot = assembly.robot();
-  for (const fs::path& file : meshes(robot.model)) files.add_name(file);
+  for (const fs::path& file : mesh_files(robot.model)) files.add_name(file);
   if (!robot.plugins.empty()) {
     for (const PluginFile& plugin : read_plugin_files(robot.file)) files.add_hash(plugin.file);
   }
@@ -235,6 +218,18 @@ void add_robot(const Assembly& assembly, Gathering& files) {
 }
 
 }  // namespace
+
+std::vector<fs::path> mesh_files(const RobotModel& model) {
+  std::vector<fs::path> files;
+  for (const Link& link : model.links) {
+    for (const auto* list : {&link.collisions, &link.visuals}) {
+      for (const Geometry& geometry : *list) {
+        if (const Mesh* mesh = std::get_if<Mesh>(&geometry.shape)) files.emplace_back(mesh->file);
+      }
+    }
+  }
+  return files;
+}
 
 std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly) {
   Gathering files(scenario.file, assembly);
@@ -297,8 +292,7 @@ InputLayout layout_of(const Assembly& assembly) {
 RunOptions options_of(const RunInputs& inputs, const std::string& record) {
   RunOptions options;
   const auto seed = number_of<std::uint64_t>(inputs.fact("seed"));
-  if (!seed || inputs.fact("plant").empty())
-    throw InputError({.file = record, .message = "is damaged: it does not say how its run was begun"});
+  if (!seed || inputs.fact("plant").empty()) refuse(record, "is damaged: it does not say how its run was begun");
   options.seed = *seed;
   options.plant = inputs.fact("plant");
   options.play = inputs.fact("play");
@@ -376,38 +370,36 @@ fs::path find_scenario(const RunInputs& recorded, const fs::path& record) {
     std::error_code ignored;
     if (fs::is_regular_file(place, ignored)) return place;
   }
-  throw InputError(
-      {.file = record.string(),
-       .message = "its scenario " + written.string() + " is not here; run this in its project, or with --from-record"});
+  refuse(record, "its scenario " + written.string() + " is not here; run this in its project, or with --from-record");
 }
 
 RunInputs read_front(const std::string& record) {
-  const auto refuse = [&](const std::string& why) { throw InputError({.file = record, .message = why}); };
   McapReader reader(record);
   McapMessage message;
   const bool holds_messages = reader.next(message);
   RunInputs inputs = read_inputs(reader, record);
   if (inputs.run.empty()) {
-    refuse(holds_messages || reader.complete() ? "was not recorded by kadans"
-                                               : "ends before it begins: " + reader.problem());
+    refuse(record, holds_messages || reader.complete() ? "was not recorded by kadans"
+                                                       : "ends before it begins: " + reader.problem());
   }
   const std::string clock = inputs.fact("clock");
   if (clock == clock_of_programs)
-    refuse("was stepped by another program, which alone repeats it" +
-           (inputs.fact("repeat").empty() ? "" : ": " + inputs.fact("repeat")));
+    refuse(record, "was stepped by another program, which alone repeats it" +
+                       (inputs.fact("repeat").empty() ? "" : ": " + inputs.fact("repeat")));
   if (!clock.empty() && clock != "virtual" && clock != clock_of_threads)
-    refuse("was made by another version of kadans: it says that its clock is " + in_quotes(clock));
+    refuse(record, "was made by another version of kadans: it says that its clock is " + in_quotes(clock));
   const bool of_robot = clock == clock_of_threads || (clock.empty() && inputs.run.contains("robot"));
   const auto layout = reader.metadata().find(inputs_metadata);
   if (of_robot && layout == reader.metadata().end())
     refuse(
+        record,
         "holds no inputs of its ticks, so what went into the run cannot be had again: it was begun while its run went "
         "on, or was made with record.inputs false or by an older kadans");
   if (of_robot && !InputLayout::of(layout->second))
-    refuse("holds inputs that this kadans cannot read: they were recorded by kadans " + inputs.fact("kadans"));
+    refuse(record, "holds inputs that this kadans cannot read: they were recorded by kadans " + inputs.fact("kadans"));
   if (inputs.empty())
-    refuse("does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
-           " or ends too early");
+    refuse(record, "does not hold what it was made of: it was recorded by kadans " + inputs.fact("kadans") +
+                       " or ends too early");
   return inputs;
 }
 
@@ -431,8 +423,7 @@ UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& rec
                                const std::vector<std::string>& with)
     : owner_(getpid()) {
   std::string pattern = (fs::temp_directory_path() / "kadans-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr)
-    throw InputError({.file = pattern, .message = "no temporary folder can be made there"});
+  if (mkdtemp(pattern.data()) == nullptr) refuse(pattern, "no temporary folder can be made there");
   folder_ = fs::absolute(pattern).lexically_normal();
   plugins_ = {.closed = true,
               .let_in = {},
@@ -458,11 +449,11 @@ UnpackedInputs::UnpackedInputs(const RunInputs& recorded, const std::string& rec
     const std::string name = recorded.fact("scenario_input");
     const auto scenario = std::ranges::find(recorded.files, name, &InputFile::path);
     if (scenario == recorded.files.end() || !(scenario->text || scenario->left_out) || fs::path(name).is_absolute())
-      throw InputError({.file = record, .message = "does not hold its scenario"});
+      refuse(record, "does not hold its scenario");
     scenario_ = folder_ / name;
   } catch (const fs::filesystem_error& error) {  // a name is too long, or a file stands in the place of a folder
     remove();
-    throw InputError({.file = record, .message = std::string("its files cannot be unpacked: ") + error.what()});
+    refuse(record, std::string("its files cannot be unpacked: ") + error.what());
   } catch (...) {
     remove();
     throw;
@@ -499,20 +490,18 @@ void UnpackedInputs::add_behaviors(RunInputs& inputs) const {
 
 void UnpackedInputs::link_plugin(const InputFile& file, const std::string& record, bool any_plugins) {
   const fs::path here = project_here() / file.path;  // an absolute path stays unchanged
-  const auto refuse = [&](const std::string& why) {
-    throw InputError({.file = record, .message = "needs the plug-in " + file.path + ", " + why});
-  };
+  const auto lacks = [&](const std::string& why) { refuse(record, "needs the plug-in " + file.path + ", " + why); };
   // If the recorded hash alone decided, the sender of a record could choose any file of this machine, also files that
   // came with the record.
   const std::string inside = here.lexically_normal().lexically_relative(project_here()).generic_string();
   if (!any_plugins && (inside.empty() || inside.starts_with("..")))
-    refuse("which is not in the project around the working directory: --allow-plugins takes it from there");
+    lacks("which is not in the project around the working directory: --allow-plugins takes it from there");
   const std::optional<std::string> now = read_all(here);
-  if (!now) refuse("which is not " + std::string(here == file.path ? "there" : "in this project"));
+  if (!now) lacks("which is not " + std::string(here == file.path ? "there" : "in this project"));
   if (!any_plugins && content_hash(*now) != file.hash)
-    refuse("and the one here is another: build it as it was, or take this one with --allow-plugins");
+    lacks("and the one here is another: build it as it was, or take this one with --allow-plugins");
   if (!any_plugins && !is_own(here))
-    refuse("which belongs to another user: give it to yourself, or take it with --allow-plugins");
+    lacks("which belongs to another user: give it to yourself, or take it with --allow-plugins");
   if (here == file.path) return plugins_.let_in.push_back(here);
   fs::create_directories((folder_ / file.path).parent_path());
   fs::create_symlink(here, folder_ / file.path);  // fails when the file exists
@@ -521,40 +510,37 @@ void UnpackedInputs::link_plugin(const InputFile& file, const std::string& recor
 
 void UnpackedInputs::replace(const InputFile& file) const {
   const fs::path name = fs::path(file.path).lexically_normal(), place = folder_ / name;
-  const auto refuse = [&](const std::string& why) { throw InputError({.file = file.path, .message = why}); };
-  if (name.empty() || name.is_absolute() || *name.begin() == "..") refuse("leads out of the record's files");
+  if (name.empty() || name.is_absolute() || *name.begin() == "..") refuse(file.path, "leads out of the record's files");
   if (given_.contains(name.generic_string())) return;
   try {
     if (fs::is_symlink(fs::symlink_status(place)))
-      refuse("is a plug-in, and native code does not come out of a record");
+      refuse(file.path, "is a plug-in, and native code does not come out of a record");
     if (fs::is_regular_file(place)) fs::remove(place);
     unpack(file);
   } catch (const fs::filesystem_error& error) {
-    refuse(std::string("cannot be unpacked: ") + error.what());
+    refuse(file.path, std::string("cannot be unpacked: ") + error.what());
   }
 }
 
 void UnpackedInputs::fetch(const InputFile& file, const std::string& record) const {
   const std::optional<std::string> here = read_all(project_here() / file.path);
-  const auto refuse = [&](const std::string& why) {
-    throw InputError(
-        {.file = record, .message = "needs " + file.path + ", a private file that it does not hold, " + why});
+  const auto lacks = [&](const std::string& why) {
+    refuse(record, "needs " + file.path + ", a private file that it does not hold, " + why);
   };
-  if (!here) refuse("and it is not in the project around the working directory");
+  if (!here) lacks("and it is not in the project around the working directory");
   if (content_hash(*here) != file.hash)
-    refuse("and the one in this project is another: its hash is " + content_hash(*here) + ", recorded was " +
-           file.hash);
+    lacks("and the one in this project is another: its hash is " + content_hash(*here) + ", recorded was " + file.hash);
   replace({file.path, file.hash, here});
 }
 
 void UnpackedInputs::unpack(const InputFile& file) const {
   const fs::path place = folder_ / file.path;
   fs::create_directories(place.parent_path());
-  if (fs::exists(fs::symlink_status(place))) throw InputError({.file = place.string(), .message = "is there already"});
+  if (fs::exists(fs::symlink_status(place))) refuse(place, "is there already");
   std::ofstream stream(place, std::ios::binary);
   stream << file.text.value_or("");  // a mesh stays empty: only its name is used
   stream.close();
-  if (!stream) throw InputError({.file = place.string(), .message = "cannot be written"});
+  if (!stream) refuse(place, "cannot be written");
 }
 
 }  // namespace kadans

@@ -18,6 +18,9 @@ namespace kadans {
 // is computed from them. Throws InputError for a pattern of record.private that no file of the project has.
 std::vector<InputFile> input_files(const ScenarioConfig& scenario, const Assembly& assembly);
 
+// Of its links, in their order.
+std::vector<std::filesystem::path> mesh_files(const RobotModel& model);
+
 // All inputs of the run that `choices` asks for, for its record.
 RunInputs inputs_of(const RunChoices& choices, const ScenarioConfig& scenario, const Assembly& assembly);
 

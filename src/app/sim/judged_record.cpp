@@ -10,10 +10,10 @@
 #include "app/run/observers.h"
 #include "app/terminal.h"
 #include "hash_trail.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/shell_word.h"
 #include "repeated_run.h"
 #include "scenario/report/report.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 RunInputs read_run(const std::string& record) {
   RunInputs inputs = read_front(record);
   if (inputs.fact("clock") != clock_of_threads)
-    throw InputError({.file = record, .message = "was simulated, so it is simulated again: with its own scenario"});
+    refuse(record, "was simulated, so it is simulated again: with its own scenario");
   return inputs;
 }
 
@@ -71,30 +71,18 @@ class JudgedRun : public RunObserver {
   }
 
   int print(const RunResult& result, bool json, bool verbose, const std::string& repeat, const HashTrail* trail) {
+    const RunReport report{.result = result,
+                           .log = run_.log(),
+                           .title = judge_.name + (judge_.doc.empty() ? "" : ": " + judge_.doc),
+                           .record = "",
+                           .repeat = repeat,
+                           .evidence = evidence_->around(result.checks),
+                           .hashes = trail == nullptr ? std::vector<std::uint64_t>() : trail->hashes()};
     if (json) {
-      ReportContext context{.log = run_.log(),
-                            .quantities = {},
-                            .metrics = {},
-                            .evidence = evidence_->around(result.checks),
-                            .record = "",
-                            .hashes = {},
-                            .branch = {},
-                            .lost = {}};
-      if (trail != nullptr) {
-        for (const HashMark& mark : trail->marks()) context.hashes.push_back(mark.hash);
-      }
-      std::puts(json_report(result, context).c_str());
+      std::puts(json_report(report).c_str());
     } else {
-      const std::vector<ReportTrace> none;
-      const ReportSubject subject{.result = result,
-                                  .log = run_.log(),
-                                  .model = run_.assembly().robot().model,
-                                  .traces = none,
-                                  .title = judge_.name + (judge_.doc.empty() ? "" : ": " + judge_.doc),
-                                  .record = "",
-                                  .repeat = repeat};
       const std::string text =
-          text_report(subject, {.color = stdout_takes_color(), .unicode = true, .verbose = verbose});
+          text_report(report, {.color = stdout_takes_color(), .unicode = true, .verbose = verbose});
       std::fputs(text.c_str(), stdout);
       for (const std::string& differs : {run_.parting(), run_.decided_otherwise()}) {
         if (!differs.empty()) std::printf("  differs from the record %s\n", differs.c_str());
@@ -142,32 +130,28 @@ class ThenSimulation final : public JudgedRun {
       : JudgedRun(options.record, options.allow_plugins, options.with, scenario),
         options_(options),
         scenario_(scenario) {
-    const auto refuse = [&](const std::string& why) {
-      throw InputError({.file = options.then_simulate, .message = why});
-    };
     if (played_elsewhere(inputs_))
-      throw InputError(
-          {.file = options.record, .message = "its behaviors played in a process of their own, so they cannot go on"});
-    if (!scenario.robots.empty()) refuse("has further robots: a record goes on alone");
-    if (!scenario.bus.type.name.empty()) refuse("has a bus: a record goes on in its world itself");
+      refuse(options.record, "its behaviors played in a process of their own, so they cannot go on");
+    if (!scenario.robots.empty()) refuse(options.then_simulate, "has further robots: a record goes on alone");
+    if (!scenario.bus.type.name.empty())
+      refuse(options.then_simulate, "has a bus: a record goes on in its world itself");
     const char* const alone = ": a record goes on in its world, with its quantities and checks alone";
     if (!(scenario.events.empty() && scenario.pushes.empty() && scenario.faults.empty() && scenario.carried.empty()))
-      refuse(std::string("has events, pushes, faults or a robot that is carried") + alone);
+      refuse(options.then_simulate, std::string("has events, pushes, faults or a robot that is carried") + alone);
     if (scenario.supervisor.given || !scenario.perception.empty() || !scenario.sight.ball.name.empty() ||
         !scenario.joystick.recording.empty())
-      refuse(std::string("has a supervisor, perception, sight or a joystick") + alone);
+      refuse(options.then_simulate, std::string("has a supervisor, perception, sight or a joystick") + alone);
     if (read_robot(scenario.robot, scenario.plugins).config.model.joint_names() !=
         run_.assembly().robot().model.joint_names())
-      refuse("is of another robot than the record");
+      refuse(options.then_simulate, "is of another robot than the record");
   }
 
   int run() {
     const auto recorded_s = [this] { return 1e-9 * static_cast<double>(run_.time_ns()); };
     run_.go([&] { return interrupted() || recorded_s() >= options_.at_s; });
     if (!(recorded_s() >= options_.at_s) && !interrupted())
-      throw InputError({.file = options_.record,
-                        .message = printed("ends at %.3f s, before --at", recorded_s()) +
-                                   (run_.shortened().empty() ? "" : ": " + run_.shortened())});
+      refuse(options_.record, printed("ends at %.3f s, before --at", recorded_s()) +
+                                  (run_.shortened().empty() ? "" : ": " + run_.shortened()));
     const Snapshot& state = run_.assembly().control().state();
     scenario_.placed.orientation = state.status.base.orientation;
     for (std::size_t i = 0; i < state.joints.count; ++i)

@@ -17,17 +17,16 @@ constexpr std::size_t events_max = 100'000;
 
 // One event in a line: {"time_ns", "event", "data", "who"}.
 void add(const Json& json, std::int64_t time_ns, const std::string& file, ScenarioConfig& scenario) {
-  const auto refuse = [&] { throw InputError({.file = file, .message = "its events are damaged"}); };
   const auto text = [&](const char* name) { return json.value(name, std::string()); };
   const bool whole = json.is_object() && json.contains("event") && json["event"].is_string() && json.contains("data") &&
                      json.contains("who") && json["who"].is_string();
-  if (!whole || scenario.events.size() >= events_max || time_ns < 0) refuse();
+  if (!whole || scenario.events.size() >= events_max || time_ns < 0) refuse(file, "its events are damaged");
   ScenarioEvent event{.at_s = 1e-9 * static_cast<double>(time_ns), .order = {.kind = PlayOrder::Kind::emit}};
   event.order.event = {.name = text("event"), .who = text("who"), .ordered = true};
-  if (!is_event_name(event.order.event.name)) refuse();
+  if (!is_event_name(event.order.event.name)) refuse(file, "its events are damaged");
   Problems problems(file);
   event.order.event.data = read_event_data(parse_json(json_text(json["data"]), file), problems);
-  if (!problems.empty()) refuse();
+  if (!problems.empty()) refuse(file, "its events are damaged");
   scenario.events.push_back(std::move(event));
 }
 

@@ -101,13 +101,13 @@ void RepeatedRun::go(const std::function<bool()>& stop, const std::vector<RunObs
 // To the first tick that is repeated. False: there is none.
 bool RepeatedRun::begin() {
   if (!ticks_read_.next(taken_)) return false;
-  const auto refuse = [&](const std::string& why) { throw InputError({.file = compared_.file(), .message = why}); };
   const bool flight = ticks_read_.layout().state_bytes > 0;
   if (flight && !repeats_flight())
-    refuse("is a flight record: kadans replay repeats its control engine, and nothing else can be done with it");
+    refuse(compared_.file(),
+           "is a flight record: kadans replay repeats its control engine, and nothing else can be done with it");
   if (!flight && taken_.tick != 0)
-    refuse("begins in tick " + std::to_string(taken_.tick) +
-           " of its run: only a record from the first tick on can be repeated");
+    refuse(compared_.file(), "begins in tick " + std::to_string(taken_.tick) +
+                                 " of its run: only a record from the first tick on can be repeated");
   find_foreign_signals();
   if (flight) begin_from_state();
   return true;
@@ -125,19 +125,20 @@ void RepeatedRun::find_foreign_signals() {
 }
 
 void RepeatedRun::begin_from_state() {
-  const auto refuse = [&](const std::string& why) { throw InputError({.file = compared_.file(), .message = why}); };
   ControlEngine& control = assembly_.control();
   StateBytes measuring(StateBytes::Levels::low);
   control.pass_state(measuring);
   if (measuring.size() != ticks_read_.layout().state_bytes)
-    refuse("its control engine was another one: it saved " + std::to_string(ticks_read_.layout().state_bytes) +
-           " bytes of state, this one " + std::to_string(measuring.size()) +
-           ". The kadans that recorded it repeats it, on the same architecture");
+    refuse(compared_.file(), "its control engine was another one: it saved " +
+                                 std::to_string(ticks_read_.layout().state_bytes) + " bytes of state, this one " +
+                                 std::to_string(measuring.size()) +
+                                 ". The kadans that recorded it repeats it, on the same architecture");
   const EngineStates::Saved* saved = states_read_.get();
   for (; saved != nullptr && saved->tick + 1 < taken_.tick; saved = states_read_.get()) states_read_.drop();
-  if (saved == nullptr) refuse("holds no state of its control engine with the ticks behind it");
+  if (saved == nullptr) refuse(compared_.file(), "holds no state of its control engine with the ticks behind it");
   if (saved->found.size() != hand_overs_.down.size() || !control.restore(saved->tick + 1, saved->bytes))
-    refuse("its state of the control engine after tick " + std::to_string(saved->tick) + " is damaged");
+    refuse(compared_.file(),
+           "its state of the control engine after tick " + std::to_string(saved->tick) + " is damaged");
   for (std::size_t i = 0; i < hand_overs_.down.size(); ++i) hand_overs_.down[i]->resume(saved->found[i]);
   handed_.assign(saved->found.begin(), saved->found.end());
   stepped_.assign(assembly_.sets().size(), false);
@@ -146,7 +147,7 @@ void RepeatedRun::begin_from_state() {
   seen_ = control.seen();
   while (taken_.tick <= saved->tick) {
     if (!ticks_read_.next(taken_))
-      refuse("ends with its state of the control engine after tick " + std::to_string(saved->tick));
+      refuse(compared_.file(), "ends with its state of the control engine after tick " + std::to_string(saved->tick));
   }
   begun_ns_ = taken_.time_ns;
   states_read_.drop();
@@ -386,17 +387,16 @@ bool RepeatedRun::read_behavior_tick() {
 }
 
 void RepeatedRun::repeat_behavior_tick() {
-  write_files();
+  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs();
+  for (const BehaviorInput& input : inputs) write_file(input);
   CommandQueue& queue = assembly_.control().exchange().commands;
-  std::vector<Command> waiting;
   const auto take_all = [&queue] {
     std::vector<Command> all;
     for (Command command; queue.try_pop(command);) all.push_back(command);
     return all;
   };
-  waiting = take_all();
+  const std::vector<Command> waiting = take_all();
   sent_ = 0;
-  const std::vector<BehaviorInput>& inputs = next_behaviors_->inputs();
   for (const BehaviorInput& input : inputs) {
     if (input.kind == BehaviorInput::Kind::newer && input.number < hand_overs_.up.size() &&
         !hand_overs_.up[input.number]->feed(input.bytes))
@@ -425,10 +425,6 @@ void RepeatedRun::repeat_behavior_tick() {
       std::ranges::count(inputs, BehaviorInput::Kind::sent, [](const BehaviorInput& input) { return input.kind; }));
   if (led()) fed_ = sent_before_;
   if (plays()) compare_events();
-}
-
-void RepeatedRun::write_files() {
-  for (const BehaviorInput& input : next_behaviors_->inputs()) write_file(input);
 }
 
 void RepeatedRun::write_file(const BehaviorInput& input) {

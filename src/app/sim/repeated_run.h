@@ -115,7 +115,6 @@ class RepeatedRun final : private BehaviorInputs {
   void repeat_behaviors(std::uint64_t until_tick);
   bool read_behavior_tick();
   void repeat_behavior_tick();
-  void write_files();
   void write_file(const BehaviorInput& input);
   void repeat_decisions();
   void ask_again(const BehaviorInput& input);

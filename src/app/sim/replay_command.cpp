@@ -7,6 +7,7 @@
 
 #include "app/assembly/assembly.h"
 #include "app/commands.h"
+#include "app/log/log_verbs.h"
 #include "app/option_checks.h"
 #include "app/run/observers.h"
 #include "app/services.h"
@@ -16,6 +17,7 @@
 #include "ordered_events.h"
 #include "repeated_run.h"
 #include "run_branches.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "telemetry/reading/record_comparison.h"
 #include "telemetry/record/recorder.h"
@@ -107,10 +109,6 @@ class Replay final : public RunObserver {
   RunResult result_;
   bool at_end_ = false;
 };
-
-std::string plural(std::uint64_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
 
 // Everything that the report needs.
 struct Findings {
@@ -223,9 +221,8 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
           ->add_option("--then-simulate", options.then_simulate,
                        "Of a run on threads: from --at on, its engines go on in this scenario's world, with its checks")
           ->type_name("SCENARIO");
-  CLI::Option* at = replay->add_option("--at", options.at_s, "Second of the record from which that is simulated")
-                        ->type_name("S")
-                        ->check(number_within(0.001, scenario_duration_max_s))
+  CLI::Option* at = add_number(*replay, "--at", options.at_s, 0.001, scenario_duration_max_s, "S",
+                               "Second of the record from which that is simulated")
                         ->needs(then);
   then->needs(at);
   replay
@@ -354,10 +351,8 @@ class RepetitionRecord final : public RunObserver {
 int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   const bool flight = is_flight_record(options.record);
   if (flight && !options.with.empty())
-    throw InputError(
-        {.file = "--with",
-         .message = "is for complete records; " + options.record +
-                    " is a flight record: behaviors are not repeated, and its state is that of its files"});
+    refuse("--with", "is for complete records; " + options.record +
+                         " is a flight record: behaviors are not repeated, and its state is that of its files");
   const UnpackedInputs unpacked(inputs, options.record, options.allow_plugins, options.with);
   const ScenarioConfig scenario = unpacked_scenario(inputs, options.record, unpacked);
   RepeatedRun repeated(options.record, scenario, unpacked, inputs.fact("root"),
@@ -387,17 +382,14 @@ int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
   std::error_code none;
   if (fs::equivalent(options.record, options.written, none))
-    throw InputError({.file = "--record", .message = options.written + " is the record that is repeated"});
+    refuse("--record", options.written + " is the record that is repeated");
   if (!options.then_simulate.empty()) return run_then_simulation(options);
   if (inputs.fact("clock") == clock_of_threads) return repeat_run(options, inputs);
   if (!options.with.empty())
-    throw InputError(
-        {.file = "--with",
-         .message = "is for records of kadans run; " + options.record + " was simulated: change its files"});
+    refuse("--with", "is for records of kadans run; " + options.record + " was simulated: change its files");
   if (!options.written.empty())
-    throw InputError({.file = "--record",
-                      .message = "is for records of kadans run; " + options.record +
-                                 " was simulated: kadans sim writes another record of it"});
+    refuse("--record", "is for records of kadans run; " + options.record +
+                           " was simulated: kadans sim writes another record of it");
   std::unique_ptr<UnpackedInputs> unpacked;
   if (options.from_record) unpacked = std::make_unique<UnpackedInputs>(inputs, options.record, options.allow_plugins);
   RunChoices choices = choices_of(inputs.run, options.record);

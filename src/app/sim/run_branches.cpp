@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -31,16 +32,14 @@ std::vector<std::string> names_of(const ParameterTable& parameters) {
 
 RunBranch parse_branch(const std::string& text) {
   const auto refuse_item = [&](const std::string& item) {
-    throw InputError({.file = "--branch",
-                      .message = "'" + item +
-                                 "' must be set NAME=NUMBER, push LINK=X,Y,Z or play LIST, as in "
-                                 "\"hard: push torso=0,3,0; set control.posture.*_scale=0.5\""});
+    refuse("--branch", "'" + item +
+                           "' must be set NAME=NUMBER, push LINK=X,Y,Z or play LIST, as in "
+                           "\"hard: push torso=0,3,0; set control.posture.*_scale=0.5\"");
   };
   const std::size_t colon = text.find(':');
   RunBranch branch{.name = trimmed(text.substr(0, colon)), .set = {}, .play = {}, .push = {}};
   if (branch.name.empty() || branch.name.find_first_of("/ ;") != std::string::npos)
-    throw InputError(
-        {.file = "--branch", .message = "'" + text + "' must begin with a name: \"hard: push torso=0,3,0\""});
+    refuse("--branch", "'" + text + "' must begin with a name: \"hard: push torso=0,3,0\"");
   std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
   while (!rest.empty()) {
     const std::size_t end = rest.find(';');
@@ -79,7 +78,7 @@ BranchActions::BranchActions(const RunBranch& branch, const ScenarioConfig& scen
   for (const std::string& setting : branch.set) read_setting(parse_setting(setting), assembly.catalog().parameters);
   if (settings_.size() >= max_transaction) {
     const std::string most = std::to_string(max_transaction - 1);
-    throw InputError({.file = "--set", .message = "sets more than " + most + " parameters at once"});
+    refuse("--set", "sets more than " + most + " parameters at once");
   }
   if (!branch.play.empty()) play_ = read_play_items(branch.play, "--play", folders_of(scenario));
 }
@@ -90,18 +89,17 @@ void BranchActions::read_setting(const NumberEntry& setting, const ParameterTabl
   const std::string key = scale ? setting.key.substr(0, setting.key.rfind(scale_suffix)) : setting.key;
   const std::vector<std::size_t> chosen = matching(key, names);
   if (!key.starts_with(control_prefix)) {
-    throw InputError({.file = "--set",
-                      .message = in_quotes(setting.key) + " stays as it is: once a run is under way only control.* "
-                                                          "can be set"});
+    refuse("--set", in_quotes(setting.key) +
+                        " stays as it is: once a run is under way only control.* "
+                        "can be set");
   }
-  if (chosen.empty()) throw InputError({.file = "--set", .message = unknown_name("parameter", setting.key, names)});
+  if (chosen.empty()) refuse("--set", unknown_name("parameter", setting.key, names));
   for (const std::size_t index : chosen) {
     const auto id = static_cast<ParameterId>(index);
     if (!scale && !parameters.accepts(id, setting.value)) {
       const Parameter& info = parameters.info(id);
-      throw InputError({.file = "--set",
-                        .message = names[index] + " is " + number_text(setting.value) + ", must be " +
-                                   number_text(info.min) + ".." + number_text(info.max)});
+      refuse("--set", names[index] + " is " + number_text(setting.value) + ", must be " + number_text(info.min) + ".." +
+                          number_text(info.max));
     }
     settings_.push_back({id, setting.value, scale});
   }

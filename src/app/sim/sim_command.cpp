@@ -8,6 +8,7 @@
 #include "app/terminal.h"
 #include "input_files.h"
 #include "repeated_run.h"
+#include "signal/input_file.h"
 #include "sim_run.h"
 
 namespace kadans {
@@ -33,43 +34,36 @@ int go_on(const SimOptions& options) {
   if (options.duration_s) choices.duration_s = options.duration_s;
   const double at_s = static_cast<double>(continuation.from.at.time_ns) / 1e9;
   if (!(*choices.duration_s > at_s))
-    throw InputError(
-        {.file = "--duration", .message = "must be more than the " + number_text(at_s) + " s of the checkpoint"});
+    refuse("--duration", "must be more than the " + number_text(at_s) + " s of the checkpoint");
   SimRun sim(options, choices, std::move(continuation));
   catch_interrupts();
   return sim.run();
 }
 
 void refuse_wrong_mixtures(const SimOptions& options) {
-  const auto refuse_option = [](const char* option, const std::string& why) {
-    throw InputError(InputProblem{.file = option, .message = why});
-  };
   if (options.from.empty() && options.scenario.empty())
     throw InputError({.message = "name a scenario, or a checkpoint with --from"});
   if (!options.from.empty() && !options.scenario.empty())
-    refuse_option("--from", "a checkpoint has its own scenario: name one of the two");
+    refuse("--from", "a checkpoint has its own scenario: name one of the two");
   if (options.from.empty()) {
-    if (!options.branches.empty()) refuse_option("--branch", "parts from a checkpoint: it goes with --from");
-    if (!options.push.empty()) refuse_option("--push", "parts from a checkpoint: it goes with --from");
-    if (options.allow_plugins)
-      refuse_option("--allow-plugins", "is for the plug-ins of a checkpoint: it goes with --from");
+    if (!options.branches.empty()) refuse("--branch", "parts from a checkpoint: it goes with --from");
+    if (!options.push.empty()) refuse("--push", "parts from a checkpoint: it goes with --from");
+    if (options.allow_plugins) refuse("--allow-plugins", "is for the plug-ins of a checkpoint: it goes with --from");
     return;
   }
-  if (options.seed) refuse_option("--seed", "a checkpoint goes on with the seed that it began with");
-  if (!options.checkpoints.empty()) refuse_option("--checkpoint", "does not go with --from");
-  if (options.watch) refuse_option("--watch", "does not go with --from");
-  if (options.live.wanted()) refuse_option("--live", "does not go with --from");
-  if (options.ros2.wanted()) refuse_option("--ros2", "does not go with --from");
+  if (options.seed) refuse("--seed", "a checkpoint goes on with the seed that it began with");
+  if (!options.checkpoints.empty()) refuse("--checkpoint", "does not go with --from");
+  if (options.watch) refuse("--watch", "does not go with --from");
+  if (options.live.wanted()) refuse("--live", "does not go with --from");
+  if (options.ros2.wanted()) refuse("--ros2", "does not go with --from");
   if (!options.branches.empty() && !(options.set.empty() && options.play.empty() && options.push.empty()))
-    refuse_option("--branch", "says itself what to set, play and push");
+    refuse("--branch", "says itself what to set, play and push");
 }
 
 // What a repeated record does not take.
 void refuse_simulation(const SimOptions& options) {
   const auto refuse_option = [&](bool given, const char* option) {
-    if (given)
-      throw InputError(
-          {.file = option, .message = "is for simulations: " + options.scenario + " repeats a record as it was"});
+    if (given) refuse(option, "is for simulations: " + options.scenario + " repeats a record as it was");
   };
   refuse_option(options.seed.has_value(), "--seed");
   refuse_option(!options.play.empty(), "--play");
@@ -89,12 +83,9 @@ void refuse_simulation(const SimOptions& options) {
 void add_sim(CLI::App& app, SimOptions& options) {
   CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
   sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->type_name("FILE");
-  sim->add_option("--seed", options.seed, "Seed of all random numbers (default: the scenario's)")
-      ->type_name("N")
-      ->check(any_seed());
-  sim->add_option("--duration", options.duration_s, "Seconds to simulate (default: the scenario's)")
-      ->type_name("S")
-      ->check(number_within(0.001, scenario_duration_max_s));
+  add_seed(*sim, options.seed, "Seed of all random numbers (default: the scenario's)");
+  add_number(*sim, "--duration", options.duration_s, 0.001, scenario_duration_max_s, "S",
+             "Seconds to simulate (default: the scenario's)");
   sim->add_option("--play", options.play, "Behaviors to play instead of the scenario's: \"squat, wave\"")
       ->type_name("LIST");
   sim->add_option("--set", options.set, "Change a quantity of the robot or its world, such as ground.friction=0.3")
@@ -123,16 +114,14 @@ void add_sim(CLI::App& app, SimOptions& options) {
                   "With --from, once or more: \"NAME: push LINK=X,Y,Z; set NAME=NUMBER; play LIST\"")
       ->type_name("BRANCH")
       ->allow_extra_args(false);
-  sim->add_option("--hash-every", options.hash_every_s, "With --json: print the state hash every S seconds")
-      ->type_name("S")
-      ->check(number_within(0.001, scenario_duration_max_s));
+  add_number(*sim, "--hash-every", options.hash_every_s, 0.001, scenario_duration_max_s, "S",
+             "With --json: print the state hash every S seconds");
   add_report_options(*sim, options.report, "Write a page about the run, NAME-SEED.html, into a folder", "always");
   add_ctl_service(*sim, options.ctl);
   add_live_service(*sim, options.live);
   add_ros2_service(*sim, options.ros2);
-  sim->add_option("--speed", options.speed, "With --live or --ros2: speed as a multiple of the wall clock's")
-      ->type_name("X")
-      ->check(number_within(0.01, 100.0));
+  add_number(*sim, "--speed", options.speed, 0.01, 100.0, "X",
+             "With --live or --ros2: speed as a multiple of the wall clock's");
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");
   sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
 }

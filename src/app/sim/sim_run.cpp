@@ -130,7 +130,6 @@ int SimRun::report(RunResult& result) {
   finish_record(result);
   if (const std::string why = remote_ ? remote_->end_record() : ""; !why.empty())
     tell_lost("the record is not complete: " + why);
-  traces_ = {height_.trace()};
   if (options_.report.wanted()) write_page(result);
   if (checkpoints_) {
     for (const PlannedCheckpoint& planned : checkpoints_->missed())
@@ -284,15 +283,20 @@ std::string SimRun::repeat() const {
   return command;
 }
 
-ReportSubject SimRun::subject(const RunResult& result) const {
+RunReport SimRun::report_of(const RunResult& result) const {
   const std::string name = scenario_.name + (branch_.name.empty() ? "" : " (" + branch_.name + ")");
   return {.result = result,
           .log = log_,
-          .model = assembly_.robot().model,
-          .traces = traces_,
           .title = name + (scenario_.doc.empty() ? "" : ": " + scenario_.doc),
           .record = record_,
-          .repeat = repeat()};
+          .repeat = repeat(),
+          .traces = {height_.trace()},
+          .quantities = assembly_.quantities(),
+          .metrics = metrics_.values(),
+          .evidence = evidence_.around(result.checks),
+          .hashes = trail_ ? trail_->hashes() : std::vector<std::uint64_t>(),
+          .branch = branch_.name,
+          .lost = lost_};
 }
 
 // Writes the report's page. A record that only the page needed is removed.
@@ -304,14 +308,13 @@ void SimRun::write_page(const RunResult& result) {
   }
   const std::string record = record_;
   if (options_.no_record) record_.clear();
-  const ReportSubject about = subject(result);
+  const RunReport about = report_of(result);
   const std::filesystem::path file =
-      write_run_page({.subject = about,
+      write_run_page({.run = about,
                       .scenario = scenario_,
+                      .robot = assembly_.robot().model.name,
                       .name = scenario_.name + (branch_.name.empty() ? "" : "." + branch_.name),
                       .record = record,
-                      .quantities = assembly_.quantities(),
-                      .evidence = evidence_.around(result.checks),
                       .check_signals = seen},
                      options_.report);
   if (options_.no_record) std::filesystem::remove(record);
@@ -319,25 +322,15 @@ void SimRun::write_page(const RunResult& result) {
 }
 
 void SimRun::print(const RunResult& result) const {
+  const RunReport report = report_of(result);
   if (options_.json) {
-    ReportContext context{.log = log_,
-                          .quantities = assembly_.quantities(),
-                          .metrics = metrics_.values(),
-                          .evidence = evidence_.around(result.checks),
-                          .record = record_,
-                          .hashes = {},
-                          .branch = branch_.name,
-                          .lost = lost_};
-    if (trail_) {
-      for (const HashMark& mark : trail_->marks()) context.hashes.push_back(mark.hash);
-    }
-    std::puts(json_report(result, context).c_str());
+    std::puts(json_report(report).c_str());
     return;
   }
   const std::string text =
-      text_report(subject(result), {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
+      text_report(report, {.color = stdout_takes_color(), .unicode = true, .verbose = options_.verbose});
   std::fputs(text.c_str(), stdout);
-  for (const MetricValue& metric : metrics_.values()) std::printf("  %s = %.6g\n", metric.name.c_str(), metric.value);
+  for (const MetricValue& metric : report.metrics) std::printf("  %s = %.6g\n", metric.name.c_str(), metric.value);
 }
 
 }  // namespace kadans

@@ -53,7 +53,7 @@ class SimRun final : public RunObserver {
   std::string record_name() const;
   int report(RunResult& result);
   void print(const RunResult& result) const;
-  ReportSubject subject(const RunResult& result) const;
+  RunReport report_of(const RunResult& result) const;
   void write_page(const RunResult& result);
   std::string repeat() const;
   void reach_branch(const RunMark& mark);
@@ -80,7 +80,6 @@ class SimRun final : public RunObserver {
   std::unique_ptr<Recorder> recorder_;
   std::string record_;
   std::vector<std::string> lost_;
-  std::vector<ReportTrace> traces_;  // for the report
 
   std::optional<SimContinuation> continuation_;
   std::vector<BranchActions> actions_;  // one for each branch

@@ -11,6 +11,7 @@
 #include "app/services.h"
 #include "input_files.h"
 #include "played_behaviors.h"
+#include "signal/input_file.h"
 #include "telemetry/record/recorder.h"
 
 namespace kadans {
@@ -20,8 +21,7 @@ constexpr std::size_t simulation_lines_kept = 1000;
 
 ScenarioConfig simulated_scenario(const std::string& text, const std::filesystem::path& file) {
   ScenarioConfig scenario = read_scenario_config_text(text, file.string());
-  if (!scenario.record.empty())
-    throw InputError({.file = scenario.file, .message = "repeats a record, so it cannot be simulated"});
+  if (!scenario.record.empty()) refuse(scenario.file, "repeats a record, so it cannot be simulated");
   return scenario;
 }
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <set>
@@ -32,35 +31,19 @@
 #include "played_behaviors.h"
 #include "script/check/check_behavior.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
-
-// One run to be made.
-struct PlannedRun {
-  FoundScenario scenario;
-  std::uint64_t seed = 1;
-};
-
-// The runs that failed the last time: a file with a line "seed file" for each; one file for each project.
-class FailedRuns {
- public:
-  explicit FailedRuns(const std::filesystem::path& root);
-
-  void read();
-  // The failed runs of these scenarios.
-  std::vector<PlannedRun> of(const std::vector<FoundScenario>& scenarios) const;
-  // Errors of writing are ignored, because the list is only a convenience.
-  void write(const std::vector<PlannedRun>& failed) const;
-
- private:
-  std::filesystem::path file_;
-  std::vector<std::string> lines_;
-};
-
 namespace {
 
 namespace fs = std::filesystem;
+
+// One run to be made.
+struct PlannedRun {
+  const ScenarioConfig* scenario = nullptr;
+  std::uint64_t seed = 1;
+};
 
 // A robot that is read once for all its scenarios. A robot that cannot be read is left to the processes of its runs;
 // and so is one with plug-ins, whose native code may do anything.
@@ -82,71 +65,49 @@ struct KnownRobot {
   }
 };
 
-std::string place_of(const FoundScenario& scenario) { return fs::absolute(scenario.file).lexically_normal().string(); }
-
-}  // namespace
-
-FailedRuns::FailedRuns(const fs::path& root)
-    : file_(state_file("failed-" + std::to_string(std::hash<std::string>()(fs::absolute(root).string())))) {}
-
-void FailedRuns::read() {
-  std::ifstream stream(file_);
-  for (std::string text; std::getline(stream, text);) lines_.push_back(text);
+// As it stands in the list of the runs that failed the last time.
+std::string line_of(const PlannedRun& run) {
+  return std::to_string(run.seed) + " " + fs::absolute(run.scenario->file).lexically_normal().string();
 }
 
-std::vector<PlannedRun> FailedRuns::of(const std::vector<FoundScenario>& scenarios) const {
+std::vector<PlannedRun> runs_in(const std::vector<std::string>& lines, const std::vector<ScenarioConfig>& scenarios) {
   std::vector<PlannedRun> runs;
-  for (const FoundScenario& scenario : scenarios) {
-    for (const std::string& line : lines_) {
-      const std::size_t blank = std::min(line.find(' '), line.size());
-      const auto seed = number_of<std::uint64_t>(line.substr(0, blank));
-      if (seed && line.substr(std::min(blank + 1, line.size())) == place_of(scenario))
-        runs.push_back({scenario, *seed});
+  for (const ScenarioConfig& scenario : scenarios) {
+    for (const std::string& line : lines) {
+      const PlannedRun run{&scenario, number_of<std::uint64_t>(line.substr(0, line.find(' '))).value_or(0)};
+      if (line == line_of(run)) runs.push_back(run);
     }
   }
   return runs;
 }
 
-void FailedRuns::write(const std::vector<PlannedRun>& failed) const {
-  if (file_.empty()) return;
-  std::string text;
-  for (const PlannedRun& run : failed) text += std::to_string(run.seed) + " " + place_of(run.scenario) + "\n";
-  try {
-    write_durably(file_, text);
-  } catch (const InputError&) {
-  }
-}
-
 // All seeds of all scenarios, or with --rerun-failed the failed ones; --seed and --repeat choose the seeds.
-std::vector<PlannedRun> plan_runs(const TestOptions& options, const std::vector<FoundScenario>& scenarios,
-                                  FailedRuns& failed) {
+std::vector<PlannedRun> plan_runs(const TestOptions& options, const std::vector<ScenarioConfig>& scenarios,
+                                  const fs::path& failed) {
   std::vector<PlannedRun> runs;
-  for (const FoundScenario& scenario : scenarios) {
+  for (const ScenarioConfig& scenario : scenarios) {
     const std::uint64_t first = options.seed.value_or(scenario.seed);
-    for (std::uint32_t i = 0; i < options.repeat.value_or(scenario.repeat); ++i) runs.push_back({scenario, first + i});
+    for (std::uint32_t i = 0; i < options.repeat.value_or(scenario.repeat); ++i) runs.push_back({&scenario, first + i});
   }
   if (!options.rerun_failed) return runs;
-  failed.read();
-  std::vector<PlannedRun> again = failed.of(scenarios);
+  std::vector<PlannedRun> again = runs_in(kept_lines(failed), scenarios);
   if (!options.seed && !options.repeat) return again;
-  const auto chosen = [&](const PlannedRun& run) {
-    return std::ranges::any_of(runs, [&](const PlannedRun& other) {
-      return other.seed == run.seed && other.scenario.file == run.scenario.file;
-    });
-  };
-  std::erase_if(again, [&](const PlannedRun& run) { return !chosen(run); });
+  std::erase_if(again, [&](const PlannedRun& run) {
+    return std::ranges::none_of(
+        runs, [&](const PlannedRun& other) { return other.seed == run.seed && other.scenario == run.scenario; });
+  });
   return again;
 }
 
 // Throws InputError when `behavior check` finds problems in the behaviors that the runs play.
 void refuse_faulty_runs(const std::vector<PlannedRun>& runs) {
   std::map<fs::path, KnownRobot> robots;
-  std::set<fs::path> seen;
+  std::set<const ScenarioConfig*> seen;
   std::vector<InputProblem> problems;
   for (const PlannedRun& run : runs) {
-    if (!seen.insert(run.scenario.file).second) continue;
-    if (!run.scenario.record.empty()) continue;  // it has its own behaviors
-    const ScenarioConfig scenario = read_scenario_config(run.scenario.file);
+    if (!seen.insert(run.scenario).second) continue;
+    const ScenarioConfig& scenario = *run.scenario;
+    if (!scenario.record.empty()) continue;  // it has its own behaviors
     const Catalog* const catalog = robots[scenario.robot].catalog(scenario.robot);
     if (catalog == nullptr) continue;
     for (InputProblem& problem : problems_of_played(scenario, *catalog)) problems.push_back(std::move(problem));
@@ -158,11 +119,11 @@ void refuse_faulty_runs(const std::vector<PlannedRun>& runs) {
 // Prints for each run its name and tags and a line with its doc; or one JSON object.
 void print_plan(const std::vector<PlannedRun>& runs, bool json) {
   for (const PlannedRun& run : runs) {
-    const FoundScenario& scenario = run.scenario;
+    const ScenarioConfig& scenario = *run.scenario;
     if (json) {
       const nlohmann::ordered_json line{{"scenario", scenario.name},
                                         {"seed", run.seed},
-                                        {"file", scenario.file.string()},
+                                        {"file", scenario.file},
                                         {"tags", scenario.tags},
                                         {"doc", scenario.doc}};
       std::puts(json_text(line).c_str());
@@ -175,11 +136,9 @@ void print_plan(const std::vector<PlannedRun>& runs, bool json) {
   }
 }
 
-namespace {
-
 std::string repeat_command(const PlannedRun& run) {
-  if (!run.scenario.record.empty()) return "kadans sim " + shell_word(run.scenario.file.string());
-  return "kadans sim " + shell_word(run.scenario.file.string()) + " --seed " + std::to_string(run.seed);
+  return "kadans sim " + shell_word(run.scenario->file) +
+         (run.scenario->record.empty() ? " --seed " + std::to_string(run.seed) : "");
 }
 
 class Suite final : public JobWatcher {
@@ -191,12 +150,12 @@ class Suite final : public JobWatcher {
         style_{.color = stdout_takes_color(), .unicode = true},
         progress_(runs_.size(), !options.json) {}
 
-  int run(const FailedRuns& failed_runs) {
+  int run(const fs::path& failed_file) {
     std::vector<Job> jobs;
     for (const PlannedRun& run : runs_) {
-      jobs.push_back({{fs::read_symlink("/proc/self/exe").string(), "sim", run.scenario.file.string(), "--json"},
-                      run.scenario.wall_limit_s});
-      const bool simulated = run.scenario.record.empty();
+      jobs.push_back({{fs::read_symlink("/proc/self/exe").string(), "sim", run.scenario->file, "--json"},
+                      run.scenario->wall_limit_s});
+      const bool simulated = run.scenario->record.empty();
       if (simulated) {
         const std::vector<std::string> more{"--no-record", "--seed", std::to_string(run.seed)};
         jobs.back().arguments.insert(jobs.back().arguments.end(), more.begin(), more.end());
@@ -206,7 +165,7 @@ class Suite final : public JobWatcher {
     }
     run_jobs(jobs, options_.jobs, *this);
     progress_.clear();
-    report(failed_runs);
+    report(failed_file);
     if (interrupted()) return exit_interrupted;
     return failed() ? exit_failed : exit_passed;
   }
@@ -215,8 +174,8 @@ class Suite final : public JobWatcher {
     const PlannedRun& planned = runs_[outcome.job];
     RunOutcome run = read_run_outcome(outcome);
     progress_.ended();
-    run.scenario = planned.scenario.name;
-    run.file = planned.scenario.file.string();
+    run.scenario = planned.scenario->name;
+    run.file = planned.scenario->file;
     run.seed = planned.seed;
     run.repeat = repeat_command(planned);
     if (options_.golden) check_golden(run);
@@ -267,15 +226,16 @@ class Suite final : public JobWatcher {
   }
 
   // Reports the runs in the order of the plan, not in the order in which they ended.
-  void report(const FailedRuns& failed_runs) {
+  void report(const fs::path& failed_file) {
     std::ranges::sort(ended_, {}, [](const auto& e) { return e.first; });
     std::vector<RunOutcome> outcomes;
-    std::vector<PlannedRun> failures;
+    std::vector<std::string> failures;
     for (auto& [job, run] : ended_) {
-      if (run.status != RunStatus::passed && run.status != RunStatus::cancelled) failures.push_back(runs_[job]);
+      if (run.status != RunStatus::passed && run.status != RunStatus::cancelled)
+        failures.push_back(line_of(runs_[job]));
       outcomes.push_back(std::move(run));
     }
-    if (!interrupted()) failed_runs.write(failures);
+    if (!interrupted()) keep_lines(failed_file, failures);
     if (!options_.json) std::fputs(suite_summary(outcomes, progress_.elapsed_s(), style_).c_str(), stdout);
     if (options_.renew_golden && !interrupted()) renew_golden(outcomes);
     if (options_.report.wanted()) {
@@ -289,22 +249,17 @@ class Suite final : public JobWatcher {
   const TestOptions& options_;
   std::vector<PlannedRun> runs_;
   GoldenHashes* golden_;  // or nullptr
-  SuiteStyle style_;
+  ReportStyle style_;
   JobProgress progress_;
   bool stop_ = false;
   std::vector<std::pair<std::size_t, RunOutcome>> ended_;
 };
 
-}  // namespace
-
-namespace {
-
 // The configurations of all robots in these scenarios.
-std::vector<fs::path> robots_of(const std::vector<FoundScenario>& scenarios) {
+std::vector<fs::path> robots_of(const std::vector<ScenarioConfig>& scenarios) {
   std::set<fs::path> robots;
-  for (const FoundScenario& found : scenarios) {
-    if (!found.record.empty()) continue;
-    const ScenarioConfig scenario = read_scenario_config(found.file);
+  for (const ScenarioConfig& scenario : scenarios) {
+    if (!scenario.record.empty()) continue;
     robots.insert(scenario.robot);
     for (const ScenarioConfig& other : scenario.robots) robots.insert(other.robot);
   }
@@ -318,13 +273,9 @@ void add_test(CLI::App& app, TestOptions& options) {
   test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
       ->type_name("PATH|TAG|NAME...");
   test->add_option("--in", options.folder, "Folder of scenarios (default: config/scenarios)")->type_name("FOLDER");
-  test->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
-  test->add_option("--repeat", options.repeat, "Runs of each scenario, each with the next seed")
-      ->type_name("N")
-      ->check(whole_within(1, 1'000'000));
-  test->add_option("--seed", options.seed, "First seed (default: each scenario's)")->type_name("N")->check(any_seed());
+  add_jobs(*test, options.jobs);
+  add_whole(*test, "--repeat", options.repeat, 1, 1'000'000, "Runs of each scenario, each with the next seed");
+  add_seed(*test, options.seed, "First seed (default: each scenario's)");
   test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
   test->add_flag("--rerun-failed", options.rerun_failed, "Run only the scenarios that failed the last time");
   test->add_flag("--list", options.list, "List the scenarios, but do not run them");
@@ -342,10 +293,10 @@ void add_test(CLI::App& app, TestOptions& options) {
 int run_test(const TestOptions& options) {
   const fs::path root = project_root(fs::current_path() / "kadans");
   const fs::path folder = options.folder.empty() ? root / "config" / "scenarios" : fs::path(options.folder);
-  const std::vector<FoundScenario> scenarios = find_scenarios(folder, options.selectors);
-  if (scenarios.empty()) throw InputError({.file = folder.string(), .message = "there is no scenario here"});
-  FailedRuns failed_runs(root);
-  std::vector<PlannedRun> runs = plan_runs(options, scenarios, failed_runs);
+  const std::vector<ScenarioConfig> scenarios = find_scenarios(folder, options.selectors);
+  if (scenarios.empty()) refuse(folder, "there is no scenario here");
+  const fs::path failed_file = state_file("failed-" + std::to_string(std::hash<std::string>()(fs::absolute(root))));
+  std::vector<PlannedRun> runs = plan_runs(options, scenarios, failed_file);
   if (runs.empty()) std::fputs("nothing failed the last time\n", options.json ? stderr : stdout);
   if (options.list) print_plan(runs, options.json);
   if (runs.empty() || options.list) return exit_passed;
@@ -357,10 +308,10 @@ int run_test(const TestOptions& options) {
   if (options.report.wanted()) fs::create_directories(options.report.folder);
   const bool whole = options.selectors.empty() && !options.rerun_failed && options.folder.empty();
   const std::vector<fs::path> robots = whole ? robots_of(scenarios) : std::vector<fs::path>();
-  const std::vector<std::string> contents = TestedContents::hashes_of(robots);
-  const int code = Suite(options, std::move(runs), golden.get()).run(failed_runs);
+  const std::vector<std::string> contents = delivery_hashes(robots);
+  const int code = Suite(options, std::move(runs), golden.get()).run(failed_file);
   // Whoever changes a file meanwhile has tested neither the one nor the other.
-  if (code == exit_passed && TestedContents::hashes_of(robots) == contents) TestedContents(root).keep(contents);
+  if (code == exit_passed && delivery_hashes(robots) == contents) keep_passed(root, contents);
   return code;
 }
 

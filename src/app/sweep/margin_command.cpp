@@ -47,16 +47,14 @@ const std::vector<KnownMargin>& known_margins() {
 }
 
 // A quantity, or several that get the same value, in both directions.
-struct Asked {
-  std::string name;
-  std::vector<std::string> patterns;
-  double nominal = 0, step = 0, low = 0, high = 0;
-  std::string unit;
+struct Asked : Margin {
+  double low = -HUGE_VAL, high = HUGE_VAL;
 };
 
 Asked asked_of(const std::string& text, double tick_s) {
   const std::size_t equals = text.find('=');
-  Asked asked{.name = text.substr(0, equals), .patterns = {}, .low = -HUGE_VAL, .high = HUGE_VAL, .unit = {}};
+  Asked asked;
+  asked.name = text.substr(0, equals);
   asked.patterns = {asked.name};
   for (const KnownMargin& known : known_margins()) {
     if (known.name != asked.name) continue;
@@ -68,7 +66,7 @@ Asked asked_of(const std::string& text, double tick_s) {
   if (equals == std::string::npos) return asked;
   const auto step = number_of<double>(std::string_view(text).substr(equals + 1));
   if (!step || !(*step >= 1e-6 && *step <= 1e6))
-    refuse("--quantity", {},
+    refuse("--quantity",
            "'" + text + "': the step behind '=' must be a number from 1e-6 to 1e6, such as ground.friction=0.02");
   asked.step = *step;
   return asked;
@@ -103,7 +101,7 @@ class Nominal {
     if (found == 0) return false;
     if (asked.step == 0) asked.step = std::abs(asked.nominal) / 20;
     if (!(asked.step > 0))
-      refuse("--quantity", {}, asked.name + " is 0: say in which steps it shall grow, such as " + asked.name + "=0.01");
+      refuse("--quantity", asked.name + " is 0: say in which steps it shall grow, such as " + asked.name + "=0.01");
     return true;
   }
   const std::vector<std::string>& names() const { return quantities_.names(); }
@@ -124,10 +122,9 @@ class Nominal {
       asked.unit = range.unit;
     }
     if (asked.nominal != value(index))
-      refuse("--quantity", {},
-             asked.name + " chooses quantities of different values, " + number_text(asked.nominal) + " and " +
-                 number_text(value(index)) + " (" + quantities_.names()[index] +
-                 "): choose one, or their factors (_scale)");
+      refuse("--quantity", asked.name + " chooses quantities of different values, " + number_text(asked.nominal) +
+                               " and " + number_text(value(index)) + " (" + quantities_.names()[index] +
+                               "): choose one, or their factors (_scale)");
     asked.low = std::max(asked.low, range.min);
     asked.high = std::min(asked.high, range.max);
   }
@@ -182,7 +179,7 @@ class MarginRuns {
     std::size_t expected = 0;
     for (CaseRow& row : results.rows()) {
       if (row.index != expected++) return std::nullopt;
-      if (row.status == RunStatus::refused) refuse(row.scenario, {}, "refuses a run; this tells why: " + row.repeat);
+      if (row.status == RunStatus::refused) refuse(row.scenario, "refuses a run; this tells why: " + row.repeat);
       if (row.status != RunStatus::passed) return std::move(row);
     }
     return std::nullopt;
@@ -195,14 +192,8 @@ class MarginRuns {
 };
 
 Margin measured(MarginRuns& runs, const Asked& asked, double end) {
-  Margin margin{.name = asked.name,
-                .patterns = asked.patterns,
-                .unit = asked.unit,
-                .nominal = asked.nominal,
-                .step = asked.step,
-                .end = end,
-                .failed = {},
-                .failure = {}};
+  Margin margin = asked;
+  margin.end = end;
   MarginSearch search(asked.nominal, asked.step, end);
   for (auto value = search.next(); value && !interrupted(); value = search.next()) {
     const std::optional<CaseRow> failure = runs.first_failure(asked.patterns, *value);
@@ -260,20 +251,18 @@ std::vector<ScenarioConfig> scenarios_of(const MarginOptions& options) {
   const bool named = !options.scenarios.empty();
   std::vector<ScenarioConfig> own;
   std::string other;
-  for (const FoundScenario& found : find_scenarios(folder, options.scenarios)) {
-    if (!found.record.empty()) continue;
-    ScenarioConfig scenario = read_scenario_config(found.file);
+  for (ScenarioConfig& scenario : find_scenarios(folder, options.scenarios)) {
+    if (!scenario.record.empty()) continue;
     if (!fs::equivalent(scenario.robot, options.robot)) {
-      other = found.name + " is of " + scenario.robot;
-    } else if (named || std::ranges::find(found.tags, "margin") != found.tags.end()) {
+      other = scenario.name + " is of " + scenario.robot;
+    } else if (named || std::ranges::find(scenario.tags, "margin") != scenario.tags.end()) {
       own.push_back(std::move(scenario));
     }
   }
   if (own.empty())
-    refuse(options.robot, {},
-           named ? "none of the scenarios is of this robot: " + other
-                 : "no scenario of this robot in " + folder.string() +
-                       " has the tag 'margin': name a scenario in which its margins are measured");
+    refuse(options.robot, named ? "none of the scenarios is of this robot: " + other
+                                : "no scenario of this robot in " + folder.string() +
+                                      " has the tag 'margin': name a scenario in which its margins are measured");
   return own;
 }
 
@@ -306,15 +295,9 @@ void add_margin(CLI::App& app, MarginOptions& options) {
                    "or pattern over quantities (default: these six). Can be given several times")
       ->type_name("NAME[=STEP]")
       ->allow_extra_args(false);
-  margin->add_option("--seeds", options.seeds, "Runs with different seeds that must all pass (default: 8)")
-      ->type_name("N")
-      ->check(whole_within(1, 10'000));
-  margin->add_option("--seed", options.seed, "Seed from which theirs come (default: 1)")
-      ->type_name("N")
-      ->check(any_seed());
-  margin->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
+  add_whole(*margin, "--seeds", options.seeds, 1, 10'000, "Runs with different seeds that must all pass (default: 8)");
+  add_seed(*margin, options.seed, "Seed from which theirs come (default: 1)");
+  add_jobs(*margin, options.jobs);
   margin
       ->add_option("--out", options.out,
                    "Folder of the results; runs that have a result there are not run again (default: margins)")

@@ -29,7 +29,7 @@ HeatMapOptions map_of(const MergeOptions& options, const SweepManifest& manifest
                      .y = chosen(options.y, manifest.map_y),
                      .metric = chosen(options.metric, manifest.map_metric)};
   if (map.x.empty() || map.y.empty())
-    refuse("--heat-map", {}, "the plan names no heat_map; name two quantities with --x and --y");
+    refuse("--heat-map", "the plan names no heat_map; name two quantities with --x and --y");
   return map;
 }
 
@@ -130,15 +130,9 @@ std::string check_sweep_plan(const std::string& file, const PluginGate& gate) {
 void add_sweep(CLI::App& app, SweepOptions& options) {
   CLI::App* sweep = app.add_subcommand("sweep", "Run scenarios over a sample of their quantities");
   sweep->add_option("plan", options.plan, "Plan: what is run, and what varies (JSON)")->required()->type_name("PLAN");
-  sweep->add_option("--cases", options.cases, "Number of runs (default: the plan's)")
-      ->type_name("N")
-      ->check(whole_within(1, sweep_cases_max));
-  sweep->add_option("--seed", options.seed, "Seed of the sample (default: the plan's)")
-      ->type_name("N")
-      ->check(any_seed());
-  sweep->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
+  add_whole(*sweep, "--cases", options.cases, 1, sweep_cases_max, "Number of runs (default: the plan's)");
+  add_seed(*sweep, options.seed, "Seed of the sample (default: the plan's)");
+  add_jobs(*sweep, options.jobs);
   sweep
       ->add_option("--shard", options.shard,
                    "Run only this part of the cases, 0/4 to 3/4 (default: that of the Slurm array)")

@@ -40,8 +40,11 @@ std::vector<double> ends_of(const Distribution& distribution) {
   return {distribution.at(0), distribution.at(1)};
 }
 
-void verify_ranges(const ExperimentConfig& plan, const ScenarioConfig& scenario, const Robot& robot,
-                   Problems& problems) {
+// The quantities of the robot, once the plan's ranges are known to lie in theirs. Its control objects are gone again
+// then: of some a program can have only one.
+std::vector<std::string> verified_quantities(const ExperimentConfig& plan, const ScenarioConfig& scenario,
+                                             Problems& problems) {
+  const Robot robot = read_robot(scenario.robot, scenario.plugins);
   const auto system = make_control_system(robot);
   PlantVariant variant = plant_variant(scenario, robot.config);
   Quantities quantities(variant, system->catalog);
@@ -53,27 +56,25 @@ void verify_ranges(const ExperimentConfig& plan, const ScenarioConfig& scenario,
                      problems);
     }
   }
+  return quantities.names();
 }
 
 SweepSubject subject_of(const ExperimentScenario& named, const ExperimentConfig& plan, const PluginGate& gate,
                         Problems& problems) {
   ScenarioConfig scenario = read_scenario_config(named.file);
   scenario.plugins = gate;
-  const Robot robot = read_robot(scenario.robot, scenario.plugins);
-  verify_ranges(plan, scenario, robot, problems);
+  std::vector<std::string> quantities = verified_quantities(plan, scenario, problems);
   RunLog log;
   const Assembly assembly(scenario, plan.seed, log);
   const Checks checks(assembly.catalog().signals, scenario.checks, scenario.file, assembly.signal_states());
   for (const InputProblem& problem : problems_of_played(scenario, assembly.catalog()))
     problems.add(InputError(problem));
   const Metrics metrics(assembly.catalog().signals, plan.metrics, plan.file, assembly.signal_states());
-  const auto system = make_control_system(robot);
-  PlantVariant variant = plant_variant(scenario, robot.config);
   return {.scenario = named,
           .name = scenario.name,
           .wall_limit_s = scenario.wall_limit_s,
           .randomise = scenario.randomise,
-          .quantities = Quantities(variant, system->catalog).names(),
+          .quantities = std::move(quantities),
           .content = content_of(assembly)};
 }
 

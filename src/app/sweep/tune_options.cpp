@@ -9,6 +9,7 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 #include "sweep_subjects.h"
 
 namespace kadans {
@@ -32,24 +33,15 @@ void verify(const TunedAxis& axis, const Parameter& parameter, Problems& problem
 void add_tune(CLI::App& app, TuneOptions& options) {
   CLI::App* tune = app.add_subcommand("tune", "Search for the parameters with the best score in scenarios");
   tune->add_option("plan", options.plan, "Plan: the parameters and the score (JSON)")->required()->type_name("PLAN");
-  tune->add_option("--seed", options.seed, "Seed of the search and of its runs (default: the plan's)")
-      ->type_name("N")
-      ->check(any_seed());
-  tune->add_option("--generations", options.generations, "Number of generations (default: the plan's)")
-      ->type_name("N")
-      ->check(whole_within(1, 10'000));
-  tune->add_option("--runs", options.runs, "Runs of each candidate (default: the plan's)")
-      ->type_name("N")
-      ->check(whole_within(1, 10'000));
-  tune->add_option("-j,--jobs", options.jobs, "Runs at the same time (default: one a core)")
-      ->type_name("N")
-      ->check(whole_within(1, 1024));
+  add_seed(*tune, options.seed, "Seed of the search and of its runs (default: the plan's)");
+  add_whole(*tune, "--generations", options.generations, 1, 10'000, "Number of generations (default: the plan's)");
+  add_whole(*tune, "--runs", options.runs, 1, 10'000, "Runs of each candidate (default: the plan's)");
+  add_jobs(*tune, options.jobs);
   tune->add_option("--shard", options.shard,
                    "Run only this part of each generation; all parts share the folder of results")
       ->type_name("PART/PARTS");
-  tune->add_option("--wait", options.wait_s, "Seconds to wait for the other parts of a generation (default: 600)")
-      ->type_name("S")
-      ->check(number_within(0.0, 1e9));
+  add_number(*tune, "--wait", options.wait_s, 0.0, 1e9, "S",
+             "Seconds to wait for the other parts of a generation (default: 600)");
   tune->add_option("--out", options.out,
                    "Folder of the results; runs that have a result there are not run again (default: in tunings/)")
       ->type_name("FOLDER");
@@ -64,9 +56,8 @@ void add_tune(CLI::App& app, TuneOptions& options) {
 int start_tune_program(char** argv) {
   const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "kadans-tune";
   execv(program.c_str(), argv);
-  throw InputError(InputProblem{.file = program.string(),
-                                .message = std::string("cannot be started (") + std::strerror(errno) +
-                                           "): tuning is a program of its own, built where libpagmo-dev is installed"});
+  refuse(program, std::string("cannot be started (") + std::strerror(errno) +
+                      "): tuning is a program of its own, built where libpagmo-dev is installed");
 }
 
 Robot tuned_robot(const TunePlan& plan, const PluginGate& gate) {

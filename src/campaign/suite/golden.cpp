@@ -8,9 +8,9 @@
 
 #include "config/json/foreign_json.h"
 #include "config/json/json_value.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/machine_name.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -67,11 +67,10 @@ GoldenHashes::GoldenHashes(fs::path file, std::string bullet) : file_(std::move(
     bullet_of_file_ = json.value("bullet", bullet_);
     for (const Json& run : json.at("runs")) runs_.push_back(golden_from(run));
   } catch (const Json::exception& error) {
-    throw InputError({.file = file_.string(), .message = std::string("is no list of golden hashes: ") + error.what()});
+    refuse(file_, std::string("is no list of golden hashes: ") + error.what());
   }
   if (of != machine_name()) {
-    throw InputError({.file = file_.string(),
-                      .message = "holds the hashes of " + of + ", this is " + machine_name() + ": they differ"});
+    refuse(file_, "holds the hashes of " + of + ", this is " + machine_name() + ": they differ");
   }
 }
 

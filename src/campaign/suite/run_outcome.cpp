@@ -33,8 +33,7 @@ EvidenceTrace trace_of(const Json& json) {
                       .signal = json.at("signal"),
                       .unit = json.at("unit"),
                       .from_s = number(json.at("from_s")),
-                      .to_s = number(json.at("to_s")),
-                      .values = {}};
+                      .to_s = number(json.at("to_s"))};
   for (const Json& value : json.at("values")) trace.values.push_back(number(value));
   return trace;
 }
@@ -49,12 +48,8 @@ void read_report(const Json& json, RunOutcome& run) {
   for (const Json& trace : json.value("evidence", Json::array())) run.traces.push_back(trace_of(trace));
   for (const Json& line : json.value("transitions", Json::array())) run.transitions.push_back(line);
   for (const Json& line : json.at("errors")) run.errors.push_back(line);
-  const Json quantities = json.value("quantities", Json::object());
-  for (const auto& [quantity, value] : quantities.items()) {
-    run.quantities.push_back({quantity, number(value)});
-  }
-  const Json metrics = json.value("metrics", Json::object());
-  for (const auto& [metric, value] : metrics.items()) run.metrics.push_back({metric, number(value)});
+  run.quantities = named_numbers(json, "quantities");
+  run.metrics = named_numbers(json, "metrics");
 }
 
 // The last lines of what a process said when it broke down.
@@ -101,6 +96,13 @@ RunOutcome read_run_outcome(const JobOutcome& outcome) {
                          strsignal(outcome.signal) + ")");
   if (run.status != RunStatus::passed && run.status != RunStatus::failed) add_last_words(outcome.err, run);
   return run;
+}
+
+std::vector<QuantityValue> named_numbers(const Json& report, const char* key) {
+  std::vector<QuantityValue> all;
+  const Json members = report.value(key, Json::object());
+  for (const auto& [name, value] : members.items()) all.push_back({name, number(value)});
+  return all;
 }
 
 std::string run_json(const RunOutcome& run) {

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "kadans/campaign/job_pool.h"
-#include "scenario/disturb/quantities.h"
 #include "scenario/judge/metrics.h"
 
 namespace kadans {
@@ -34,6 +35,9 @@ struct RunOutcome {
 
 // `outcome.out` is what `kadans sim --json` prints.
 RunOutcome read_run_outcome(const JobOutcome& outcome);
+
+// The numbers of a report by their names, "quantities" or "metrics"; NaN for one that was not finite.
+std::vector<QuantityValue> named_numbers(const nlohmann::ordered_json& report, const char* key);
 
 // The report that the run printed, and what only the parent process knows of it: {status, file, wall_s, repeat,
 // scenario, seed, ...}, on one line.

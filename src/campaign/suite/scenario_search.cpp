@@ -4,25 +4,12 @@
 #include <iterator>
 
 #include "config/json/json_value.h"
-#include "config/scenario/scenario_config.h"
 #include "kadans/signal/nearest_name.h"
 
 namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
-
-FoundScenario read_scenario(const fs::path& file) {
-  const ScenarioConfig config = read_tested_scenario(file);
-  return {.file = file,
-          .name = config.name,
-          .doc = config.doc,
-          .record = config.record,
-          .tags = config.tags,
-          .seed = config.seed,
-          .repeat = config.repeat,
-          .wall_limit_s = config.wall_limit_s};
-}
 
 bool looks_like_scenario(const fs::path& file) {
   if (file.extension() != ".json") return false;
@@ -33,21 +20,21 @@ bool looks_like_scenario(const fs::path& file) {
           text.find("\"$schema\"") == std::string::npos);
 }
 
-void append_new(std::vector<FoundScenario>& all, FoundScenario found) {
-  const auto same = [&](const FoundScenario& other) { return fs::equivalent(other.file, found.file); };
+void append_new(std::vector<ScenarioConfig>& all, ScenarioConfig found) {
+  const auto same = [&](const ScenarioConfig& other) { return fs::equivalent(other.file, found.file); };
   if (std::ranges::none_of(all, same)) all.push_back(std::move(found));
 }
 
-bool chooses(const std::string& selector, const FoundScenario& scenario) {
+bool chooses(const std::string& selector, const ScenarioConfig& scenario) {
   if (std::ranges::find(scenario.tags, selector) != scenario.tags.end()) return true;
   if (selector.find('*') != std::string::npos) return matches(selector, scenario.name);
   return scenario.name.find(selector) != std::string::npos;
 }
 
-[[noreturn]] void refuse_selector(const std::string& selector, const std::vector<FoundScenario>& known,
+[[noreturn]] void refuse_selector(const std::string& selector, const std::vector<ScenarioConfig>& known,
                                   const fs::path& folder) {
   std::vector<std::string> names;
-  for (const FoundScenario& scenario : known) {
+  for (const ScenarioConfig& scenario : known) {
     names.push_back(scenario.name);
     std::ranges::copy(scenario.tags, std::back_inserter(names));
   }
@@ -55,19 +42,18 @@ bool chooses(const std::string& selector, const FoundScenario& scenario) {
                                did_you_mean(selector, names)});
 }
 
-}  // namespace
-
-std::vector<FoundScenario> scenarios_in(const fs::path& folder) {
+// All in a folder and below it, sorted by path.
+std::vector<ScenarioConfig> scenarios_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_regular_file() && looks_like_scenario(entry.path())) files.push_back(entry.path());
   }
   std::ranges::sort(files);
-  std::vector<FoundScenario> found;
+  std::vector<ScenarioConfig> found;
   std::vector<InputProblem> problems;
   for (const fs::path& file : files) {
     try {
-      found.push_back(read_scenario(file));
+      found.push_back(read_tested_scenario(file));
     } catch (const InputError& error) {
       std::ranges::copy(error.problems(), std::back_inserter(problems));
     }
@@ -76,20 +62,22 @@ std::vector<FoundScenario> scenarios_in(const fs::path& folder) {
   return found;
 }
 
-std::vector<FoundScenario> find_scenarios(const fs::path& folder, const std::vector<std::string>& selectors) {
+}  // namespace
+
+std::vector<ScenarioConfig> find_scenarios(const fs::path& folder, const std::vector<std::string>& selectors) {
   const bool all_paths = std::ranges::all_of(selectors, [](const std::string& s) { return fs::exists(s); });
-  std::vector<FoundScenario> known;
+  std::vector<ScenarioConfig> known;
   if ((selectors.empty() || !all_paths) && fs::is_directory(folder)) known = scenarios_in(folder);
   if (selectors.empty()) return known;
-  std::vector<FoundScenario> chosen;
+  std::vector<ScenarioConfig> chosen;
   for (const std::string& selector : selectors) {
     const std::size_t before = chosen.size();
     if (fs::is_directory(selector)) {
-      for (FoundScenario& scenario : scenarios_in(selector)) append_new(chosen, std::move(scenario));
+      for (ScenarioConfig& scenario : scenarios_in(selector)) append_new(chosen, std::move(scenario));
     } else if (fs::exists(selector)) {
-      append_new(chosen, read_scenario(selector));
+      append_new(chosen, read_tested_scenario(selector));
     } else {
-      for (const FoundScenario& scenario : known) {
+      for (const ScenarioConfig& scenario : known) {
         if (chooses(selector, scenario)) append_new(chosen, scenario);
       }
       const bool chosen_before = std::ranges::any_of(chosen, [&](const auto& s) { return chooses(selector, s); });

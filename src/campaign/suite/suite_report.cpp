@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t transitions_shown = 6;
 
-std::string painted(const SuiteStyle& style, const char* code, const std::string& text) {
+std::string painted(const ReportStyle& style, const char* code, const std::string& text) {
   return style.color ? "\033[" + std::string(code) + "m" + text + "\033[0m" : text;
 }
 
@@ -32,12 +32,12 @@ std::string indented(const std::string& text, const char* by) {
   return lines;
 }
 
-std::string plotted(const EvidenceTrace& trace, const SuiteStyle& style) {
+std::string plotted(const EvidenceTrace& trace, const ReportStyle& style) {
   return curve_text(trace.signal + (trace.unit.empty() ? "" : ", " + trace.unit), trace.values, trace.from_s,
                     trace.to_s, {.rows = 3, .indent = 4, .unicode = style.unicode, .color = style.color});
 }
 
-std::string checks_of(const RunOutcome& run, const SuiteStyle& style) {
+std::string checks_of(const RunOutcome& run, const ReportStyle& style) {
   std::string text;
   for (const CheckResult& check : run.checks) {
     if (check.passed) continue;
@@ -78,7 +78,7 @@ std::string row(const RunOutcome& run, const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::string suite_line(const RunOutcome& run, const SuiteStyle& style) {
+std::string suite_line(const RunOutcome& run, const ReportStyle& style) {
   const bool passed = run.status == RunStatus::passed;
   const std::string mark = passed ? painted(style, "32", style.unicode ? "✓" : "ok")
                                   : painted(style, "31;1", style.unicode ? "✗" : "FAILED");
@@ -87,7 +87,7 @@ std::string suite_line(const RunOutcome& run, const SuiteStyle& style) {
   return text + (passed ? "" : std::string("  ") + name(run.status)) + '\n';
 }
 
-std::string failure_report(const RunOutcome& run, const SuiteStyle& style) {
+std::string failure_report(const RunOutcome& run, const ReportStyle& style) {
   std::string text = "  " + painted(style, "31;1", title(run)) + ": " + name(run.status) + '\n';
   text += checks_of(run, style);
   for (const std::string& error : run.errors) text += indented(error, "    ") + '\n';
@@ -102,7 +102,7 @@ std::string failure_report(const RunOutcome& run, const SuiteStyle& style) {
   return text + "    again: " + run.repeat + '\n';
 }
 
-std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, const SuiteStyle& style) {
+std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, const ReportStyle& style) {
   std::string text;
   std::size_t failed = 0;
   double run_s = 0, simulated_s = 0;

@@ -8,23 +8,19 @@
 #include <vector>
 
 #include "run_outcome.h"
+#include "scenario/report/report.h"
 
 namespace kadans {
 
-struct SuiteStyle {
-  bool color = false;
-  bool unicode = true;
-};
-
 // One line for a run: its result, its name, its times.
-std::string suite_line(const RunOutcome& run, const SuiteStyle& style);
+std::string suite_line(const RunOutcome& run, const ReportStyle& style);
 
 // Why a run did not pass: its checks, small plots of the signals around the moment of failure, the last transitions,
 // the values that were drawn for the run, and the command that repeats it.
-std::string failure_report(const RunOutcome& run, const SuiteStyle& style);
+std::string failure_report(const RunOutcome& run, const ReportStyle& style);
 
 // The table at the end: failures first, then counts and times. `wall_s` is the time of the whole suite.
-std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, const SuiteStyle& style);
+std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, const ReportStyle& style);
 
 // A <testsuites> document with one <testcase> for each run, as CI servers read it.
 std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s);

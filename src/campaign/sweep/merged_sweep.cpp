@@ -9,14 +9,14 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
+#include "signal/input_file.h"
+
 namespace kadans {
 namespace {
 
 void refuse_mixed(const SweepResults& a, const SweepResults& b) {
   const std::string other = difference(a.manifest(), b.manifest());
-  if (!other.empty())
-    throw InputError(
-        {.file = b.folder().string(), .message = "is of another sweep than " + a.folder().string() + ": " + other});
+  if (!other.empty()) refuse(b.folder(), "is of another sweep than " + a.folder().string() + ": " + other);
 }
 
 // A case that two folders hold must have come out the same.
@@ -28,17 +28,20 @@ void add(std::vector<CaseRow>& rows, std::vector<const SweepResults*>& from, Cas
     return;
   }
   if (known == row) return;
-  throw InputError({.file = part.folder().string(),
-                    .message = "case " + std::to_string(row.index) + " came out different from that in " +
-                               from[row.index]->folder().string() + " (state " + row.state_hash + " and " +
-                               known.state_hash + "); again: " + row.repeat});
+  refuse(part.folder(), "case " + std::to_string(row.index) + " came out different from that in " +
+                            from[row.index]->folder().string() + " (state " + row.state_hash + " and " +
+                            known.state_hash + "); again: " + row.repeat);
 }
 
+// In quotes, each quote in it twice: as CSV and SQL have it.
 std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string all = "\"";
   for (const char c : text) all += c == '"' ? std::string("\"\"") : std::string(1, c);
   return all + '"';
+}
+
+std::string csv_field(const std::string& text) {
+  return text.find_first_of(",\"\r\n") == std::string::npos ? text : quoted(text);
 }
 
 void append_number(std::string& line, double value) {
@@ -56,8 +59,7 @@ MergedSweep merge(const std::vector<SweepResults>& parts) {
     refuse_mixed(parts.front(), part);
     for (CaseRow& row : part.rows()) {
       if (row.index >= rows.size())
-        throw InputError({.file = part.folder().string(),
-                          .message = "case " + std::to_string(row.index) + " is none of this sweep"});
+        refuse(part.folder(), "case " + std::to_string(row.index) + " is none of this sweep");
       add(rows, from, std::move(row), part);
     }
   }
@@ -75,11 +77,9 @@ MergedSweep merge(const std::vector<SweepResults>& parts) {
 }
 
 double value_of(const CaseRow& row, const std::string& name) {
-  for (const MetricValue& metric : row.metrics) {
-    if (metric.name == name) return metric.value;
-  }
-  for (const QuantityValue& quantity : row.quantities) {
-    if (quantity.name == name) return quantity.value;
+  for (const auto* values : {&row.metrics, &row.quantities}) {
+    const auto found = std::ranges::find(*values, name, &QuantityValue::name);
+    if (found != values->end()) return found->value;
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
@@ -94,15 +94,15 @@ std::vector<std::string> table_columns(const MergedSweep& sweep) {
 
 std::string csv_table(const MergedSweep& sweep) {
   std::string text;
-  for (const std::string& column : table_columns(sweep)) text += (text.empty() ? "" : ",") + quoted(column);
+  for (const std::string& column : table_columns(sweep)) text += (text.empty() ? "" : ",") + csv_field(column);
   for (const CaseRow& row : sweep.rows) {
-    text += "\r\n" + std::to_string(row.index) + ',' + row.id + ',' + quoted(row.scenario) + ',' +
-            std::to_string(row.seed) + ',' + name(row.status) + ',' + quoted(row.failed);
+    text += "\r\n" + std::to_string(row.index) + ',' + row.id + ',' + csv_field(row.scenario) + ',' +
+            std::to_string(row.seed) + ',' + name(row.status) + ',' + csv_field(row.failed);
     append_number(text, row.simulated_s);
     text += ',' + row.state_hash;
     for (const std::string& quantity : sweep.quantities) append_number(text, value_of(row, quantity));
     for (const std::string& metric : sweep.manifest.metrics) append_number(text, value_of(row, metric));
-    text += ',' + quoted(row.repeat);
+    text += ',' + csv_field(row.repeat);
   }
   return text + "\r\n";
 }
@@ -126,8 +126,7 @@ class Database {
   void run(const std::string& sql) { check(sqlite3_exec(database_, sql.c_str(), nullptr, nullptr, nullptr)); }
   void check(int result) const {
     if (result == SQLITE_OK || result == SQLITE_DONE) return;
-    throw InputError(
-        {.file = file_.string(), .message = std::string("cannot be written: ") + sqlite3_errmsg(database_)});
+    refuse(file_, std::string("cannot be written: ") + sqlite3_errmsg(database_));
   }
   sqlite3* get() const noexcept { return database_; }
 
@@ -171,12 +170,6 @@ class Insertion {
   int column_ = 0;
 };
 
-std::string identifier(const std::string& name) {
-  std::string text = "\"";
-  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return text + '"';
-}
-
 void write_sweep(Database& database, const SweepManifest& manifest) {
   database.run("CREATE TABLE sweep (key TEXT PRIMARY KEY, value) WITHOUT ROWID");
   Insertion insertion(database, "sweep", 2);
@@ -200,7 +193,7 @@ std::string cases_table(const MergedSweep& sweep) {
       "TEXT, "
       "simulated_s REAL, state_hash TEXT";
   for (const auto* names : {&sweep.quantities, &sweep.manifest.metrics}) {
-    for (const std::string& name : *names) sql += ", " + identifier(name) + " REAL";
+    for (const std::string& name : *names) sql += ", " + quoted(name) + " REAL";
   }
   return sql + ", repeat TEXT)";
 }
@@ -228,7 +221,7 @@ void write_cases(Database& database, const MergedSweep& sweep) {
 
 void write_sqlite(const MergedSweep& sweep, const fs::path& file) {
   if (table_columns(sweep).size() > columns_max)
-    throw InputError({.file = file.string(), .message = "the sweep has too many quantities for SQLite; use --csv"});
+    refuse(file, "the sweep has too many quantities for SQLite; use --csv");
   const fs::path temporary = file.string() + "." + std::to_string(getpid()) + ".part";
   std::error_code ignored;
   fs::remove(temporary, ignored);

@@ -108,14 +108,7 @@ std::vector<QuantityValue> quantities_at(const std::vector<SampleAxis>& axes, co
   std::vector<QuantityValue> settings;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const double value = axes[i].distribution.at(point[i]);
-    for (const std::string& name : axes[i].names) {
-      const auto known = std::ranges::find(settings, name, &QuantityValue::name);
-      if (known == settings.end()) {
-        settings.push_back({name, value});
-      } else {
-        known->value = value;
-      }
-    }
+    for (const std::string& name : axes[i].names) put_value(settings, name, value);
   }
   return settings;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -10,6 +9,7 @@
 #include "config/json/json_value.h"
 #include "kadans/signal/content_hash.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -47,24 +47,15 @@ Json to_json(const SweepManifest& manifest) {
 
 SweepManifest read_manifest(const fs::path& folder) {
   const fs::path file = folder / manifest_file;
-  if (!fs::exists(file))
-    throw InputError({.file = folder.string(), .message = "holds no results of a sweep: there is no sweep.json"});
+  if (!fs::exists(file)) refuse(folder, "holds no results of a sweep: there is no sweep.json");
   try {
     const Json json = parse_foreign_json(read_input_file(file), file.string());
     SweepManifest manifest;
     visit_facts(manifest, [&json](const char* key, auto& value) { json.at(key).get_to(value); });
     return manifest;
   } catch (const Json::exception& error) {
-    throw InputError({.file = file.string(), .message = std::string("cannot be read: ") + error.what()});
+    refuse(file, std::string("cannot be read: ") + error.what());
   }
-}
-
-std::vector<std::pair<std::string, double>> numbers(const Json& json, const char* key) {
-  std::vector<std::pair<std::string, double>> all;
-  const Json members = json.value(key, Json::object());
-  for (const auto& [name, value] : members.items())
-    all.emplace_back(name, value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
-  return all;
 }
 
 CaseRow row_from(const Json& json) {
@@ -72,11 +63,10 @@ CaseRow row_from(const Json& json) {
               .id = json.at("id"),
               .scenario = json.at("scenario"),
               .seed = json.at("seed"),
-              .failed = {},
               .state_hash = json.value("state_hash", ""),
               .simulated_s = json.value("duration_s", 0.0),
-              .quantities = {},
-              .metrics = {},
+              .quantities = named_numbers(json, "quantities"),
+              .metrics = named_numbers(json, "metrics"),
               .repeat = json.at("repeat")};
   const std::string status = json.at("status");
   for (const RunStatus one : {RunStatus::passed, RunStatus::failed, RunStatus::refused, RunStatus::timed_out}) {
@@ -94,8 +84,6 @@ CaseRow row_from(const Json& json) {
     }
     row.failed += (row.failed.empty() ? "" : "; ") + check_name;
   }
-  for (const auto& [quantity, value] : numbers(json, "quantities")) row.quantities.push_back({quantity, value});
-  for (const auto& [metric, value] : numbers(json, "metrics")) row.metrics.push_back({metric, value});
   return row;
 }
 
@@ -104,12 +92,10 @@ CaseRow row_from(const Json& json) {
 SweepManifest manifest_of(const SweepPlan& plan, const std::vector<SweepCase>& cases, const std::string& version) {
   SweepManifest manifest{.sweep = plan.name,
                          .doc = plan.doc,
-                         .plan = {},
                          .version = version,
                          .sampling = name(plan.sampling),
                          .seed = plan.seed,
                          .cases = cases.size(),
-                         .metrics = {},
                          .first_try = plan.first_try.name,
                          .time = plan.time.name,
                          .worst = plan.worst.name,
@@ -140,9 +126,7 @@ SweepResults::SweepResults(fs::path folder, const SweepManifest& manifest)
   if (fs::exists(folder_ / manifest_file)) {
     const std::string other = difference(read_manifest(folder_), manifest_);
     if (!other.empty())
-      throw InputError(
-          {.file = folder_.string(),
-           .message = "holds the results of another sweep: " + other + "; name another folder with --out"});
+      refuse(folder_, "holds the results of another sweep: " + other + "; name another folder with --out");
     return;
   }
   write_durably(folder_ / manifest_file, json_text(to_json(manifest_), 2) + "\n");
@@ -151,9 +135,7 @@ SweepResults::SweepResults(fs::path folder, const SweepManifest& manifest)
 SweepResults::SweepResults(fs::path folder) : folder_(std::move(folder)), manifest_(read_manifest(folder_)) {}
 
 fs::path SweepResults::file_of(const SweepCase& one) const {
-  char name[64];
-  std::snprintf(name, sizeof name, "%06zu-%s.json", one.index, one.id.c_str());
-  return folder_ / "cases" / name;
+  return folder_ / "cases" / printed("%06zu-%s.json", one.index, one.id.c_str());
 }
 
 // A run that took too long says something of the machine on that day: it is run again.
@@ -185,13 +167,10 @@ std::vector<CaseRow> SweepResults::rows() const {
     if (file.filename().string().starts_with('.') || file.extension() != ".json") continue;
     try {
       const Json json = parse_foreign_json(read_input_file(file), file.string());
-      if (json.at("plan") != manifest_.plan)
-        throw InputError({.file = file.string(), .message = "is a result of another sweep than sweep.json beside it"});
+      if (json.at("plan") != manifest_.plan) refuse(file, "is a result of another sweep than sweep.json beside it");
       rows.push_back(row_from(json));
     } catch (const Json::exception& error) {
-      throw InputError(
-          {.file = file.string(),
-           .message = std::string("is no result of a case: ") + error.what() + "; remove it and run the sweep again"});
+      refuse(file, std::string("is no result of a case: ") + error.what() + "; remove it and run the sweep again");
     }
   }
   std::ranges::sort(rows, {}, &CaseRow::index);

@@ -16,12 +16,12 @@ namespace kadans {
 // The description of a sweep; it is the same for all its shards.
 struct SweepManifest {
   std::string sweep, doc;  // its name
-  std::string plan;        // hash of its name and of all its cases
+  std::string plan{};      // hash of its name and of all its cases
   std::string version;     // of the program
   std::string sampling;
   std::uint64_t seed = 1;
   std::size_t cases = 0;
-  std::vector<std::string> metrics;
+  std::vector<std::string> metrics{};
   std::string first_try, time, worst;  // metrics, or ""
   std::string map_x, map_y, map_metric;
   double passed_min = 1;
@@ -36,7 +36,7 @@ struct CaseRow {
   std::string scenario;
   std::uint64_t seed = 0;
   RunStatus status = RunStatus::crashed;
-  std::string failed;        // the names of the checks that failed, "; " between them
+  std::string failed{};      // the names of the checks that failed, "; " between them
   std::string first_failed;  // the one of them that failed at the earliest time; "" when none failed
   std::string state_hash;    // "" when the run left none
   double simulated_s = 0;

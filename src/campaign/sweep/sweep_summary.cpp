@@ -12,6 +12,7 @@
 #include "config/json/foreign_json.h"
 #include "config/json/problems.h"
 #include "kadans/campaign/statistics.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "telemetry/plot.h"
 
@@ -189,8 +190,7 @@ Axis axis_of(const MergedSweep& sweep, const std::string& name) {
   for (const CaseRow& row : sweep.rows) {
     if (const double value = value_of(row, name); std::isfinite(value)) values.insert(value);
   }
-  if (values.empty())
-    throw InputError({.file = "--heat-map", .message = unknown_name("quantity", name, sweep.quantities)});
+  if (values.empty()) refuse("--heat-map", unknown_name("quantity", name, sweep.quantities));
   Axis axis{.name = name, .values = {}, .low = *values.begin(), .high = *values.rbegin()};
   if (values.size() <= values_max) axis.values.assign(values.begin(), values.end());
   return axis;
@@ -214,83 +214,70 @@ std::string color(double share) {
   return printed("#%02x%02x%02x", parts[0], parts[1], parts[2]);
 }
 
-class Picture {
- public:
-  Picture(const MergedSweep& sweep, const HeatMapOptions& options)
-      : options_(options),
-        x_(axis_of(sweep, options.x)),
-        y_(axis_of(sweep, options.y)),
-        fields_(x_.size() * y_.size()) {
-    const auto& metrics = sweep.manifest.metrics;
-    if (!options.metric.empty() && std::ranges::find(metrics, options.metric) == metrics.end())
-      throw InputError({.file = "--heat-map", .message = unknown_name("metric", options.metric, metrics)});
-    for (const CaseRow& row : sweep.rows) add(row);
-    if (!options.metric.empty()) find_range();
-    title_ = sweep.manifest.sweep + ": " + (options.metric.empty() ? "share that passed" : "mean of " + options.metric);
-  }
-
-  std::string svg() const {
-    Plot plot{.title = title_, .x = plot_axis(x_), .y = plot_axis(y_)};
-    for (std::size_t row = 0; row < y_.size(); ++row) {
-      for (std::size_t column = 0; column < x_.size(); ++column) plot.fields.push_back(plot_field(column, row));
-    }
-    for (const double share : {1.0, 0.75, 0.5, 0.25, 0.0})
-      plot.key.push_back({color(share), printed("%.3g", low_ + share * (high_ - low_))});
-    return plot_svg(plot, {.width = field_width * static_cast<double>(x_.size()),
-                           .height = field_height * static_cast<double>(y_.size()),
-                           .left = 110,
-                           .top = 48,
-                           .right = 120,
-                           .bottom = 70});
-  }
-
- private:
-  void add(const CaseRow& row) {
-    const double x = value_of(row, x_.name), y = value_of(row, y_.name);
-    const double value =
-        options_.metric.empty() ? (row.status == RunStatus::passed ? 1.0 : 0.0) : value_of(row, options_.metric);
-    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(value)) return;
-    Field& field = fields_[y_.place(y) * x_.size() + x_.place(x)];
+// Row by row.
+std::vector<Field> fields_of(const MergedSweep& sweep, const std::string& metric, const Axis& x, const Axis& y) {
+  std::vector<Field> fields(x.size() * y.size());
+  for (const CaseRow& row : sweep.rows) {
+    const double at_x = value_of(row, x.name), at_y = value_of(row, y.name);
+    const double value = metric.empty() ? (row.status == RunStatus::passed ? 1.0 : 0.0) : value_of(row, metric);
+    if (!std::isfinite(at_x) || !std::isfinite(at_y) || !std::isfinite(value)) continue;
+    Field& field = fields[y.place(at_y) * x.size() + x.place(at_x)];
     field.sum += value;
     ++field.count;
   }
-  void find_range() {
-    low_ = std::numeric_limits<double>::infinity();
-    high_ = -low_;
-    for (const Field& field : fields_) {
-      if (field.count == 0) continue;
-      low_ = std::min(low_, field.mean());
-      high_ = std::max(high_, field.mean());
-    }
-  }
-  static PlotAxis plot_axis(const Axis& axis) {
-    PlotAxis drawn{.name = axis.name, .range = {0, static_cast<double>(axis.size())}};
-    for (std::size_t i = 0; i < axis.size(); ++i) drawn.ticks.push_back({static_cast<double>(i) + 0.5, axis.label(i)});
-    return drawn;
-  }
-  PlotField plot_field(std::size_t column, std::size_t row) const {
-    const Field& field = fields_[row * x_.size() + column];
-    if (field.count == 0) return {.column = column, .row = row, .color = "#eee"};
-    const double share = high_ > low_ ? (field.mean() - low_) / (high_ - low_) : 1;
-    return {.column = column,
-            .row = row,
-            .color = color(share),
-            .ink = share > 0.6 ? "#000" : "#fff",
-            .text = printed("%.3g", field.mean()),
-            .small_text = std::to_string(field.count)};
-  }
+  return fields;
+}
 
-  const HeatMapOptions& options_;
-  Axis x_, y_;
-  std::vector<Field> fields_;
-  double low_ = 0, high_ = 1;
-  std::string title_;
-};
+PlotRange range_of(const std::vector<Field>& fields) {
+  PlotRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Field& field : fields) {
+    if (field.count == 0) continue;
+    range.low = std::min(range.low, field.mean());
+    range.high = std::max(range.high, field.mean());
+  }
+  return range;
+}
+
+PlotAxis plot_axis(const Axis& axis) {
+  PlotAxis drawn{.name = axis.name, .range = {0, static_cast<double>(axis.size())}};
+  for (std::size_t i = 0; i < axis.size(); ++i) drawn.ticks.push_back({static_cast<double>(i) + 0.5, axis.label(i)});
+  return drawn;
+}
+
+PlotField plot_field(const Field& field, const PlotRange& range, std::size_t column, std::size_t row) {
+  if (field.count == 0) return {.column = column, .row = row, .color = "#eee"};
+  const double share = range.high > range.low ? (field.mean() - range.low) / (range.high - range.low) : 1;
+  return {.column = column,
+          .row = row,
+          .color = color(share),
+          .ink = share > 0.6 ? "#000" : "#fff",
+          .text = printed("%.3g", field.mean()),
+          .small_text = std::to_string(field.count)};
+}
 
 }  // namespace
 
 std::string heat_map_svg(const MergedSweep& sweep, const HeatMapOptions& options) {
-  return Picture(sweep, options).svg();
+  const Axis x = axis_of(sweep, options.x), y = axis_of(sweep, options.y);
+  const std::vector<std::string>& metrics = sweep.manifest.metrics;
+  const bool of_metric = !options.metric.empty();
+  if (of_metric && std::ranges::find(metrics, options.metric) == metrics.end())
+    refuse("--heat-map", unknown_name("metric", options.metric, metrics));
+  const std::vector<Field> fields = fields_of(sweep, options.metric, x, y);
+  const PlotRange range = of_metric ? range_of(fields) : PlotRange{0, 1};
+  Plot plot{.title = sweep.manifest.sweep + ": " + (of_metric ? "mean of " + options.metric : "share that passed"),
+            .x = plot_axis(x),
+            .y = plot_axis(y)};
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    plot.fields.push_back(plot_field(fields[i], range, i % x.size(), i / x.size()));
+  for (const double share : {1.0, 0.75, 0.5, 0.25, 0.0})
+    plot.key.push_back({color(share), printed("%.3g", range.low + share * (range.high - range.low))});
+  return plot_svg(plot, {.width = field_width * static_cast<double>(x.size()),
+                         .height = field_height * static_cast<double>(y.size()),
+                         .left = 110,
+                         .top = 48,
+                         .right = 120,
+                         .bottom = 70});
 }
 
 }  // namespace kadans

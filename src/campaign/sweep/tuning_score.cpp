@@ -2,19 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "kadans/signal/content_hash.h"
 
 namespace kadans {
 namespace {
-
-double rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::strtod(text, nullptr);
-}
 
 double u_of(const TunedAxis& axis) {
   const auto [low, high] = axis.parameter.range.of;
@@ -29,7 +21,7 @@ std::vector<double> values_at(const std::vector<TunedAxis>& axes, const std::vec
   std::vector<double> values;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto [low, high] = axes[i].parameter.range.of;
-    values.push_back(std::clamp(rounded(axes[i].parameter.range.at(point[i])), low, high));
+    values.push_back(std::clamp(with_digits(axes[i].parameter.range.at(point[i]), 6), low, high));
   }
   return values;
 }
@@ -110,22 +102,17 @@ std::string effect_text(const TunePlan& plan, const TuningEffect& effect) {
   std::string text;
   const auto line = [&](const char* when, std::size_t passed, const SampleStatistics& s) {
     const Interval share = wilson_interval(passed, effect.runs);
-    char buffer[256];
-    std::snprintf(buffer, sizeof buffer, "  %-7s %s %.4g (%.4g .. %.4g), passed %zu of %zu (%.1f .. %.1f %%)\n", when,
-                  plan.score.name.c_str(), s.mean, s.mean_interval.low, s.mean_interval.high, passed, effect.runs,
-                  100 * share.low, 100 * share.high);
-    text += buffer;
+    text += printed("  %-7s %s %.4g (%.4g .. %.4g), passed %zu of %zu (%.1f .. %.1f %%)\n", when,
+                    plan.score.name.c_str(), s.mean, s.mean_interval.low, s.mean_interval.high, passed, effect.runs,
+                    100 * share.low, 100 * share.high);
   };
   line("before", effect.passed_before, effect.before);
   line("after", effect.passed_after, effect.after);
   const Interval& change = effect.change.mean_interval;
   const bool better = plan.greatest ? change.low > 0 : change.high < 0;
   const bool worse = plan.greatest ? change.high < 0 : change.low > 0;
-  char buffer[256];
-  std::snprintf(buffer, sizeof buffer, "  change  %.4g (%.4g .. %.4g), run by run on fresh seeds: %s\n",
-                effect.change.mean, change.low, change.high,
-                better ? "better" : (worse ? "WORSE" : "no difference that is sure"));
-  return text + buffer;
+  return text + printed("  change  %.4g (%.4g .. %.4g), run by run on fresh seeds: %s\n", effect.change.mean,
+                        change.low, change.high, better ? "better" : (worse ? "WORSE" : "no difference that is sure"));
 }
 
 }  // namespace kadans

@@ -112,7 +112,7 @@ struct ScenarioJoystick {
   std::vector<InputEvent> buttons{};                           // in place of the robot's for the same buttons
 };
 
-// Perception that is simulated (simulated_sight.h). The numbers are quantities, too.
+// Perception that is simulated (simulated_perception.h). The numbers are quantities, too.
 struct SightSettings {
   double rate_Hz = 15;
   double latency_s = 0.1;

@@ -18,58 +18,46 @@
 
 namespace kadans {
 
+enum class SensorKind : std::uint8_t { joint, imu, foot, channel };
+
+// A fault of a scenario with its place in the robot found:
+//
+//   sensor_silent      no new reading
+//   sensor_stuck       new readings with the value that the sensor had when the fault began
+//   sensor_offset      `size` is added
+//   sensor_noise       a random value is added to each reading: half to all of `size`, of either sign
+//   sensor_jump        `size` is added to one reading
+//   sensor_not_finite  NaN
+//   drive_dead         no torque
+//   drive_weak         the effort is multiplied by `size`; no effect in position and velocity mode
+//   drive_stuck        repeats what was written last before the fault
+//   drive_offset       `size` is added to the effort, Nm
+//   drive_late         applies what was written `size` ticks before
+//   drive_tripped      says that it is in fault, with the maker's code `size`; no torque; a reset makes it disabled
+//   drive_disabled     says that it is ready but not enabled; no torque; an order to enable it ends the fault
+//   drive_hot          says that its temperature is `size` C
+//   drive_old          its readings are `size` s old
+//   supply             the supply voltage is `size` V
+//   emergency_button   the emergency stop is pressed
+//   commands_...       lost, late by `size` behavior ticks, not finite
+struct PlannedFault {
+  ScenarioFault::Kind kind = ScenarioFault::Kind::sensor_silent;
+  SensorKind place = SensorKind::joint;
+  // Of the joint, foot or channel; of a drive its place: of coupled drives, drive i stands where joint i does
+  // (transmission.h).
+  std::size_t index = 0;
+  std::int64_t from_ns = 0;
+  std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
+  double size = 0;  // of a joint: rad, its position; IMU: rad/s about x; foot: N on the first sensor; channel: in its
+                    // own unit
+
+  bool is_now(std::int64_t time_ns) const noexcept { return time_ns >= from_ns && time_ns < until_ns; }
+};
+
 // Injects faults into sensors, drives and supply at planned times. It is a world around a robot of another world: it
 // changes what is read from the robot and what is written to it. Everything else passes through.
 //
 // Call add() and clear() on the thread that owns the model. read() and write() neither allocate nor throw.
-enum class SensorFaultKind : std::uint8_t {
-  silent,      // no new reading
-  stuck,       // new readings with the value that the sensor had when the fault began
-  offset,      // `size` is added
-  noise,       // a random value is added to each reading: half to all of `size`, of either sign
-  jump,        // `size` is added to one reading
-  not_finite,  // NaN
-};
-enum class SensorKind : std::uint8_t { joint, imu, foot, channel };
-
-struct SensorFault {
-  SensorFaultKind kind = SensorFaultKind::silent;
-  SensorKind place = SensorKind::joint;
-  std::size_t index = 0;  // of the joint, foot or channel
-  std::int64_t from_ns = 0;
-  std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
-  double size = 0;  // joint: rad, its position; IMU: rad/s about x; foot: N on the first sensor;
-                    // channel: in its own unit
-};
-
-enum class ActuatorFaultKind : std::uint8_t {
-  dead,    // no torque
-  weak,    // the effort is multiplied by `size`; no effect in position and velocity mode
-  stuck,   // repeats what was written last before the fault
-  offset,  // `size` is added to the effort, Nm
-  late,    // applies what was written `size` ticks before
-  // What the drive reports of itself:
-  tripped,   // it is in fault, with the maker's code `size`; no torque; a reset makes it `disabled`
-  disabled,  // it is ready but not enabled; no torque; an order to enable it ends the fault
-  hot,       // its temperature is `size` C
-  old,       // its readings are `size` s old
-};
-
-struct ActuatorFault {
-  ActuatorFaultKind kind = ActuatorFaultKind::dead;
-  std::size_t joint = 0;  // the drive's place; of coupled drives, drive i stands where joint i does (transmission.h)
-  std::int64_t from_ns = 0;
-  std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
-  double size = 0;
-};
-
-struct SupplyFault {
-  bool button = false;  // the emergency stop is pressed; else the supply voltage is `supply_V`
-  double supply_V = 0;
-  std::int64_t from_ns = 0;
-  std::int64_t until_ns = std::numeric_limits<std::int64_t>::max();  // not included
-};
-
 class FaultyPlant final : public OneRobotWorld {
  public:
   // Keeps a reference to `world`. `seed` is that of the run, `robot` the number of the robot that has the faults,
@@ -79,13 +67,11 @@ class FaultyPlant final : public OneRobotWorld {
 
   static constexpr std::size_t late_ticks_max = 255;
 
-  void add(const SensorFault& fault) { faults_.push_back({fault, {}, false}); }
-  void add(const ActuatorFault& fault);
-  void add(const SupplyFault& fault) { supply_faults_.push_back(fault); }
+  void add(const PlannedFault& fault);
   // Removes all faults of sensors, drives and supply.
   void clear() noexcept {
-    faults_.clear();
-    actuator_faults_.clear();
+    sensor_faults_.clear();
+    drive_faults_.clear();
     supply_faults_.clear();
   }
 
@@ -106,25 +92,23 @@ class FaultyPlant final : public OneRobotWorld {
   void hash_held_back(StateHash& hash) const noexcept;
 
  private:
-  struct Planned {
-    SensorFault fault;
+  struct OfSensor {
+    PlannedFault fault;
     SensorFrame first;  // what was read when the fault began
-    bool begun;
+    bool begun = false;
   };
-  struct PlannedActuator {
-    ActuatorFault fault;
+  struct OfDrive {
+    PlannedFault fault;
     JointActuation held;          // what was written last before the fault began
     std::uint8_t order_seen = 0;  // number of the drive's last order
     bool over = false;            // an order to the drive ended the fault
 
-    bool is_now(std::int64_t time_ns) const noexcept {
-      return !over && time_ns >= fault.from_ns && time_ns < fault.until_ns;
-    }
+    bool is_now(std::int64_t time_ns) const noexcept { return !over && fault.is_now(time_ns); }
     void heed(const DriveRequest& request, std::int64_t time_ns) noexcept;
   };
-  void spoil(Planned& planned, SensorFrame& sensors) noexcept;
-  void spoil(PlannedActuator& planned, JointActuation& actuation) const noexcept;
-  static std::size_t late_ticks(const ActuatorFault& fault) noexcept;
+  void spoil(OfSensor& planned, SensorFrame& sensors) noexcept;
+  void spoil(OfDrive& planned, JointActuation& actuation) const noexcept;
+  static std::size_t late_ticks(const PlannedFault& fault) noexcept;
   const ActuationFrame& written_before(std::size_t ticks) const noexcept {
     return written_[(newest_ + written_.size() - ticks) % written_.size()];
   }
@@ -132,9 +116,9 @@ class FaultyPlant final : public OneRobotWorld {
   World& world_;
   WorldRobot& robot_;
   RandomStream random_;
-  std::vector<Planned> faults_;
-  std::vector<PlannedActuator> actuator_faults_;
-  std::vector<SupplyFault> supply_faults_;
+  std::vector<OfSensor> sensor_faults_;
+  std::vector<OfDrive> drive_faults_;
+  std::vector<PlannedFault> supply_faults_;
   std::int64_t time_ns_ = 0;  // of the last read
   DriveRequests asked_{};     // in the last write
   std::vector<Transmission> couplings_;
@@ -146,15 +130,8 @@ class FaultyPlant final : public OneRobotWorld {
 // the behavior engine and the host that runs the behaviors. Behavior thread.
 class FaultyHost final : public BehaviorHost {
  public:
-  enum class Kind : std::uint8_t { lost, late, not_finite };
-  struct Fault {
-    Kind kind = Kind::lost;
-    std::int64_t from_ns = 0, until_ns = 0;  // not included
-    std::size_t ticks = 0;                   // for late: the delay in behavior ticks
-  };
-
   explicit FaultyHost(BehaviorHost& host) : host_(host), queue_(std::make_unique<CommandQueue>()), own_(*queue_) {}
-  void add(const Fault& fault) { faults_.push_back(fault); }
+  void add(const PlannedFault& fault) { faults_.push_back(fault); }
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
 
@@ -170,7 +147,7 @@ class FaultyHost final : public BehaviorHost {
   BehaviorHost& host_;
   std::unique_ptr<CommandQueue> queue_;
   CommandSender own_;
-  std::vector<Fault> faults_;
+  std::vector<PlannedFault> faults_;
   std::deque<Batch> under_way_;
   std::uint64_t tick_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "kadans/model/inertia.h"
+#include "kadans/model/kinematics.h"
 #include "kadans/signal/nearest_name.h"
 #include "kadans/signal/random.h"
 
@@ -14,13 +15,6 @@ namespace {
 constexpr NumberRange scale_range{0, 1000, ""};
 
 // Roll, pitch and yaw are those of the base's axes fixed in the world, applied in this order, as in URDF.
-Quat turned(const Quat& by, const Quat& q) {
-  return {by[0] * q[0] - by[1] * q[1] - by[2] * q[2] - by[3] * q[3],
-          by[0] * q[1] + by[1] * q[0] + by[2] * q[3] - by[3] * q[2],
-          by[0] * q[2] - by[1] * q[3] + by[2] * q[0] + by[3] * q[1],
-          by[0] * q[3] + by[1] * q[2] - by[2] * q[1] + by[3] * q[0]};
-}
-
 Quat about(std::size_t axis, double angle_rad) {
   Quat q{std::cos(angle_rad / 2), 0, 0, 0};
   q[axis + 1] = std::sin(angle_rad / 2);
@@ -48,6 +42,12 @@ std::vector<std::pair<double*, double>> values_in_presets(Catalog& catalog, Para
 }
 
 }  // namespace
+
+void put_value(std::vector<QuantityValue>& values, const std::string& name, double value) {
+  const auto known = std::ranges::find(values, name, &QuantityValue::name);
+  if (known == values.end()) return values.push_back({name, value});
+  known->value = value;
+}
 
 Quantities::Quantities(PlantVariant& variant, Catalog& catalog, bool further_robot) {
   PlantSettings& plant = variant.plant;
@@ -111,7 +111,7 @@ void Quantities::add_start(PlantSettings& plant) {
       turn_rad_[axis] = angle_rad;
       plant.base.orientation = start;
       for (std::size_t i = 0; i < turn_rad_.size(); ++i) {
-        if (turn_rad_[i] != 0) plant.base.orientation = turned(about(i, turn_rad_[i]), plant.base.orientation);
+        if (turn_rad_[i] != 0) plant.base.orientation = multiply(about(i, turn_rad_[i]), plant.base.orientation);
       }
     });
   }
@@ -203,12 +203,7 @@ bool Quantities::apply(std::size_t index, double value, TextPlace place, std::ve
   }
   quantities_[index].set(value);
   quantities_[index].value = value;
-  const auto known = std::ranges::find(done, names_[index], &QuantityValue::name);
-  if (known == done.end()) {
-    done.push_back({names_[index], value});
-  } else {
-    known->value = value;
-  }
+  put_value(done, names_[index], value);
   return true;
 }
 

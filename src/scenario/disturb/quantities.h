@@ -34,6 +34,8 @@ struct QuantityValue {
   std::string name;
   double value = 0;
 };
+// In place of the value that it had, or as the last one.
+void put_value(std::vector<QuantityValue>& values, const std::string& name, double value);
 
 // The robot as this run's plant simulates it.
 struct PlantVariant {

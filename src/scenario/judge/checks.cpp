@@ -180,11 +180,8 @@ bool Check::lost() const noexcept {
 }
 
 CheckResult Check::settled() const {
-  CheckResult result{.name = check_.name,
-                     .value = std::max(0.0, outside_s_ - began_s_),
-                     .at_s = at_s_,
-                     .note = {},
-                     .wanted = wanted_text(check_)};
+  CheckResult result{
+      .name = check_.name, .value = std::max(0.0, outside_s_ - began_s_), .at_s = at_s_, .wanted = wanted_text(check_)};
   if (last_s_ - began_s_ < check_.within_s) {
     result.note = "the run ended before within_s had passed";
   } else {
@@ -194,7 +191,7 @@ CheckResult Check::settled() const {
 }
 
 CheckResult Check::result() const {
-  CheckResult result{.name = check_.name, .value = value_, .at_s = at_s_, .note = {}, .wanted = wanted_text(check_)};
+  CheckResult result{.name = check_.name, .value = value_, .at_s = at_s_, .wanted = wanted_text(check_)};
   if (check_.kind == CheckKind::within || check_.kind == CheckKind::settles) {
     if (!started_) {
       result.note = "its `when` never became true";

@@ -17,7 +17,7 @@ struct CheckResult {
   bool passed = false;
   double value = 0;      // what CheckKind says of the kind
   double at_s = 0;       // time of that value
-  std::string note;      // what `value` cannot express: "its `when` never became true"
+  std::string note{};    // what `value` cannot express: "its `when` never became true"
   std::string wanted{};  // "-0.01 .. 0.01", "never >= 0.6", "at the end joint.knee.position_rad > 0"
 };
 

@@ -132,8 +132,7 @@ std::vector<EvidenceTrace> Evidence::around(const std::vector<CheckResult>& resu
                           .signal = signals_.info(signals[s]).name,
                           .unit = signals_.info(signals[s]).unit,
                           .from_s = static_cast<double>(first) * period_s,
-                          .to_s = static_cast<double>(last) * period_s,
-                          .values = {}};
+                          .to_s = static_cast<double>(last) * period_s};
       for (std::ptrdiff_t r = first; r < last; ++r) {
         trace.values.push_back(double{values_[static_cast<std::size_t>(r) * kept_.size() + column(signals[s])]});
       }

@@ -6,17 +6,15 @@
 
 #include "checks.h"
 #include "config/scenario/scenario_check.h"
+#include "scenario/disturb/quantities.h"
 #include "scenario/run.h"
 #include "script/bindings/signal_expressions.h"
 
 namespace kadans {
 
-// Computes the metrics of a run (scenario_check.h) while it goes.
-struct MetricValue {
-  std::string name;
-  double value = 0;  // NaN: the metric has no value
-};
+using MetricValue = QuantityValue;  // NaN: the metric has no value
 
+// Computes the metrics of a run (scenario_check.h) while it goes.
 class Metrics final : public RunObserver {
  public:
   // Looks the signals up and compiles the expressions. Throws InputError with all mistakes; `file` is the file from
@@ -47,7 +45,7 @@ struct EvidenceTrace {
   std::string check;
   std::string signal, unit;
   double from_s = 0, to_s = 0;
-  std::vector<double> values;  // evenly spaced over that time
+  std::vector<double> values{};  // evenly spaced over that time
 };
 
 class Evidence final : public RunObserver {

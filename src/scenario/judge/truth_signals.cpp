@@ -11,6 +11,11 @@ namespace {
 
 double norm(const Vec3& v) noexcept { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
+double tilt_rad(const Pose& pose) noexcept {
+  const Vec3 up = rotate(pose.orientation, {0, 0, 1});
+  return std::atan2(std::hypot(up[0], up[1]), up[2]);
+}
+
 }  // namespace
 
 TruthSignals::TruthSignals(const TruthSource& plant, Catalog& catalog, const std::vector<Foot>& feet, double settle_s,
@@ -29,12 +34,11 @@ TruthSignals::TruthSignals(const TruthSource& plant, Catalog& catalog, const std
     FootState state;
     state.link = model_.find_link(foot.link).value();
     state.sole_m = foot.sole_m;
+    foot_links_.set(state.link);
     feet_.push_back(std::move(state));
   }
   declare(catalog.signals, feet);
-  std::vector<std::size_t> links;
-  for (const FootState& foot : feet_) links.push_back(foot.link);
-  world_.emplace(catalog.signals, world, links, several);
+  declare_world(catalog.signals, world, several);
 }
 
 void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
@@ -72,6 +76,43 @@ void TruthSignals::declare(SignalTable& table, const std::vector<Foot>& feet) {
     table.add({foot + "slip_m", "m", "Distance that the foot has slid along the ground since it settled."},
               &feet_[i].slip_m);
   }
+}
+
+void TruthSignals::declare_world(SignalTable& table, const WorldSettings& world, bool several) {
+  table.add({"plant.contact.other_links", "", "Links other than feet that press on the ground or an object."},
+            &state_.other_links);
+  if (several) {
+    table.add({"plant.contact.robot_links", "", "Links that press on another robot."}, &state_.robot_links);
+    table.add({"plant.contact.robots_force_N", "N", "Force from other robots."}, &state_.robots_force_N);
+  }
+  table.add({"plant.self_penetration_m", "m", "Largest overlap of two links of the robot."},
+            &state_.self_penetration_m);
+  objects_.resize(world.objects.size());
+  for (std::size_t i = 0; i < objects_.size(); ++i) declare_object(table, world.objects[i], objects_[i]);
+  if (!world.ground_motion.moves()) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string name = "world.ground." + std::string(1, "xyz"[i]) + "_m";
+    unhashed_.push_back(table.add({name, "m", "How far the ground has been driven."}, &state_.ground_m[i]));
+  }
+}
+
+void TruthSignals::declare_object(SignalTable& table, const WorldObject& object, ObjectState& state) {
+  const std::string name = "world." + object.name + ".";
+  table.add({name + "force_N", "N", "Force of the robot on the object."}, &state.force_N);
+  table.add({name + "links", "", "Links of the robot that press on the object."}, &state.links);
+  if (!object.free() && !object.motion.moves()) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string axis(1, "xyz"[i]);
+    std::string velocity = name;
+    velocity += "v" + axis + "_m_s";
+    table.add({name + axis + "_m", "m", "Position of the object."}, &state.position_m[i]);
+    table.add({velocity, "m/s", "Velocity of the object."}, &state.velocity_m_s[i]);
+  }
+  table.add({name + "tilt_rad", "rad", "Angle between the object's z axis and the vertical."}, &state.tilt_rad);
+  if (!std::holds_alternative<WorldBox>(object.shape) || !object.free()) return;
+  const char* const angles[] = {"roll_rad", "pitch_rad", "yaw_rad"};
+  for (std::size_t i = 0; i < 3; ++i)
+    unhashed_.push_back(table.add({name + angles[i], "rad", "How the object is turned."}, &state.angles_rad[i]));
 }
 
 void TruthSignals::watch(Catalog& catalog, const GazeTruth::Eyes& eyes) {
@@ -127,6 +168,26 @@ void TruthSignals::update_feet(double time_s) noexcept {
   }
 }
 
+void TruthSignals::update_world() noexcept {
+  const PlantTruth& truth = plant_.truth();
+  state_.other_links = static_cast<double>((truth.touching_links & ~foot_links_).count());
+  state_.robot_links = static_cast<double>(truth.robot_links.count());
+  state_.robots_force_N = norm(truth.robots_force_N);
+  state_.self_penetration_m = truth.self_penetration_m;
+  state_.ground_m = truth.ground_m;
+  const std::size_t count = std::min<std::size_t>(objects_.size(), truth.object_count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const ObjectTruth& object = truth.objects[i];
+    ObjectState& state = objects_[i];
+    state.force_N = norm(object.force_N);
+    state.links = static_cast<double>(object.links.count());
+    state.position_m = object.pose.position_m;
+    state.velocity_m_s = object.velocity_m_s;
+    state.angles_rad = roll_pitch_yaw(object.pose.orientation);
+    state.tilt_rad = tilt_rad(object.pose);
+  }
+}
+
 // The set-point of the object that drives the joint; joints without one (passive ankles) count as they are.
 double TruthSignals::reference_rad(std::size_t joint, std::span<const double> row) const noexcept {
   const auto writers = static_cast<std::uint32_t>(row[writers_[joint]]);
@@ -153,21 +214,19 @@ double TruthSignals::reference_height_m(std::span<const double> row) noexcept {
 
 void TruthSignals::update(double time_s, std::span<const double> row) noexcept {
   const PlantTruth& truth = plant_.truth();
-  const Vec3 up = rotate(truth.base.orientation, {0, 0, 1});
-  const Vec3& v = truth.base_velocity_m_s;
   state_.x_m = truth.base.position_m[0];
   state_.y_m = truth.base.position_m[1];
   state_.height_m = truth.base.position_m[2];
-  state_.tilt_rad = std::atan2(std::hypot(up[0], up[1]), up[2]);
+  state_.tilt_rad = tilt_rad(truth.base);
   state_.yaw_rad = roll_pitch_yaw(truth.base.orientation)[2];
-  state_.residual_m_s = plant_.truth().residual_m_s;
-  state_.speed_m_s = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  state_.residual_m_s = truth.residual_m_s;
+  state_.speed_m_s = norm(truth.base_velocity_m_s);
   const double dt_s = last_s_ ? time_s - *last_s_ : 0;
   last_s_ = time_s;
   update_limits(dt_s);
   update_jump(dt_s);
   update_feet(time_s);
-  world_->update(truth);
+  update_world();
   for (const auto& gaze : gazes_) gaze->update(row);
   state_.reference_height_m = reference_height_m(row);
   state_.reference_error_m = state_.height_m - state_.reference_height_m;
@@ -203,67 +262,6 @@ void GazeTruth::update(std::span<const double> row) noexcept {
     error_rad_[eye] = std::atan2(std::hypot(seen[1], seen[2]), seen[0]);
   }
   worst_rad_ = std::max(error_rad_[0], error_rad_[1]);
-}
-
-WorldSignals::WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet,
-                           bool several)
-    : objects_(world.objects.size()) {
-  for (const std::size_t link : feet) feet_.set(link);
-  table.add({"plant.contact.other_links", "", "Links other than feet that press on the ground or an object."},
-            &other_links_);
-  if (several) {
-    table.add({"plant.contact.robot_links", "", "Links that press on another robot."}, &robot_links_);
-    table.add({"plant.contact.robots_force_N", "N", "Force from other robots."}, &robots_force_N_);
-  }
-  table.add({"plant.self_penetration_m", "m", "Largest overlap of two links of the robot."}, &self_penetration_m_);
-  for (std::size_t i = 0; i < objects_.size(); ++i) declare(table, world.objects[i], objects_[i]);
-  if (!world.ground_motion.moves()) return;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::string name = "world.ground." + std::string(1, "xyz"[i]) + "_m";
-    unhashed_.push_back(table.add({name, "m", "How far the ground has been driven."}, &ground_m_[i]));
-  }
-}
-
-void WorldSignals::declare(SignalTable& table, const WorldObject& object, State& state) {
-  const std::string name = "world." + object.name + ".";
-  table.add({name + "force_N", "N", "Force of the robot on the object."}, &state.force_N);
-  table.add({name + "links", "", "Links of the robot that press on the object."}, &state.links);
-  if (!object.free() && !object.motion.moves()) return;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::string axis(1, "xyz"[i]);
-    std::string velocity = name;
-    velocity += "v" + axis + "_m_s";
-    table.add({name + axis + "_m", "m", "Position of the object."}, &state.position_m[i]);
-    table.add({velocity, "m/s", "Velocity of the object."}, &state.velocity_m_s[i]);
-  }
-  table.add({name + "tilt_rad", "rad", "Angle between the object's z axis and the vertical."}, &state.tilt_rad);
-  if (std::holds_alternative<WorldBox>(object.shape) && object.free()) declare_turn(table, name, state);
-}
-
-void WorldSignals::declare_turn(SignalTable& table, const std::string& name, State& state) {
-  const char* const angles[] = {"roll_rad", "pitch_rad", "yaw_rad"};
-  for (std::size_t i = 0; i < 3; ++i)
-    unhashed_.push_back(table.add({name + angles[i], "rad", "How the object is turned."}, &state.angles_rad[i]));
-}
-
-void WorldSignals::update(const PlantTruth& truth) noexcept {
-  other_links_ = static_cast<double>((truth.touching_links & ~feet_).count());
-  robot_links_ = static_cast<double>(truth.robot_links.count());
-  robots_force_N_ = norm(truth.robots_force_N);
-  self_penetration_m_ = truth.self_penetration_m;
-  ground_m_ = truth.ground_m;
-  const std::size_t count = std::min<std::size_t>(objects_.size(), truth.object_count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const ObjectTruth& object = truth.objects[i];
-    State& state = objects_[i];
-    const Vec3 up = rotate(object.pose.orientation, {0, 0, 1});
-    state.force_N = norm(object.force_N);
-    state.links = static_cast<double>(object.links.count());
-    state.position_m = object.pose.position_m;
-    state.velocity_m_s = object.velocity_m_s;
-    state.angles_rad = roll_pitch_yaw(object.pose.orientation);
-    state.tilt_rad = std::atan2(std::hypot(up[0], up[1]), up[2]);
-  }
 }
 
 }  // namespace kadans

@@ -15,7 +15,17 @@
 //                               brakes counts as one that drives: nothing is won back
 //   reference.base.height_m     the height of the base if every joint were at its set-point
 //   reference.base.error_m      plant.base.height_m minus reference.base.height_m
-// It also declares the signals of WorldSignals, and those of GazeTruth for eyes that are watched.
+//   plant.contact.other_links      links of the robot, other than feet, that press on the ground, an object or a robot
+//   plant.contact.robot_links      in a world of several robots: links that press on another robot
+//   plant.contact.robots_force_N   likewise: size of the force from other robots
+//   plant.self_penetration_m       largest overlap of two links of the robot
+//   world.<name>.force_N, links    force of the robot on the object, and number of its links that press
+//   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    position, velocity and tilt of an object that can
+//   move
+//   world.<name>.roll_rad, pitch_rad, yaw_rad    how a free box is turned
+//   world.ground.x_m, y_m, z_m     how far a ground that is driven has gone
+// The last two follow from what a run's state hash covers already, and are left out of it. It also declares the signals
+// of GazeTruth for eyes that are watched.
 #pragma once
 
 #include <array>
@@ -62,42 +72,6 @@ class GazeTruth {
   double worst_rad_ = 0;
 };
 
-// Contacts and the positions of the world's objects, as signals:
-//
-//   plant.contact.other_links      links of the robot, other than feet, that press on the ground, an object or a robot
-//   plant.contact.robot_links      in a world of several robots: links that press on another robot
-//   plant.contact.robots_force_N   likewise: size of the force from other robots
-//   plant.self_penetration_m       largest overlap of two links of the robot
-//   world.<name>.force_N, links    force of the robot on the object, and number of its links that press
-//   world.<name>.x_m, y_m, z_m, vx_m_s, vy_m_s, vz_m_s, tilt_rad    position, velocity and tilt of an object that can
-//   move
-//   world.<name>.roll_rad, pitch_rad, yaw_rad    how a free box is turned
-//   world.ground.x_m, y_m, z_m     how far a ground that is driven has gone
-// The last two follow from what a run's state hash covers already, and are left out of it.
-class WorldSignals {
- public:
-  // Declares the signals. `feet` are the indices of the foot links. `several`: there is more than one robot.
-  WorldSignals(SignalTable& table, const WorldSettings& world, std::span<const std::size_t> feet, bool several);
-
-  void update(const PlantTruth& truth) noexcept;
-  std::span<const SignalId> unhashed() const noexcept { return unhashed_; }  // ascending
-
- private:
-  struct State {
-    double force_N = 0, links = 0;
-    Vec3 position_m{}, velocity_m_s{}, angles_rad{};
-    double tilt_rad = 0;
-  };
-  void declare(SignalTable& table, const WorldObject& object, State& state);
-  void declare_turn(SignalTable& table, const std::string& name, State& state);
-
-  LinkSet feet_;
-  double other_links_ = 0, robot_links_ = 0, robots_force_N_ = 0, self_penetration_m_ = 0;
-  Vec3 ground_m_{};
-  std::vector<State> objects_;
-  std::vector<SignalId> unhashed_;
-};
-
 class TruthSignals {
  public:
   // The constructor declares the signals in the catalog and keeps references to plant, model and catalog. `feet` are
@@ -116,7 +90,7 @@ class TruthSignals {
   // Call after each step of the plant. `row` holds the signals of the last control tick; the set-points are read from
   // it.
   void update(double time_s, std::span<const double> row) noexcept;
-  std::span<const SignalId> unhashed() const noexcept { return world_->unhashed(); }  // in the state hash of a run
+  std::span<const SignalId> unhashed() const noexcept { return unhashed_; }  // not in a run's state hash; ascending
 
  private:
   struct State {
@@ -124,6 +98,8 @@ class TruthSignals {
     double position_rad = 0, motor_torque_share = 0, torque_share = 0, speed_share = 0, overspeed_s = 0;
     double residual_m_s = 0, work_J = 0;
     double reference_height_m = 0, reference_error_m = 0;
+    double other_links = 0, robot_links = 0, robots_force_N = 0, self_penetration_m = 0;
+    Vec3 ground_m{};
   };
   struct FootState {
     std::size_t link = 0;
@@ -132,7 +108,15 @@ class TruthSignals {
     Vec3 settled_at_m{};
     double force_N = 0, slip_m = 0;
   };
+  struct ObjectState {
+    double force_N = 0, links = 0;
+    Vec3 position_m{}, velocity_m_s{}, angles_rad{};
+    double tilt_rad = 0;
+  };
   void declare(SignalTable& table, const std::vector<Foot>& feet);
+  void declare_world(SignalTable& table, const WorldSettings& world, bool several);
+  void declare_object(SignalTable& table, const WorldObject& object, ObjectState& state);
+  void update_world() noexcept;
   void update_limits(double dt_s) noexcept;
   void update_jump(double dt_s) noexcept;
   void update_feet(double time_s) noexcept;
@@ -149,7 +133,9 @@ class TruthSignals {
   Vec3 last_m_{};
   double last_m_s_ = 0;
   std::vector<FootState> feet_;
-  std::optional<WorldSignals> world_;
+  LinkSet foot_links_;
+  std::vector<ObjectState> objects_;
+  std::vector<SignalId> unhashed_;
   std::vector<std::unique_ptr<GazeTruth>> gazes_;
   struct Reference {  // a control object's set-point of a joint
     std::uint32_t object;

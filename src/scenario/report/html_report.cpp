@@ -89,7 +89,7 @@ std::string spark_line(const EvidenceTrace& trace) {
 
 class HtmlRun {
  public:
-  explicit HtmlRun(const HtmlReport& report) : report_(report), run_(report.subject.result) {}
+  explicit HtmlRun(const HtmlReport& report) : report_(report), run_(report.run.result) {}
 
   std::string write() {
     head();
@@ -133,13 +133,13 @@ class HtmlRun {
   }
 
   void words() {
-    const std::vector<LogLine>& lines = report_.subject.log.lines();
+    const std::vector<LogLine>& lines = report_.run.log.lines();
     const auto errors =
         static_cast<std::size_t>(std::ranges::count(lines, BehaviorLog::Severity::error, &LogLine::severity));
     add("<p>" + html_text(report_.robot) + " ran " + html_text(report_.scenario) +
         printed(" with seed %llu for %.4g simulated seconds", static_cast<unsigned long long>(run_.seed),
                 run_.duration_s) +
-        ": " + counted(report_.subject.log.transitions().size(), "transition") + ", " +
+        ": " + counted(report_.run.log.transitions().size(), "transition") + ", " +
         counted(run_.faults.size(), "fault") + ", " + counted(errors, "error") + " of behaviors. " +
         (failed() > 0
              ? printed("%zu of %zu checks did not hold.", failed(), run_.checks.size())
@@ -160,11 +160,11 @@ class HtmlRun {
                              static_cast<unsigned long long>(run_.commands_refused)));
     fact("state", hash_text(run_.state_hash));
     fact("program", report_.program);
-    if (!report_.subject.record.empty()) fact("record", report_.subject.record);
+    if (!report_.run.record.empty()) fact("record", report_.run.record);
     add("</dl>\n");
-    if (report_.quantities.empty()) return;
+    if (report_.run.quantities.empty()) return;
     std::string drawn;
-    for (const QuantityValue& quantity : report_.quantities)
+    for (const QuantityValue& quantity : report_.run.quantities)
       drawn += (drawn.empty() ? "" : ", ") + quantity.name + printed(" = %.6g", quantity.value);
     add("<p class=\"dim\">Set or drawn for this run: " + html_text(drawn) + "</p>\n");
   }
@@ -176,7 +176,7 @@ class HtmlRun {
       if (check.passed) continue;
       add("<div class=\"failed\"><strong>" + html_text(check.name) +
           "</strong>: " + printed("%.5g at %.3f s", check.value, check.at_s) + html_text(wanted_clause(check)));
-      for (const EvidenceTrace& trace : report_.evidence) {
+      for (const EvidenceTrace& trace : report_.run.evidence) {
         if (trace.check == check.name) add("<figure>" + spark_line(trace) + "</figure>");
       }
       add("</div>\n");
@@ -223,8 +223,8 @@ class HtmlRun {
 
   void transitions() {
     title("Transitions");
-    const std::vector<Transition>& all = report_.subject.log.transitions();
-    for (const auto& [behavior, active] : report_.subject.log.active().by_behavior())
+    const std::vector<Transition>& all = report_.run.log.transitions();
+    for (const auto& [behavior, active] : report_.run.log.active().by_behavior())
       add("<p>At the end " + html_text(behavior) + " was in " + html_text(listed(active)) + ".</p>\n");
     if (all.empty()) return add("<p class=\"dim\">None.</p>\n");
     table({"time", "behavior", "from", "to", "why"}, 1);
@@ -247,7 +247,7 @@ class HtmlRun {
 
   void log() {
     title("Log");
-    const std::vector<LogLine>& lines = report_.subject.log.lines();
+    const std::vector<LogLine>& lines = report_.run.log.lines();
     if (lines.empty()) return add("<p class=\"dim\">The behaviors said nothing.</p>\n");
     table({"time", "", "who", "what"}, 1);
     for (const LogLine& line : lines) {
@@ -265,9 +265,9 @@ class HtmlRun {
 
   void again() {
     title("Once more");
-    add("<pre>" + html_text(report_.subject.repeat) + "</pre>\n");
-    if (!report_.subject.record.empty())
-      add("<p class=\"dim\">To look at it: <code>kadans view " + html_text(report_.subject.record) + "</code></p>\n");
+    add("<pre>" + html_text(report_.run.repeat) + "</pre>\n");
+    if (!report_.run.record.empty())
+      add("<p class=\"dim\">To look at it: <code>kadans view " + html_text(report_.run.record) + "</code></p>\n");
   }
 
   const HtmlReport& report_;

@@ -23,15 +23,13 @@ struct ReportPicture {
 };
 
 struct HtmlReport {
-  const ReportSubject& subject;
+  const RunReport& run;
   std::string scenario, doc, robot, program;  // program: "kadans 0.2.0"
-  std::vector<QuantityValue> quantities;      // quantities that were set or drawn for this run
-  std::vector<EvidenceTrace> evidence;        // of the checks that failed
-  std::string plot;                           // an SVG; "" when there is none ...
-  std::string no_plot;                        // ... and then the reason
-  std::string plot_style;                     // CSS with the plot's colors on a dark page
-  std::vector<ReportPicture> film;
-  std::string no_film;  // the reason why there is no film
+  std::string plot{};                         // an SVG; "" when there is none ...
+  std::string no_plot{};                      // ... and then the reason
+  std::string plot_style{};                   // CSS with the plot's colors on a dark page
+  std::vector<ReportPicture> film{};
+  std::string no_film{};  // the reason why there is no film
 };
 
 std::string html_report(const HtmlReport& report);

@@ -16,11 +16,11 @@ namespace {
 
 class TextReport {
  public:
-  TextReport(const ReportSubject& subject, const ReportStyle& style) : subject_(subject), style_(style) {}
+  TextReport(const RunReport& report, const ReportStyle& style) : report_(report), style_(style) {}
 
   std::string write() {
     timeline();
-    for (const ReportTrace& trace : subject_.traces) plot(trace);
+    for (const ReportTrace& trace : report_.traces) plot(trace);
     checks();
     troubles();
     figures();
@@ -40,12 +40,12 @@ class TextReport {
   void timeline() {
     const char* arrow = style_.unicode ? "→" : "->";
     std::vector<std::pair<std::int64_t, std::string>> said;
-    for (const Transition& t : subject_.log.transitions()) {
+    for (const Transition& t : report_.log.transitions()) {
       const std::string way = (t.from.empty() ? "" : t.from + " ") + arrow + " " + t.to;
       said.emplace_back(
           t.time_ns, shown_text(t.behavior + ": " + way) + (t.why.empty() ? "" : dim("  (" + shown_text(t.why) + ")")));
     }
-    for (const LogLine& line : subject_.log.lines()) {
+    for (const LogLine& line : report_.log.lines()) {
       if (line.severity == BehaviorLog::Severity::error || !style_.verbose) continue;
       const char* mark = line.severity == BehaviorLog::Severity::warning ? "warning: " : "";
       said.emplace_back(line.time_ns, shown_text(line.behavior + ": " + mark + line.text));
@@ -53,7 +53,7 @@ class TextReport {
     std::ranges::stable_sort(said, {}, &std::pair<std::int64_t, std::string>::first);
     for (const auto& [time_ns, text] : said)
       text_ += dim(printed("  %7.2f s  ", 1e-9 * static_cast<double>(time_ns))) + text + '\n';
-    for (const auto& [behavior, active] : subject_.log.active().by_behavior())
+    for (const auto& [behavior, active] : report_.log.active().by_behavior())
       text_ += dim("  at the end  ") + shown_text(behavior + " in " + listed(active)) + '\n';
     if (!text_.empty()) text_ += '\n';
   }
@@ -66,8 +66,8 @@ class TextReport {
 
   void checks() {
     std::size_t widest = 0;
-    for (const CheckResult& check : subject_.result.checks) widest = std::max(widest, check.name.size());
-    for (const CheckResult& check : subject_.result.checks) {
+    for (const CheckResult& check : report_.result.checks) widest = std::max(widest, check.name.size());
+    for (const CheckResult& check : report_.result.checks) {
       const std::string mark = check.passed ? green(style_.unicode ? "✓" : "ok") : red(style_.unicode ? "✗" : "FAILED");
       text_ += "  " + mark + " " + check.name + std::string(widest - check.name.size(), ' ');
       text_ += printed("  %11.5g at %6.2f s", check.value, check.at_s) + dim("   wanted " + demand(check) + '\n');
@@ -81,8 +81,8 @@ class TextReport {
   }
 
   void troubles() {
-    const RunResult& result = subject_.result;
-    for (const LogLine& line : subject_.log.lines()) {
+    const RunResult& result = report_.result;
+    for (const LogLine& line : report_.log.lines()) {
       if (line.severity == BehaviorLog::Severity::error)
         text_ += "\n" + red("  error: ") + shown_text(line.text) + '\n';
     }
@@ -104,7 +104,7 @@ class TextReport {
   }
 
   void figures() {
-    const RunResult& r = subject_.result;
+    const RunResult& r = report_.result;
     text_ +=
         printed("\n  %.2f s simulated in %.2f s: %.1f times real time\n", r.duration_s, r.wall_s, r.realtime_factor);
     text_ += printed("  %llu control ticks (median %.2f us, p99 %.2f us), %llu behavior ticks\n",
@@ -113,12 +113,12 @@ class TextReport {
     text_ +=
         printed("  %llu commands sent, %llu refused; state %016llx\n", static_cast<unsigned long long>(r.commands_sent),
                 static_cast<unsigned long long>(r.commands_refused), static_cast<unsigned long long>(r.state_hash));
-    if (!subject_.record.empty()) text_ += "  record: " + subject_.record + '\n';
-    text_ += dim("  again:  " + subject_.repeat) + "\n\n";
+    if (!report_.record.empty()) text_ += "  record: " + report_.record + '\n';
+    text_ += dim("  again:  " + report_.repeat) + "\n\n";
   }
 
   void verdict() {
-    const RunResult& r = subject_.result;
+    const RunResult& r = report_.result;
     const auto failed = std::count_if(r.checks.begin(), r.checks.end(), [](const CheckResult& c) { return !c.passed; });
     if (r.interrupted) {
       text_ += red("INTERRUPTED") + printed(" after %.2f s\n", r.duration_s);
@@ -129,16 +129,14 @@ class TextReport {
     }
   }
 
-  const ReportSubject& subject_;
+  const RunReport& report_;
   const ReportStyle& style_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string text_report(const ReportSubject& subject, const ReportStyle& style) {
-  return TextReport(subject, style).write();
-}
+std::string text_report(const RunReport& report, const ReportStyle& style) { return TextReport(report, style).write(); }
 
 namespace {
 
@@ -164,7 +162,8 @@ Json evidence_json(const std::vector<EvidenceTrace>& traces) {
 
 }  // namespace
 
-std::string json_report(const RunResult& result, const ReportContext& context) {
+std::string json_report(const RunReport& report) {
+  const RunResult& result = report.result;
   Json json{{"scenario", result.scenario}, {"seed", result.seed}, {"passed", result.passed}};
   json["checks"] = Json::array();
   for (const CheckResult& check : result.checks) {
@@ -189,26 +188,26 @@ std::string json_report(const RunResult& result, const ReportContext& context) {
   for (const RunFault& fault : result.faults) json["faults"].push_back(fault_json(fault, fault.told));
   json["errors"] = Json::array();
   if (!result.error.empty()) json["errors"].push_back(result.error);
-  for (const LogLine& line : context.log.lines()) {
+  for (const LogLine& line : report.log.lines()) {
     if (line.severity == BehaviorLog::Severity::error) json["errors"].push_back(line.text);
   }
-  for (const std::string& what : context.lost) json["errors"].push_back(what);
+  for (const std::string& what : report.lost) json["errors"].push_back(what);
   json["active"] = Json::object();
-  for (const auto& [behavior, active] : context.log.active().by_behavior()) json["active"][behavior] = active;
-  json["record"] = context.record;
+  for (const auto& [behavior, active] : report.log.active().by_behavior()) json["active"][behavior] = active;
+  json["record"] = report.record;
   json["quantities"] = Json::object();
-  for (const QuantityValue& quantity : context.quantities) json["quantities"][quantity.name] = quantity.value;
-  if (!context.metrics.empty()) json["metrics"] = Json::object();
-  for (const MetricValue& metric : context.metrics) json["metrics"][metric.name] = metric.value;
-  if (!context.branch.empty()) json["branch"] = context.branch;
-  for (const std::uint64_t hash : context.hashes) json["hashes"].push_back(hash_text(hash));
+  for (const QuantityValue& quantity : report.quantities) json["quantities"][quantity.name] = quantity.value;
+  if (!report.metrics.empty()) json["metrics"] = Json::object();
+  for (const MetricValue& metric : report.metrics) json["metrics"][metric.name] = metric.value;
+  if (!report.branch.empty()) json["branch"] = report.branch;
+  for (const std::uint64_t hash : report.hashes) json["hashes"].push_back(hash_text(hash));
   if (!result.passed) {
     constexpr std::ptrdiff_t last = 20;
-    const std::vector<Transition>& all = context.log.transitions();
+    const std::vector<Transition>& all = report.log.transitions();
     json["transitions"] = Json::array();
     const auto from = all.end() - std::min(last, static_cast<std::ptrdiff_t>(all.size()));
     for (auto it = from; it != all.end(); ++it) json["transitions"].push_back(transition_line(*it));
-    json["evidence"] = evidence_json(context.evidence);
+    json["evidence"] = evidence_json(report.evidence);
   }
   return json_text(json);
 }

@@ -4,37 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "kadans/model/robot_model.h"
 #include "scenario/disturb/quantities.h"
 #include "scenario/judge/metrics.h"
 #include "scenario/run.h"
 
 namespace kadans {
-
-// What a report needs beside the result of the run.
-struct ReportContext {
-  const RunLog& log;
-  std::vector<QuantityValue> quantities;  // quantities that were set or drawn
-  std::vector<MetricValue> metrics{};
-  std::vector<EvidenceTrace> evidence;  // of the checks that failed
-  std::string record;                   // file, or ""
-  std::vector<std::uint64_t> hashes{};  // state hashes at the times that the command line asked for
-  std::string branch{};                 // name, or ""
-  std::vector<std::string> lost{};      // output files that could not be written, or not completely
-};
-
-// {scenario, seed, passed, checks [{name, passed, value, at_s, wanted, note}], duration_s, realtime_factor,
-// control_ticks, behavior_ticks, state_hash, tick_ns {median, p99, max}, queue {sent, refused}, faults [], errors [],
-// active {behavior: [states]}, record, quantities {}, metrics {}, hashes [], branch, transitions [], evidence [{check,
-// signal, unit, from_s, to_s, values}]}, on one line. Hashes and branch stand there only when there are any,
-// transitions and evidence only when the run did not pass. Numbers that are not finite become null.
-std::string json_report(const RunResult& result, const ReportContext& context);
-
-struct ReportStyle {
-  bool color = false;
-  bool unicode = true;
-  bool verbose = false;  // with all log lines
-};
 
 // A signal drawn in the report.
 struct ReportTrace {
@@ -43,16 +17,35 @@ struct ReportTrace {
   double duration_s = 0;
 };
 
-struct ReportSubject {
+// What is told of a run.
+struct RunReport {
   const RunResult& result;
   const RunLog& log;
-  const RobotModel& model;
-  const std::vector<ReportTrace>& traces;
-  std::string title;   // one sentence on the scenario
-  std::string record;  // file, or ""
-  std::string repeat;  // the command that repeats the run
+  std::string title{};   // one sentence on the scenario
+  std::string record;    // file, or ""
+  std::string repeat{};  // the command that repeats the run
+  std::vector<ReportTrace> traces{};
+  std::vector<QuantityValue> quantities{};  // quantities that were set or drawn
+  std::vector<MetricValue> metrics{};
+  std::vector<EvidenceTrace> evidence{};  // of the checks that failed
+  std::vector<std::uint64_t> hashes{};    // state hashes at the times that the command line asked for
+  std::string branch{};                   // name, or ""
+  std::vector<std::string> lost{};        // output files that could not be written, or not completely
 };
 
-std::string text_report(const ReportSubject& subject, const ReportStyle& style);
+// {scenario, seed, passed, checks [{name, passed, value, at_s, wanted, note}], duration_s, realtime_factor,
+// control_ticks, behavior_ticks, state_hash, tick_ns {median, p99, max}, queue {sent, refused}, faults [], errors [],
+// active {behavior: [states]}, record, quantities {}, metrics {}, hashes [], branch, transitions [], evidence [{check,
+// signal, unit, from_s, to_s, values}]}, on one line. Hashes and branch stand there only when there are any,
+// transitions and evidence only when the run did not pass. Numbers that are not finite become null.
+std::string json_report(const RunReport& report);
+
+struct ReportStyle {
+  bool color = false;
+  bool unicode = true;
+  bool verbose = false;  // with all log lines
+};
+
+std::string text_report(const RunReport& report, const ReportStyle& style);
 
 }  // namespace kadans

@@ -17,12 +17,12 @@ namespace {
 
 constexpr double control_period_s = 1e-3;
 
-void spoil(LightRobot& robot, ActuatorFaultKind kind, double size = 0) {
-  robot.faulty.add(ActuatorFault{.kind = kind, .joint = 0, .from_ns = robot.time_ns + 1, .size = size});
+void spoil(LightRobot& robot, ScenarioFault::Kind kind, double size = 0) {
+  robot.faulty.add({.kind = kind, .from_ns = robot.time_ns + 1, .size = size});
 }
 
 void supply(LightRobot& robot, double supply_V) {
-  robot.faulty.add(SupplyFault{.supply_V = supply_V, .from_ns = robot.time_ns + 1});
+  robot.faulty.add({.kind = ScenarioFault::Kind::supply, .from_ns = robot.time_ns + 1, .size = supply_V});
 }
 
 int ticks(double time_s) { return static_cast<int>(time_s / control_period_s); }
@@ -56,7 +56,7 @@ TEST_CASE("in that tick the joint alone is off, latched, and the fault has the m
     LightRobot robot(21);
     robot.run(100);
     const std::int64_t onset = robot.ticks();
-    spoil(robot, ActuatorFaultKind::tripped, code);
+    spoil(robot, ScenarioFault::Kind::drive_tripped, code);
     robot.run(3);
     CHECK(robot.in_time(FaultCode::drive_fault, onset));
     CHECK(fault_detail(told(first_fault(robot))) == words);
@@ -70,7 +70,7 @@ TEST_CASE("in that tick the joint alone is off, latched" *
   LightRobot robot(30);
   robot.run(100);
   const std::int64_t onset = robot.ticks();
-  spoil(robot, ActuatorFaultKind::disabled);
+  spoil(robot, ScenarioFault::Kind::drive_disabled);
   robot.run(3);
   CHECK(robot.in_time(FaultCode::drive_not_enabled, onset));
   CHECK(fault_detail(told(first_fault(robot))) == "ready");
@@ -82,7 +82,7 @@ TEST_CASE("after drives.enable_s the joint alone is off, latched" *
   LightRobot robot(22);
   constexpr std::int64_t asked =
       2;  // the first tick after one that wrote something: what was computed in tick 0 is written in 1
-  robot.faulty.add(ActuatorFault{.kind = ActuatorFaultKind::disabled, .joint = 0});
+  robot.faulty.add({.kind = ScenarioFault::Kind::drive_disabled});
   robot.run(ticks(robot.limits().drives.enable_s) - 2);
   CHECK(robot.faults.empty());
   robot.run(5);
@@ -100,7 +100,7 @@ TEST_CASE("it is reset, enabled, and follows again when the faults are cleared, 
   };
   robot.run(100);
   order(DriveOrder::enable);  // which it is
-  spoil(robot, ActuatorFaultKind::tripped, 18);
+  spoil(robot, ScenarioFault::Kind::drive_tripped, 18);
   robot.run(3);
   order(DriveOrder::enable);  // not before it is reset
   CHECK(robot.control.state().power.drives[0].state == DriveState::fault);
@@ -121,12 +121,12 @@ TEST_CASE("it is reset, enabled, and follows again when the faults are cleared, 
 TEST_CASE("in that tick the joint alone damps, latched" * description("a drive says that it is too hot")) {
   LightRobot robot(23);
   robot.run(100);
-  spoil(robot, ActuatorFaultKind::hot, robot.limits().drives.hot_C - 1);
+  spoil(robot, ScenarioFault::Kind::drive_hot, robot.limits().drives.hot_C - 1);
   robot.run(50);
   CHECK(robot.faults.empty());
   robot.faulty.clear();
   const std::int64_t onset = robot.ticks();
-  spoil(robot, ActuatorFaultKind::hot, robot.limits().drives.hot_C + 1);
+  spoil(robot, ScenarioFault::Kind::drive_hot, robot.limits().drives.hot_C + 1);
   robot.run(3);
   CHECK(robot.in_time(FaultCode::drive_hot, onset));
   check_alone(robot, SafetyLevel::damp);
@@ -136,12 +136,12 @@ TEST_CASE("in that tick the joint alone is off, latched" *
           description("what a drive says was measured longer ago than drives.sample_age_max_s")) {
   LightRobot robot(24);
   robot.run(100);
-  spoil(robot, ActuatorFaultKind::old, 0.9 * robot.limits().drives.sample_age_max_s);
+  spoil(robot, ScenarioFault::Kind::drive_old, 0.9 * robot.limits().drives.sample_age_max_s);
   robot.run(50);
   CHECK(robot.faults.empty());
   robot.faulty.clear();
   const std::int64_t onset = robot.ticks();
-  spoil(robot, ActuatorFaultKind::old, 1.1 * robot.limits().drives.sample_age_max_s);
+  spoil(robot, ScenarioFault::Kind::drive_old, 1.1 * robot.limits().drives.sample_age_max_s);
   robot.run(3);
   CHECK(robot.in_time(FaultCode::sample_old, onset));
   check_alone(robot, SafetyLevel::off);
@@ -194,7 +194,7 @@ TEST_CASE(
   robot.move(0, 0.9, 0.5);
   robot.run(50);
   const std::int64_t onset = robot.ticks();
-  robot.faulty.add(SupplyFault{.button = true, .from_ns = robot.time_ns + 1});
+  robot.faulty.add({.kind = ScenarioFault::Kind::emergency_button, .from_ns = robot.time_ns + 1});
   robot.run(2);
   CHECK(robot.in_time(FaultCode::emergency_input, onset));
   CHECK(fault_detail(told(first_fault(robot))) == "the button");
@@ -221,7 +221,7 @@ TEST_CASE("A drive that is asked for nothing need not be enabled") {
   robot.safety.emergency_stop().ask("the test");
   robot.run(ticks(robot.limits().damp_s) + 10);
   REQUIRE(robot.safety.robot_level() == SafetyLevel::off);
-  spoil(robot, ActuatorFaultKind::disabled);
+  spoil(robot, ScenarioFault::Kind::drive_disabled);
   robot.run(2 * ticks(robot.limits().drives.enable_s));
   CHECK(robot.first(FaultCode::drive_not_enabled) < 0);
 }

@@ -93,7 +93,7 @@ TEST_CASE(
   robot.run(100);
   robot.move(0, 0.5, 0.3);
   robot.run(50);
-  robot.spoil(SensorFaultKind::not_finite, SensorKind::joint);
+  robot.spoil(ScenarioFault::Kind::sensor_not_finite, SensorKind::joint);
   robot.run(2);
   robot.heal();
   robot.run(900);
@@ -194,12 +194,12 @@ TEST_CASE("the queue refuses what does not fit, visibly, what fitted is applied,
 TEST_CASE("found within the ticks of safety/detection.h, the joint alone is off, latched" *
           description("a joint's sensor is silent, jumps or is not finite")) {
   struct Row {
-    SensorFaultKind kind;
+    ScenarioFault::Kind kind;
     FaultCode code;
   };
-  for (const Row& row :
-       {Row{SensorFaultKind::silent, FaultCode::sensor_silent}, Row{SensorFaultKind::jump, FaultCode::sensor_jump},
-        Row{SensorFaultKind::not_finite, FaultCode::sensor_not_finite}}) {
+  for (const Row& row : {Row{ScenarioFault::Kind::sensor_silent, FaultCode::sensor_silent},
+                         Row{ScenarioFault::Kind::sensor_jump, FaultCode::sensor_jump},
+                         Row{ScenarioFault::Kind::sensor_not_finite, FaultCode::sensor_not_finite}}) {
     CAPTURE(name(row.code));
     LightRobot robot(5);
     robot.run(100);
@@ -217,7 +217,7 @@ TEST_CASE("found once the motor moves or pulls against the reading, the joint al
           description("a joint's sensor is stuck")) {
   LightRobot robot(5);
   robot.run(100);
-  robot.spoil(SensorFaultKind::stuck, SensorKind::joint);
+  robot.spoil(ScenarioFault::Kind::sensor_stuck, SensorKind::joint);
   robot.move(0, -0.8, 0.3);
   robot.run(400);
   CHECK(robot.first(FaultCode::sensor_stuck) > 0);
@@ -228,13 +228,13 @@ TEST_CASE("found once the motor moves or pulls against the reading, the joint al
 TEST_CASE("found in time, the robot holds until it is back (stuck: until cleared)" *
           description("the IMU is silent, stuck or not finite")) {
   struct Row {
-    SensorFaultKind kind;
+    ScenarioFault::Kind kind;
     FaultCode code;
     std::int64_t shows;  // ticks after the onset
   };
-  for (const Row& row :
-       {Row{SensorFaultKind::silent, FaultCode::imu_silent, 0}, Row{SensorFaultKind::stuck, FaultCode::imu_stuck, 1},
-        Row{SensorFaultKind::not_finite, FaultCode::imu_not_finite, 0}}) {
+  for (const Row& row : {Row{ScenarioFault::Kind::sensor_silent, FaultCode::imu_silent, 0},
+                         Row{ScenarioFault::Kind::sensor_stuck, FaultCode::imu_stuck, 1},
+                         Row{ScenarioFault::Kind::sensor_not_finite, FaultCode::imu_not_finite, 0}}) {
     CAPTURE(name(row.code));
     LightRobot robot(6);
     robot.run(200);
@@ -248,8 +248,8 @@ TEST_CASE("found in time, the robot holds until it is back (stuck: until cleared
 
 TEST_CASE("found in time, the robot goes on, limited and flagged" *
           description("a foot's sensor is silent, stuck, out of its range or not finite")) {
-  for (const SensorFaultKind kind :
-       {SensorFaultKind::silent, SensorFaultKind::stuck, SensorFaultKind::offset, SensorFaultKind::not_finite}) {
+  for (const ScenarioFault::Kind kind : {ScenarioFault::Kind::sensor_silent, ScenarioFault::Kind::sensor_stuck,
+                                         ScenarioFault::Kind::sensor_offset, ScenarioFault::Kind::sensor_not_finite}) {
     LightRobot robot(7);
     robot.run(200);
     robot.spoil(kind, SensorKind::foot, 0, 1e5);
@@ -262,13 +262,14 @@ TEST_CASE("found in time, the robot goes on, limited and flagged" *
 TEST_CASE("found in time, the robot goes on, limited and flagged, and the fault names the sensor" *
           description("a sensor that the configuration names is silent, out of its range or not finite")) {
   struct Row {
-    SensorFaultKind kind;
+    ScenarioFault::Kind kind;
     FaultCode code;
     int period_ticks;  // until a reading shows it
   };
-  for (const auto& [kind, code, period_ticks] : {Row{SensorFaultKind::silent, FaultCode::channel_silent, 20},
-                                                 {SensorFaultKind::offset, FaultCode::channel_range, 20},
-                                                 {SensorFaultKind::not_finite, FaultCode::channel_not_finite, 20}}) {
+  for (const auto& [kind, code, period_ticks] :
+       {Row{ScenarioFault::Kind::sensor_silent, FaultCode::channel_silent, 20},
+        {ScenarioFault::Kind::sensor_offset, FaultCode::channel_range, 20},
+        {ScenarioFault::Kind::sensor_not_finite, FaultCode::channel_not_finite, 20}}) {
     LightRobot robot(7);
     robot.run(210);
     CHECK(robot.faults.empty());
@@ -339,7 +340,7 @@ TEST_CASE("the joint damps, latched until cleared" * description("a joint passes
   robot.run(100);
   // A slow offset, below every jump, takes the reading beyond the limit and its margin.
   for (int i = 0; i < 300; ++i) {
-    robot.spoil(SensorFaultKind::offset, SensorKind::joint, 0, 0.01);
+    robot.spoil(ScenarioFault::Kind::sensor_offset, SensorKind::joint, 0, 0.01);
     robot.saboteur->arm(0, 0);
     robot.tick();
   }

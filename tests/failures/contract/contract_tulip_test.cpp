@@ -65,14 +65,14 @@ TEST_SUITE_BEGIN("contract");
 TEST_CASE("found in time, the knee alone is off, latched, every torque stays within its limit while TULip sinks" *
           description("a knee's sensor is silent, jumps, is stuck or not finite while TULip squats")) {
   struct Row {
-    SensorFaultKind kind;
+    ScenarioFault::Kind kind;
     FaultCode code;
     std::int64_t shows;  // ticks after the onset
   };
-  for (const Row& row : {Row{SensorFaultKind::silent, FaultCode::sensor_silent, 0},
-                         Row{SensorFaultKind::jump, FaultCode::sensor_jump, 0},
-                         Row{SensorFaultKind::stuck, FaultCode::sensor_stuck, 260},
-                         Row{SensorFaultKind::not_finite, FaultCode::sensor_not_finite, 0}}) {
+  for (const Row& row : {Row{ScenarioFault::Kind::sensor_silent, FaultCode::sensor_silent, 0},
+                         Row{ScenarioFault::Kind::sensor_jump, FaultCode::sensor_jump, 0},
+                         Row{ScenarioFault::Kind::sensor_stuck, FaultCode::sensor_stuck, 260},
+                         Row{ScenarioFault::Kind::sensor_not_finite, FaultCode::sensor_not_finite, 0}}) {
     CAPTURE(name(row.code));
     TulipRobot robot(1);
     const std::size_t knee = robot.joint("l_knee");
