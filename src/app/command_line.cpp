@@ -1,5 +1,12 @@
 #include "command_line.h"
 
+#include <type_traits>
+
+#include "app/commission/commission_command.h"
+#include "app/new/new_options.h"
+#include "commands.h"
+#include "terminal.h"
+
 namespace kadans {
 namespace {
 
@@ -31,40 +38,62 @@ std::vector<const CLI::App*> visible_below(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
+template <typename Options, typename Run>
+void CommandLine::offer(void (*add)(CLI::App&, Options&), Run does) {
+  Options& options = options_.emplace_back().emplace<Options>();
+  add(app, options);
+  const CLI::App* const command = app.get_subcommands([](const CLI::App*) { return true; }).back();
+  runs_.emplace_back(command, [this, does, &options] {
+    if constexpr (std::is_invocable_v<Run, const Options&>)
+      return does(options);
+    else
+      return does(app, options);
+  });
+}
+
 CommandLine::CommandLine() : app(about, "kadans") {
   app.require_subcommand(1);
-  add_sim(app, sim);
-  add_test(app, test);
-  add_replay(app, replay);
-  add_debug(app, debug);
-  add_check(app, check);
-  add_sweep(app, sweep);
-  add_merge(app, merge);
-  add_margin(app, margin);
-  add_shrink(app, shrink);
-  add_tune(app, tune);
-  add_behavior(app, behavior);
-  add_repl(app, repl);
-  add_stubs(app, stubs);
-  add_params(app, params);
-  add_run(app, run);
-  add_behavior_process(app, behavior_process);
-  add_plant(app, plant);
-  add_jog(app, jog);
-  add_commission(app, commission);
-  add_dynamixel(app, dynamixel);
-  add_jitter(app, jitter);
-  add_ctl(app, ctl);
-  add_push(app, push);
-  add_receive(app, receive);
-  add_completion(app, completion);
-  add_view(app, view);
-  add_render(app, render);
-  add_log(app, log);
-  add_doctor(app, doctor);
-  add_new(app, made);
-  add_reference(app, reference);
+  offer(add_sim, run_sim);
+  offer(add_test, run_test);
+  offer(add_replay, run_replay);
+  offer(add_debug, run_debug);
+  offer(add_check, run_check);
+  offer(add_sweep, run_sweep);
+  offer(add_merge, run_merge);
+  offer(add_margin, run_margin);
+  offer(add_shrink, run_shrink);
+  offer(add_tune, [this](const TuneOptions&) { return start_tune_program(arguments.data()); });
+  offer(add_behavior, run_behavior);
+  offer(add_repl, run_repl);
+  offer(add_stubs, run_stubs);
+  offer(add_params, run_params);
+  offer(add_run, run_live);
+  offer(add_behavior_process, run_behavior_process);
+  offer(add_plant, run_plant);
+  offer(add_jog, run_jog);
+  offer(add_commission, run_commission);
+  offer(add_dynamixel, run_dynamixel);
+  offer(add_jitter, run_jitter);
+  offer(add_ctl, [this](const CtlOptions& options) {
+    return run_ctl(app, options, {arguments.begin() + 1, arguments.end()});
+  });
+  offer(add_push, run_push);
+  offer(add_receive, run_receive);
+  offer(add_completion, run_completion);
+  offer(add_view, run_view);
+  offer(add_render, run_render);
+  offer(add_log, run_log);
+  offer(add_doctor, run_doctor);
+  offer(add_new, run_new);
+  offer(add_reference, run_reference);
   add_examples(app);
+}
+
+int CommandLine::run() const {
+  for (const auto& [command, does] : runs_) {
+    if (command->parsed()) return does();
+  }
+  return exit_usage;
 }
 
 std::vector<CommandEntry> commands_of(const CommandLine& line) {

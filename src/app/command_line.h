@@ -1,15 +1,16 @@
-// The command line: its parser, and the structs into which the options of each command are read. Help, completion, the
-// tests of all commands and the program itself use this one table.
+// The command line: its parser, and what each command does with its options. Help, completion, the tests of all
+// commands and the program itself use this one table.
 #pragma once
 
+#include <any>
+#include <deque>
+#include <functional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-
-#include "app/commission/commission_command.h"
-#include "app/new/new_options.h"
-#include "commands.h"
 
 namespace kadans {
 
@@ -18,38 +19,20 @@ struct CommandLine {
   CommandLine(const CommandLine&) = delete;  // the parser points into it
   CommandLine& operator=(const CommandLine&) = delete;
 
+  // After parsing: runs the command that was given. Returns the program's exit code.
+  int run() const;
+
   CLI::App app;
-  SimOptions sim;
-  TestOptions test;
-  ReplayOptions replay;
-  DebugOptions debug;
-  CheckOptions check;
-  SweepOptions sweep;
-  MergeOptions merge;
-  MarginOptions margin;
-  ShrinkOptions shrink;
-  TuneOptions tune;
-  BehaviorOptions behavior;
-  ReplOptions repl;
-  StubsOptions stubs;
-  ParamsOptions params;
-  RunOptions run;
-  RunOptions behavior_process;
-  PlantOptions plant;
-  JogOptions jog;
-  CommissionOptions commission;
-  DynamixelOptions dynamixel;
-  JitterOptions jitter;
-  CtlOptions ctl;
-  PushOptions push;
-  ReceiveOptions receive;
-  CompletionOptions completion;
-  ViewOptions view;
-  RenderOptions render;
-  LogOptions log;
-  DoctorOptions doctor;
-  NewOptions made;
-  ReferenceOptions reference;
+  std::span<char*> arguments;  // what is parsed, for commands that hand it on
+
+ private:
+  // `add` adds the command, with options that are kept here; `run` gets them, and the parser before them if it wants
+  // it.
+  template <typename Options, typename Run>
+  void offer(void (*add)(CLI::App&, Options&), Run does);
+
+  std::deque<std::any> options_;
+  std::vector<std::pair<const CLI::App*, std::function<int()>>> runs_;
 };
 
 // A command that can be run, not a group of commands.

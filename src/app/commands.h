@@ -22,8 +22,6 @@ class App;
 
 namespace kadans {
 
-struct CommandLine;
-
 struct SimOptions : RunChoices {
   bool json = false, verbose = false, no_record = false, realtime = false, watch = false;
   std::string metrics;  // plan whose metrics are reported; "": none
@@ -169,7 +167,7 @@ struct ReferenceOptions {
   std::string folder;
 };
 void add_reference(CLI::App& app, ReferenceOptions& options);
-int run_reference(const CommandLine& line, const ReferenceOptions& options);
+int run_reference(const CLI::App& app, const ReferenceOptions& options);
 
 // `kadans replay`: runs a record again, with the files on the disk or inside it, and compares every recorded signal in
 // every tick, bit for bit. It prints that all is the same, or where the runs differ and which inputs changed.
@@ -325,17 +323,16 @@ int run_params(const ParamsOptions& options);
 
 // `kadans ctl`: talks to a running instance.
 struct CtlOptions {
-  std::string socket;              // "": the usual places
-  std::string host;                // "": this computer
-  std::vector<std::string> words;  // of the whole command line
+  std::string socket;  // "": the usual places
+  std::string host;    // "": this computer
   bool json = false;
   bool names = false;                                                               // list only the names
   std::optional<long> count;                                                        // of samples; nullopt: until Ctrl-C
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
 };
 void add_ctl(CLI::App& app, CtlOptions& options);
-// After parsing. Returns the program's exit code.
-int run_ctl(const CLI::App& app, const CtlOptions& options);
+// After parsing. `words` are those of the whole command line. Returns the program's exit code.
+int run_ctl(const CLI::App& app, const CtlOptions& options, const std::vector<std::string>& words);
 
 // `kadans push`: brings a robot's files to its computer.
 struct PushOptions {

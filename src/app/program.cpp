@@ -8,6 +8,7 @@
 
 #include "app/run/real_time_start.h"
 #include "command_line.h"
+#include "commands.h"
 #include "kadans/plant/plant_type.h"
 #include "kadans/signal/nearest_name.h"
 #include "option_checks.h"
@@ -152,6 +153,7 @@ std::string hint(const CLI::App& app, int argc, char** argv, const std::string& 
 int run(int argc, char** argv) {
   CommandLine line;
   CLI::App& app = line.app;
+  line.arguments = {argv, static_cast<std::size_t>(argc)};
   app.set_version_flag("--version", std::string("kadans ") + version);
   try {
     app.parse(argc, argv);
@@ -163,39 +165,7 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   if (app.got_subcommand("run") || app.got_subcommand("plant") || app.got_subcommand("jitter")) bind_all_functions();
-  if (app.got_subcommand("test")) return run_test(line.test);
-  if (app.got_subcommand("run")) return run_live(line.run);
-  if (app.got_subcommand("behavior-process")) return run_behavior_process(line.behavior_process);
-  if (app.got_subcommand("plant")) return run_plant(line.plant);
-  if (app.got_subcommand("jog")) return run_jog(line.jog);
-  if (app.got_subcommand("commission")) return run_commission(line.commission);
-  if (app.got_subcommand("dynamixel")) return run_dynamixel(app, line.dynamixel);
-  if (app.got_subcommand("jitter")) return run_jitter(line.jitter);
-  if (app.got_subcommand("ctl")) {
-    line.ctl.words.assign(argv + 1, argv + argc);
-    return run_ctl(app, line.ctl);
-  }
-  if (app.got_subcommand("push")) return run_push(line.push);
-  if (app.got_subcommand("receive")) return run_receive(line.receive);
-  if (app.got_subcommand("completion")) return run_completion(app, line.completion);
-  if (app.got_subcommand("view")) return run_view(line.view);
-  if (app.got_subcommand("render")) return run_render(line.render);
-  if (app.got_subcommand("log")) return run_log(app, line.log);
-  if (app.got_subcommand("doctor")) return run_doctor(line.doctor);
-  if (app.got_subcommand("replay")) return run_replay(line.replay);
-  if (app.got_subcommand("debug")) return run_debug(line.debug);
-  if (app.got_subcommand("sweep")) return run_sweep(line.sweep);
-  if (app.got_subcommand("merge")) return run_merge(line.merge);
-  if (app.got_subcommand("margin")) return run_margin(line.margin);
-  if (app.got_subcommand("shrink")) return run_shrink(line.shrink);
-  if (app.got_subcommand("tune")) return start_tune_program(argv);
-  if (app.got_subcommand("new")) return run_new(app, line.made);
-  if (app.got_subcommand("reference")) return run_reference(line, line.reference);
-  if (app.got_subcommand("repl")) return run_repl(line.repl);
-  if (app.got_subcommand("lua-stubs")) return run_stubs(line.stubs);
-  if (app.got_subcommand("params")) return run_params(line.params);
-  if (app.got_subcommand("behavior")) return run_behavior(app, line.behavior);
-  return app.got_subcommand("sim") ? run_sim(line.sim) : run_check(line.check);
+  return line.run();
 }
 
 // Else the first files that are opened would get the numbers of those that are closed, and a record what is printed.

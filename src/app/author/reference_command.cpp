@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/command_line.h"
+#include "app/commands.h"
 #include "app/terminal.h"
 #include "config/robot/project_root.h"
 #include "field_reference.h"
@@ -18,17 +19,17 @@ void add_reference(CLI::App& app, ReferenceOptions& options) {
   reference->add_option("folder", options.folder)->required();
 }
 
-int run_reference(const CommandLine& line, const ReferenceOptions& options) {
+int run_reference(const CLI::App& app, const ReferenceOptions& options) {
   const fs::path folder(options.folder);
   for (const char* part : {"man", "completion", "pages"}) fs::create_directories(folder / part);
-  write_durably(folder / "man/kadans.1", man_page(line.app, "kadans"));
-  for (const CLI::App* command : visible_below(line.app)) {
+  write_durably(folder / "man/kadans.1", man_page(app, "kadans"));
+  for (const CLI::App* command : visible_below(app)) {
     const std::string& name = command->get_name();
     write_durably(folder / "man" / ("kadans-" + name + ".1"), man_page(*command, "kadans " + name));
   }
-  write_durably(folder / "completion/kadans", completion_script(line.app, "bash"));
-  write_durably(folder / "completion/_kadans", completion_script(line.app, "zsh"));
-  write_durably(folder / "pages/commands.md", command_reference(line.app));
+  write_durably(folder / "completion/kadans", completion_script(app, "bash"));
+  write_durably(folder / "completion/_kadans", completion_script(app, "zsh"));
+  write_durably(folder / "pages/commands.md", command_reference(app));
   write_durably(folder / "pages/files.md", field_reference());
   write_durably(folder / "pages/control_objects.md", object_reference(project_root(fs::current_path() / "config")));
   return exit_passed;

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/command_line.h"
+#include "app/commands.h"
 #include "remote/order/order.h"
 
 namespace kadans {

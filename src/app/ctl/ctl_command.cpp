@@ -461,8 +461,8 @@ std::vector<std::string> without_host(std::vector<std::string> words) {
 
 }  // namespace
 
-int run_ctl(const CLI::App& app, const CtlOptions& options) {
-  if (!options.host.empty()) return RemoteHost(options.host).run(without_host(options.words), STDIN_FILENO, true);
+int run_ctl(const CLI::App& app, const CtlOptions& options, const std::vector<std::string>& words) {
+  if (!options.host.empty()) return RemoteHost(options.host).run(without_host(words), STDIN_FILENO, true);
   const CLI::App* ctl = app.get_subcommand("ctl");
   if (ctl->got_subcommand(console)) return talk_to_console(options);
   for (const OrderInfo& order : order_table::orders) {
