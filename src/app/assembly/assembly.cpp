@@ -82,6 +82,23 @@ class NamedLog final : public BehaviorLog, private LineSink {
   BehaviorLog& log_;
 };
 
+class FilteredHost final : public BehaviorHost {
+ public:
+  FilteredHost(BehaviorHost& host, std::function<void(Snapshot&)> change) : host_(host), change_(std::move(change)) {}
+  void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override {
+    seen_ = snapshot;
+    change_(seen_);
+    host_.tick(seen_, commands);
+  }
+  void before_tick(const Snapshot& snapshot) noexcept override { host_.before_tick(snapshot); }
+  void prepare(const Snapshot& newest) noexcept override { host_.prepare(newest); }
+
+ private:
+  BehaviorHost& host_;
+  std::function<void(Snapshot&)> change_;
+  Snapshot seen_;
+};
+
 // Checks the behaviors' names in events; they are known only after loading.
 void verify_events(const ScenarioConfig& scenario, const ScriptHost& host) {
   const std::vector<std::string> names = host.names();
@@ -407,8 +424,8 @@ void Assembly::make_behaviors() {
   }
 }
 
-void Assembly::filter(SnapshotFilter& filter) {
-  filtered_ = std::make_unique<FilteredHost>(played(), filter);
+void Assembly::filter(std::function<void(Snapshot&)> change) {
+  filtered_ = std::make_unique<FilteredHost>(played(), std::move(change));
   make_behaviors();
 }
 

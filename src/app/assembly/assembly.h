@@ -2,6 +2,7 @@
 // data; each member keeps references to earlier ones.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,7 +14,6 @@
 #include "scenario/run.h"
 #include "script/host/script_host.h"
 #include "script/process/process_host.h"
-#include "snapshot_filter.h"
 #include "supervisor/decide/supervised_host.h"
 #include "supervisor/decide/supervisor.h"
 #include "supervisor/messages/datagrams.h"
@@ -99,9 +99,9 @@ class Assembly {
     if (supervised_) supervised_->leave();
   }
 
-  // Call before the first step: the behaviors then see the snapshot as the filter changes it. The filter must outlive
-  // this object.
-  void filter(SnapshotFilter& filter);
+  // Call before the first step: from then on `change` changes, on the behavior thread, what the behaviors see. Tests
+  // need this, because a robot on the ideal plant never falls by itself.
+  void filter(std::function<void(Snapshot&)> change);
 
  private:
   struct Begun {};
@@ -157,7 +157,7 @@ class Assembly {
   std::unique_ptr<SupervisedHost> supervised_;
   std::unique_ptr<ControlEngine> control_;
   std::unique_ptr<FaultyHost> faulty_host_;
-  std::unique_ptr<FilteredHost> filtered_;
+  std::unique_ptr<BehaviorHost> filtered_;
   std::unique_ptr<BehaviorEngine> behaviors_;
   std::unique_ptr<Lockstep> lockstep_;
   std::unique_ptr<Disturbances> disturbances_;

@@ -63,53 +63,18 @@ std::string lua_of(const PlayOrder& order, const std::string& refused) {
 
 }  // namespace
 
-std::optional<bool> in(const Behavior& behavior, const std::string& path) {
-  const std::vector<Chart::State>& states = behavior.chart().states;
-  const auto found = std::ranges::find(states, path, &Chart::State::path);
-  if (path.empty() || found == states.end()) return std::nullopt;
-  return behavior.active(static_cast<StateIndex>(found - states.begin()));
-}
-
-std::vector<std::string> paths_of(const Chart& chart) {
-  std::vector<std::string> all;
-  for (const Chart::State& state : chart.states) all.push_back(state.path);
-  return all;
-}
-
-std::string lines_said(const RunLog& log) {
-  std::string all;
-  for (const LogLine& line : log.lines()) all += line.text + "\n";
-  return all;
-}
-
-std::string way_of(const RunLog& log, const std::string& state) {
-  std::string all = log.transitions().empty() ? state : log.transitions().front().from;
-  for (const Transition& transition : log.transitions()) all += " " + transition.to;
-  return all;
-}
-
 DecisionStage::DecisionStage(ScenarioConfig scenario, const std::filesystem::path& decisions)
-    : scenario_(std::move(scenario)),
-      assembly_(scenario_, scenario_.seed, log_),
-      sensors_(assembly_.catalog()),
+    : RobotStage(std::move(scenario)),
       folders_(folders_of(scenario_)),
       decisions_({.root = project_root(decisions), .file = decisions, .seed = scenario_.seed, .folders = folders_},
                  assembly_.catalog(), log_),
       period_ns_(std::llround(1e9 / assembly_.supervising().rate_Hz)) {}
 
-void DecisionStage::advance(double seconds) {
-  const RunParts parts = assembly_.parts();
-  due_s_ += seconds;
-  while (static_cast<double>(parts.lockstep.time_ns()) < due_s_ * 1e9 - 1) {
-    parts.lockstep.step();
-    if (parts.lockstep.time_ns() < next_ns_) continue;
-    next_ns_ += period_ns_;
-    seen_ = parts.control.state();
-    sensors_.change(seen_);
-    decide();
-  }
-  seen_ = parts.control.state();
-  sensors_.change(seen_);
+void DecisionStage::stepped(std::int64_t time_ns) {
+  if (time_ns < next_ns_) return;
+  next_ns_ += period_ns_;
+  look();
+  decide();
 }
 
 void DecisionStage::decide() {
@@ -172,12 +137,6 @@ std::string DecisionStage::emit(const PlayedEvent& event) {
     if (field.name == "from" && from != nullptr) heard.who = *from;
   }
   return decisions_.refusal(std::move(heard));
-}
-
-bool DecisionStage::set_sensor(const std::string& name, double value) {
-  const bool known = sensors_.set(name, value);
-  sensors_.change(seen_);
-  return known;
 }
 
 std::string DecisionStage::end_play(const std::string& outcome) {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "app/assembly/snapshot_filter.h"
 #include "estimate/leg_chain.h"
 #include "kadans/control/catalog.h"
 #include "signal/sine_cosine.h"
@@ -16,7 +15,7 @@
 
 namespace kadans {
 
-class SetSensors final : public SnapshotFilter {
+class SetSensors {
  public:
   explicit SetSensors(const Catalog& catalog)
       : joints_(catalog.model->joint_names()), fields_(status_fields(catalog.sensors, catalog.seen)) {
@@ -32,7 +31,7 @@ class SetSensors final : public SnapshotFilter {
     values_[name] = value;
     return true;
   }
-  void change(Snapshot& snapshot) noexcept override {
+  void change(Snapshot& snapshot) const noexcept {
     for (const auto& [name, value] : values_) (void)put(snapshot, name, value);
     if (!values_.contains("base.posture") && (values_.contains("base.roll_rad") || values_.contains("base.pitch_rad")))
       lie_as_leant(snapshot.status.base);

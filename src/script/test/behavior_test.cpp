@@ -1,10 +1,13 @@
 #include "behavior_test.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <optional>
 
+#include "script/behavior/behavior.h"
 #include "script/bindings/bindings.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/check/hint.h"
@@ -110,29 +113,35 @@ int advance(lua_State* state) {
   return 0;
 }
 
-bool read_text(Testing& testing, const TestStage& stage, const char* key) noexcept {
+bool read_text(Testing& testing, TestStage& stage, const char* key) noexcept {
   const auto is = [key](const char* name) { return std::strcmp(key, name) == 0; };
+  const Behavior& behavior = stage.behavior();
   testing.text.clear();
-  if (is("state")) return testing.text = stage.state(), true;
-  if (is("outcome")) return testing.text = stage.outcome(), true;
-  if (is("error")) return testing.text = stage.error(), true;
+  if (is("state")) return testing.text = behavior.state(), true;
+  if (is("outcome")) return testing.text = behavior.outcome(), true;
+  if (is("error")) return testing.text = behavior.failed() ? behavior.error().text() : "", true;
   if (is("control_sets")) return testing.text = stage.control_sets(), true;
   if (is("log")) return testing.text = stage.said(), true;
   if (is("states")) return testing.text = stage.went(), true;
   return false;
 }
 
-std::optional<bool> look_for(Testing& testing, const TestStage& stage, const char* path) {
-  const std::optional<bool> in = stage.in(path);
-  if (!in) testing.text = "the behavior has no state '" + std::string(path) + "'" + hint_text(path, stage.paths());
-  return in;
+// Whether the state with this path is active, innermost or not; nullopt: there is no such state.
+std::optional<bool> look_for(Testing& testing, const Behavior& behavior, const char* path) {
+  const std::vector<Chart::State>& states = behavior.chart().states;
+  const auto found = std::ranges::find(states, path, &Chart::State::path);
+  if (*path != '\0' && found != states.end()) return behavior.active(static_cast<StateIndex>(found - states.begin()));
+  std::vector<std::string> paths;
+  for (const Chart::State& state : states) paths.push_back(state.path);
+  testing.text = "the behavior has no state '" + std::string(path) + "'" + hint_text(path, paths);
+  return std::nullopt;
 }
 
 // is_in(number, path) -> whether this state is active; nil, why: there is none.
 int is_in(lua_State* state) {
-  const TestStage& stage = *played_in(state).stage;
+  TestStage& stage = *played_in(state).stage;
   Testing& testing = testing_of(state);
-  const std::optional<bool> in = look_for(testing, stage, luaL_checkstring(state, 2));
+  const std::optional<bool> in = look_for(testing, stage.behavior(), luaL_checkstring(state, 2));
   if (in) return lua_pushboolean(state, *in ? 1 : 0), 1;
   lua_pushnil(state);
   return 1 + push_text(state, testing.text);
@@ -151,10 +160,10 @@ int read(lua_State* state) {
   Played& played = played_in(state);
   const char* key = luaL_checkstring(state, 2);
   Testing& testing = testing_of(state);
-  const TestStage& stage = *played.stage;
+  TestStage& stage = *played.stage;
   if (read_text(testing, stage, key)) return push_text(state, testing.text);
-  if (std::strcmp(key, "active") == 0) return push_texts(state, testing.texts = stage.active()), 1;
-  if (std::strcmp(key, "result") == 0) return push_value(state, testing, stage.result());
+  if (std::strcmp(key, "active") == 0) return push_texts(state, testing.texts = stage.behavior().active()), 1;
+  if (std::strcmp(key, "result") == 0) return push_value(state, testing, stage.behavior().result());
   if (std::strcmp(key, "orders") == 0) return push_value(state, testing, stage.orders());
   if (std::strcmp(key, "messages") == 0) return push_value(state, testing, stage.messages());
   played.tables.refill(stage.snapshot(), stage.snapshot().time_ns);
@@ -193,7 +202,7 @@ int change(lua_State* state) {
     return push_answer(state, testing.text = stage.set_playing(name, luaL_checkstring(state, 4)));
   const double value = luaL_checknumber(state, 4);
   const bool known =
-      std::strcmp(what, "parameter") == 0 ? stage.set_parameter(name, value) : stage.set_sensor(name, value);
+      std::strcmp(what, "parameter") == 0 ? stage.behavior().set_parameter(name, value) : stage.set_sensor(name, value);
   return lua_pushboolean(state, known ? 1 : 0), 1;
 }
 

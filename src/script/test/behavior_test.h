@@ -15,7 +15,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +24,8 @@
 
 namespace kadans {
 
+class Behavior;
+
 // A robot with one behavior that plays on it.
 class TestStage {
  public:
@@ -32,23 +33,15 @@ class TestStage {
   virtual void advance(double seconds) = 0;  // throws std::runtime_error when the plant fails
   virtual const Snapshot& snapshot() const = 0;
   virtual const Catalog& catalog() const = 0;
-  virtual std::string state() const = 0;
-  virtual std::vector<std::string> active() const = 0;  // all innermost active states, by path
-  // Whether the state with this path is active, innermost or not; nullopt: there is no such state.
-  virtual std::optional<bool> in(const std::string& path) const = 0;
-  virtual std::vector<std::string> paths() const = 0;  // of all states
-  virtual std::string outcome() const = 0;
-  virtual std::string error() const = 0;
-  virtual std::string result() const = 0;        // as text that Lua can read; "" when there is none
-  virtual std::string control_sets() const = 0;  // names of the active ones
-  virtual std::string said() const = 0;          // the lines that the behavior logged
-  virtual std::string went() const = 0;          // the states that it went through, "settle squat rest"
+  virtual Behavior& behavior() = 0;                        // that is tested
+  virtual std::string control_sets() const { return ""; }  // names of the active ones
+  virtual std::string said() const = 0;                    // the lines that the behavior logged
+  virtual std::string went() = 0;                          // the states that it went through, "settle squat rest"
   // Returns "", or why the behavior cannot take it.
   virtual std::string emit(const PlayedEvent& event) = 0;
-  // These return false, and nothing changes, when the name is unknown or the value is out of range.
-  virtual bool set_parameter(const std::string& name, double value) = 0;
   // Sets a value that the behavior sees from now on: "base.pitch_rad", "joints.l_knee.position_rad",
-  // "feet.left.contact", "sensors.front_m", "safety.level" (its number).
+  // "feet.left.contact", "sensors.front_m", "safety.level" (its number). False, and nothing changes, when the name is
+  // unknown or the value is out of range.
   virtual bool set_sensor(const std::string& name, double value) = 0;
   // Of decisions: what they asked for, and the messages that they sent, as lists that Lua can read; "": it is none.
   virtual std::string orders() const { return ""; }
