@@ -291,7 +291,6 @@ struct BehaviorOptions {
 
 void add_behavior(CLI::App& app, BehaviorOptions& options);
 int run_behavior(const CLI::App& app, const BehaviorOptions& options);
-int run_behavior_test(const BehaviorOptions& options);
 
 // `kadans repl`: a console in a simulation. On a terminal the simulation runs at the pace of the wall clock meanwhile.
 // From a pipe time passes only by `:run`, so the output is repeatable.

@@ -23,9 +23,6 @@
 #include "signal/durable_file.h"
 
 namespace kadans {
-
-// `kadans behavior test`.
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,18 +124,12 @@ class BehaviorTests {
   std::vector<JunitCase> cases_;
 };
 
-}  // namespace
-
-int run_behavior_test(const BehaviorOptions& options) {
+int run_tests(const BehaviorOptions& options) {
   const std::vector<std::string> files = test_files(options.files);
   if (files.empty()) throw InputError({.file = options.files.front(), .message = "there is no *_test.lua in it"});
   catch_interrupts();
   return BehaviorTests(options).run(files);
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 fs::path robot_for(const fs::path& file, const BehaviorOptions& options) {
   return options.robot.empty() ? robot_of_behavior(file) : fs::path(options.robot);
@@ -221,7 +212,7 @@ void add_behavior(CLI::App& app, BehaviorOptions& options) {
 int run_behavior(const CLI::App& app, const BehaviorOptions& options) {
   const CLI::App* behavior = app.get_subcommand("behavior");
   if (behavior->got_subcommand("graph")) return run_graph(options);
-  return behavior->got_subcommand("check") ? run_checks(options) : run_behavior_test(options);
+  return behavior->got_subcommand("check") ? run_checks(options) : run_tests(options);
 }
 
 }  // namespace kadans

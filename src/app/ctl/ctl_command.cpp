@@ -24,7 +24,6 @@
 #include "signal/number_text.h"
 
 namespace kadans {
-
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -201,8 +200,6 @@ std::string save_text(const Json& answer) {
   return text + "\n" + overridden_text(answer.at("overridden"));
 }
 
-}  // namespace
-
 // `words` is the verb on the command line, such as "record stop". The text ends with a newline, or is empty.
 std::string answer_text(const std::string& words, const Json& answer) {
   if (words == "status") return status_text(answer);
@@ -233,9 +230,7 @@ std::string watch_line(const Json& sample) {
   return text;
 }
 
-namespace {
-
-constexpr int answer_ms = 15'000;
+constexpr int answer_ms = 15'000;  // longer than the server waits for the behavior thread
 constexpr int keys_ms = 100;
 
 Json ask(CtlLink& link, const char* verb, const std::string& text) {
@@ -285,14 +280,6 @@ int from_terminal(CtlLink& link) {
   std::puts("");
   return exit_passed;
 }
-
-}  // namespace
-
-int ctl_console(CtlLink& link) { return isatty(STDIN_FILENO) == 1 ? from_terminal(link) : from_pipe(link); }
-
-namespace {
-
-constexpr int reply_ms = 15'000;  // longer than the server waits for the behavior thread
 
 // A console is a mode of the command line that uses two orders of the sockets.
 constexpr const char *console = "repl", *console_doc = "Open a console in the running instance";
@@ -346,13 +333,13 @@ int talk_to_console(const CtlOptions& options) {
   CtlLink link(options.socket, Role::develop);
   if (options.json)
     throw InputError(InputProblem{.file = "--json", .message = "a console is for people: repl has none"});
-  return ctl_console(link);
+  return isatty(STDIN_FILENO) == 1 ? from_terminal(link) : from_pipe(link);
 }
 
 int talk(const OrderInfo& order, const CtlOptions& options) {
   CtlLink link(options.socket, order.role);
   link.send(json_text(request_of(order, options)));
-  const std::optional<std::string> line = link.receive(reply_ms);
+  const std::optional<std::string> line = link.receive(answer_ms);
   if (!line) throw InputError({.message = "the instance does not answer"});
   const Json answer = parse_foreign_json(*line);
   if (!answer.value("ok", false)) {

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/time.h>
 #include <unistd.h>
 
-#include "open_files.h"
 #include "realtime/machine/child_process.h"
 #include "script/behavior/behavior.h"
 #include "signal/monotonic_clock.h"
@@ -26,6 +28,36 @@ void end_after(int seconds) noexcept {
   const itimerval timer{.it_interval = {}, .it_value = {.tv_sec = seconds, .tv_usec = 0}};
   (void)setitimer(ITIMER_PROF, &timer, nullptr);
 }
+
+// Files that this process reads. A copy of a process shares the places up to which they are read; so it opens them
+// again, each at the place where it was when the copy was made.
+class OpenFiles {
+ public:
+  // Before the copy is made.
+  OpenFiles() {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", ignored)) {
+      const auto descriptor = number_of<int>(entry.path().filename().string());
+      struct stat facts {};
+      if (!descriptor || fstat(*descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) continue;
+      if ((fcntl(*descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY) continue;
+      files_.push_back({*descriptor, lseek(*descriptor, 0, SEEK_CUR)});
+    }
+  }
+  // In the copy.
+  void open_again() const noexcept {
+    for (const auto& [descriptor, place] : files_) {
+      const int fresh = open(("/proc/self/fd/" + std::to_string(descriptor)).c_str(), O_RDONLY | O_CLOEXEC);
+      if (fresh < 0) _exit(1);
+      (void)lseek(fresh, place, SEEK_SET);
+      (void)dup3(fresh, descriptor, O_CLOEXEC);
+      close(fresh);
+    }
+  }
+
+ private:
+  std::vector<std::pair<int, off_t>> files_;  // descriptor, place
+};
 
 // "5", ">= 5", "% 5"
 bool hits_hold(const std::string& text, std::uint32_t hits) {

@@ -23,26 +23,6 @@
 
 namespace kadans {
 
-// A headless Chromium that loads a page. It has a process group and a folder of its own; both end with this object.
-
-// The path of the program: $KADANS_CHROMIUM, or found in PATH; "": there is none.
-std::string find_chromium();
-
-class Chromium {
- public:
-  // Throws std::system_error when it cannot be started.
-  Chromium(const std::string& program, const std::string& url, int width, int height);
-  ~Chromium();
-  Chromium(const Chromium&) = delete;
-  Chromium& operator=(const Chromium&) = delete;
-
-  bool runs() noexcept { return !process_->ended(); }
-
- private:
-  std::filesystem::path folder_;
-  std::optional<ChildProcess> process_;  // while the object lives
-};
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,8 +48,7 @@ std::vector<std::string> arguments(const std::string& program, const std::string
   return list;
 }
 
-}  // namespace
-
+// The path of the program: $KADANS_CHROMIUM, or found in PATH; "": there is none.
 std::string find_chromium() {
   if (const char* named = std::getenv("KADANS_CHROMIUM"); named != nullptr) return named;  // NOLINT: no thread yet
   const char* path = std::getenv("PATH");                                                  // NOLINT: no thread yet
@@ -83,27 +62,37 @@ std::string find_chromium() {
   return "";
 }
 
-Chromium::Chromium(const std::string& program, const std::string& url, int width, int height) {
-  std::string pattern = (fs::temp_directory_path() / "kadans-page-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::system_error(errno, std::generic_category(), pattern);
-  folder_ = pattern;
-  try {
-    process_.emplace(ProgramStart{.words = arguments(program, url, folder_, width, height),
-                                  .files = {no_file, no_file, no_file},
-                                  .own_group = true});
-  } catch (...) {
-    fs::remove_all(folder_);
-    throw;
+// A headless Chromium that loads a page. It has a process group and a folder of its own; both end with this object.
+class Chromium {
+ public:
+  // Throws std::system_error when it cannot be started.
+  Chromium(const std::string& program, const std::string& url, int width, int height) {
+    std::string pattern = (fs::temp_directory_path() / "kadans-page-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw std::system_error(errno, std::generic_category(), pattern);
+    folder_ = pattern;
+    try {
+      process_.emplace(ProgramStart{.words = arguments(program, url, folder_, width, height),
+                                    .files = {no_file, no_file, no_file},
+                                    .own_group = true});
+    } catch (...) {
+      fs::remove_all(folder_);
+      throw;
+    }
   }
-}
+  ~Chromium() {
+    process_->stop();  // it keeps nothing worth a farewell
+    std::error_code ignored;
+    for (int i = 0; i < 20 && !fs::remove_all(folder_, ignored) && ignored; ++i) usleep(50'000);  // its children end
+  }
+  Chromium(const Chromium&) = delete;
+  Chromium& operator=(const Chromium&) = delete;
 
-Chromium::~Chromium() {
-  process_->stop();  // it keeps nothing worth a farewell
-  std::error_code ignored;
-  for (int i = 0; i < 20 && !fs::remove_all(folder_, ignored) && ignored; ++i) usleep(50'000);  // its children end
-}
+  bool runs() noexcept { return !process_->ended(); }
 
-namespace {
+ private:
+  fs::path folder_;
+  std::optional<ChildProcess> process_;  // while the object lives
+};
 
 // The limit for the first picture, while Chromium starts and loads a record of any size, and between two pictures.
 constexpr std::chrono::seconds patience{120};

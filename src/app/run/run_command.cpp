@@ -48,6 +48,7 @@
 #include "version.h"
 
 namespace kadans {
+namespace {
 
 // The joystick of a live run. A task reads it a hundred times a second, so the engines never wait for it. It also
 // reports when the joystick is unplugged.
@@ -101,7 +102,23 @@ class Leaving final : public BesideTick {
         exchange_(exchange) {}
 
   void ask() noexcept { asked_.store(true, std::memory_order_relaxed); }  // supervisor
-  void beside_tick(std::int64_t time_ns) override;
+  void beside_tick(std::int64_t time_ns) override {
+    if (!asked_.load(std::memory_order_relaxed)) return;
+    if (step_ == Step::play) {
+      try {
+        host_.order({.kind = PlayOrder::Kind::stop});  // carried out in the tick that follows
+      } catch (const InputError&) {                    // the process of the behaviors is down
+      }
+      step_ = Step::leave;
+      return;
+    }
+    if (step_ == Step::leave) posture_.failed(time_ns, ~ObjectMask{0});
+    step_ = Step::move;
+    if (posture_.due(time_ns)) {
+      const auto snapshot = exchange_.snapshot.read(0);
+      posture_.move(*snapshot, behaviors_.sender(), 0);
+    }
+  }
 
  private:
   enum class Step : std::uint8_t { play, leave, move };
@@ -113,26 +130,6 @@ class Leaving final : public BesideTick {
   std::atomic<bool> asked_{false};
   Step step_ = Step::play;
 };
-
-void Leaving::beside_tick(std::int64_t time_ns) {
-  if (!asked_.load(std::memory_order_relaxed)) return;
-  if (step_ == Step::play) {
-    try {
-      host_.order({.kind = PlayOrder::Kind::stop});  // carried out in the tick that follows
-    } catch (const InputError&) {                    // the process of the behaviors is down
-    }
-    step_ = Step::leave;
-    return;
-  }
-  if (step_ == Step::leave) posture_.failed(time_ns, ~ObjectMask{0});
-  step_ = Step::move;
-  if (posture_.due(time_ns)) {
-    const auto snapshot = exchange_.snapshot.read(0);
-    posture_.move(*snapshot, behaviors_.sender(), 0);
-  }
-}
-
-namespace {
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
 constexpr std::size_t kept_lines = 1000;

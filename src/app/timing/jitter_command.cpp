@@ -28,6 +28,7 @@
 #include "telemetry/plot.h"
 
 namespace kadans {
+namespace {
 
 // The result of a timing test, for people and for programs.
 
@@ -39,17 +40,7 @@ struct JitterRun {
   std::int64_t keep_awake_ns = 0;          // CPU time of all measurements together
 };
 
-inline constexpr double verdict_share = 0.01;  // share of the period: the bound of 2008
-
-std::string jitter_text(const JitterRun& run);
-std::string jitter_json(const JitterRun& run);  // one line
-std::string jitter_svg(const JitterRun& run);   // both histograms of lateness, on logarithmic axes
-
-// All measurements as one sample.
-JitterSample together(const std::vector<JitterSample>& stretches);
-YardstickSample together(const std::vector<YardstickSample>& stretches);
-
-namespace {
+constexpr double verdict_share = 0.01;  // share of the period: the bound of 2008
 
 using Json = nlohmann::ordered_json;
 
@@ -163,8 +154,7 @@ std::string mode(const JitterRun& run) {
   return text + (run.load ? ", under load" : ", no load made");
 }
 
-}  // namespace
-
+// All measurements as one sample.
 JitterSample together(const std::vector<JitterSample>& stretches) {
   JitterSample all;
   for (const JitterSample& one : stretches) {
@@ -203,6 +193,7 @@ std::string jitter_text(const JitterRun& run) {
          "\n" + comparison(run);
 }
 
+// One line.
 std::string jitter_json(const JitterRun& run) {
   const JitterSample own = together(run.own);
   const TaskStatistics& s = own.statistics;
@@ -235,8 +226,6 @@ std::string jitter_json(const JitterRun& run) {
 
 // Draws the histograms: lateness to the right, shares upwards, both logarithmic, ours beside that of cyclictest.
 
-namespace {
-
 constexpr double ns_min = 10, ns_max = 1e8, share_min = 1e-6;
 constexpr int bins = 84;  // 12 a decade
 
@@ -254,8 +243,6 @@ PlotLine curve(const char* label, const TickStatistics& statistics) {
   }
   return line;
 }
-
-}  // namespace
 
 std::string jitter_svg(const JitterRun& run) {
   Plot plot{.title = "lateness of wake-ups, and its share of all",
@@ -275,8 +262,6 @@ std::string jitter_svg(const JitterRun& run) {
   if (!run.yardstick.empty()) plot.lines.push_back(curve("cyclictest", together(run.yardstick).lateness));
   return plot_svg(plot);
 }
-
-namespace {
 
 constexpr std::size_t pairs = 10;
 

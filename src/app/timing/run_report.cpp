@@ -1,13 +1,13 @@
 #include "run_report.h"
 
 #include <array>
-#include <cstdio>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "config/json/foreign_json.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -46,26 +46,22 @@ Json json_of(const TaskThread& thread) {
           {"preparation_s", preparation_s(thread)}};
 }
 
-std::string row(const char* name, const TickStatistics& s, const char* rest) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), "  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, in_us(s, p50), in_us(s, p99),
-                in_us(s, p999), in_us(s.max_ns()), rest);
-  return text.data();
+std::string row(const char* name, const TickStatistics& s, const std::string& rest) {
+  return printed("  %-20s %9.2f %9.2f %9.2f %9.2f  %s\n", name, in_us(s, p50), in_us(s, p99), in_us(s, p999),
+                 in_us(s.max_ns()), rest.c_str());
 }
 
 unsigned long long whole(std::uint64_t value) { return value; }
 
 std::string rows_of(const TaskThread& thread) {
   const TaskStatistics& s = thread.statistics();
-  std::array<char, 128> rest{};
-  std::snprintf(rest.data(), rest.size(), "%llu beats, %llu missed, %llu page faults", whole(s.lateness.count()),
-                whole(s.missed.get()), whole(thread.page_faults()));
-  std::string rows = row((thread.settings().name + ", late").c_str(), s.lateness, rest.data());
-  if (thread.preparation().count() > 0) {
-    std::snprintf(rest.data(), rest.size(), "before the tick, %.2f s of %.2f s CPU time", preparation_s(thread),
-                  1e-9 * static_cast<double>(thread.cpu_time_ns()));
-    rows += row("  preparation", thread.preparation(), rest.data());
-  }
+  std::string rows = row((thread.settings().name + ", late").c_str(), s.lateness,
+                         printed("%llu beats, %llu missed, %llu page faults", whole(s.lateness.count()),
+                                 whole(s.missed.get()), whole(thread.page_faults())));
+  if (thread.preparation().count() > 0)
+    rows += row("  preparation", thread.preparation(),
+                printed("before the tick, %.2f s of %.2f s CPU time", preparation_s(thread),
+                        1e-9 * static_cast<double>(thread.cpu_time_ns())));
   return rows + row("  work", s.execution, "");
 }
 
@@ -81,37 +77,26 @@ std::uint64_t refused(const WallClockResult& result) {
 }  // namespace
 
 std::string run_report_text(const WallClockResult& result) {
-  std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), "%s after %.3f s, %.1f MB resident, first tick %.0f ms after the start\n\n",
-                result.ended.c_str(), result.duration_s, resident_MB(), result.start_ms);
-  std::string all = text.data();
-  std::snprintf(text.data(), text.size(), "  %-20s %9s %9s %9s %9s\n", "us", "p50", "p99", "p999", "max");
-  all += text.data();
+  std::string all = printed("%s after %.3f s, %.1f MB resident, first tick %.0f ms after the start\n\n",
+                            result.ended.c_str(), result.duration_s, resident_MB(), result.start_ms);
+  all += printed("  %-20s %9s %9s %9s %9s\n", "us", "p50", "p99", "p999", "max");
   for (const auto& thread : result.threads.all()) all += rows_of(*thread);
   all += row("control tick alone", result.control.tick_cost(), "");
-  std::snprintf(text.data(), text.size(), "\n  commands: %llu sent, %llu applied, %llu refused\n",
-                whole(result.behaviors.commands().sent()), whole(result.engine.inbox().state().applied),
-                whole(refused(result)));
-  all += text.data();
+  all += printed("\n  commands: %llu sent, %llu applied, %llu refused\n", whole(result.behaviors.commands().sent()),
+                 whole(result.engine.inbox().state().applied), whole(refused(result)));
   for (const auto& [process, name] :
        {std::pair(result.process, "behavior process"), std::pair(result.decision_process, "decision process")}) {
     if (process == nullptr) continue;
     all += row(name, process->answer_cost(), "from the request to the answer");
-    std::snprintf(text.data(), text.size(), "  %s: died %llu times, replaced %llu times%s\n", name,
-                  whole(process->deaths()), whole(process->takeovers()), process->down() ? ", is down" : "");
-    all += text.data();
+    all += printed("  %s: died %llu times, replaced %llu times%s\n", name, whole(process->deaths()),
+                   whole(process->takeovers()), process->down() ? ", is down" : "");
   }
-  if (has_record(result)) {
-    std::snprintf(text.data(), text.size(), "  record: %llu rows, %u dropped, %llu lost, %.1f MB\n",
-                  whole(result.recorder->rows()), result.recorder->dropped(), whole(result.recorder->lost()),
-                  1e-6 * static_cast<double>(result.recorder->file_bytes()));
-    all += text.data();
-  }
-  if (result.plant != nullptr && result.plant->lost_periods() > 0) {
-    std::snprintf(text.data(), text.size(), "  the model was too slow: %llu ms did not pass for it\n",
-                  whole(result.plant->lost_periods()));
-    all += text.data();
-  }
+  if (has_record(result))
+    all += printed("  record: %llu rows, %u dropped, %llu lost, %.1f MB\n", whole(result.recorder->rows()),
+                   result.recorder->dropped(), whole(result.recorder->lost()),
+                   1e-6 * static_cast<double>(result.recorder->file_bytes()));
+  if (result.plant != nullptr && result.plant->lost_periods() > 0)
+    all += printed("  the model was too slow: %llu ms did not pass for it\n", whole(result.plant->lost_periods()));
   if (!result.link.empty()) all += "  link: " + link_text(result.link) + "\n";
   return all;
 }
