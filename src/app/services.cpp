@@ -5,12 +5,14 @@
 #include <CLI/CLI.hpp>
 
 #include "config/json/json_value.h"
+#include "config/robot/project_root.h"
 #include "kadans/signal/input_error.h"
 #include "option_checks.h"
 #include "remote/instance/run_description.h"
 #include "remote/page/page_files.h"
 #include "signal/number_text.h"
 #include "terminal.h"
+#include "version.h"
 
 namespace kadans {
 
@@ -92,6 +94,20 @@ RobotTexts robot_texts(const Assembly& assembly) {
     texts.others.push_back({.name = other->scenario().name, .urdf = read_input_file(file), .file = file});
   }
   return texts;
+}
+
+Instance::Facts facts_of(const Assembly& assembly, std::string mode, std::filesystem::path records) {
+  const RobotConfig& robot = assembly.robot();
+  return {.name = robot.name,
+          .mode = std::move(mode),
+          .version = version,
+          .configuration = std::filesystem::absolute(robot.file).lexically_normal(),
+          .root = project_root(assembly.scenario().file),
+          .folders = folders_of(assembly.scenario()),
+          .records = std::move(records),
+          .control_period_s = robot.engine.control_period_s,
+          .behavior_period_s = robot.engine.behavior_period_s,
+          .subjects = viewer_subjects(assembly)};
 }
 
 LiveService::LiveService(const LiveServiceOptions& place, Instance& instance, const Assembly& assembly,

@@ -56,6 +56,9 @@ void add_live_hosts(CLI::App& command, LiveServiceOptions& place);
 ViewerSubjects viewer_subjects(const Assembly& assembly);
 RobotTexts robot_texts(const Assembly& assembly);
 
+// What clients are told of it. `records` is the folder of the records that they order.
+Instance::Facts facts_of(const Assembly& assembly, std::string mode, std::filesystem::path records);
+
 class LiveService {
  public:
   // Make it before the loop: opens the port. Throws InputError when it cannot. `pace` is that of a simulation, else

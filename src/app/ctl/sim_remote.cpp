@@ -1,7 +1,6 @@
 #include "sim_remote.h"
 
 #include "app/run/run_choices.h"
-#include "config/robot/project_root.h"
 #include "version.h"
 
 namespace kadans {
@@ -9,30 +8,16 @@ namespace {
 
 constexpr std::uint32_t publish_every_ticks = 20;
 
-Instance::Facts facts_of(const ScenarioConfig& scenario, const Assembly& assembly) {
-  const RobotConfig& robot = assembly.robot();
-  return {.name = robot.name,
-          .mode = "simulation of " + scenario.name,
-          .version = version,
-          .configuration = std::filesystem::absolute(robot.file).lexically_normal(),
-          .root = project_root(scenario.file),
-          .folders = folders_of(scenario),
-          .records = std::filesystem::current_path(),
-          .control_period_s = robot.engine.control_period_s,
-          .behavior_period_s = robot.engine.behavior_period_s,
-          .subjects = viewer_subjects(assembly)};
-}
-
 }  // namespace
 
-SimRemote::SimRemote(const Places& places, const ScenarioConfig& scenario, Assembly& assembly, RecordPlan plan,
-                     BehaviorLog& log, LineEcho& echo)
+SimRemote::SimRemote(const Places& places, Assembly& assembly, RecordPlan plan, BehaviorLog& log, LineEcho& echo)
     : parts_(assembly.parts()),
       model_(assembly.robot().model),
       log_(log),
-      instance_(facts_of(scenario, assembly), assembly.catalog(), parts_.control.safety().emergency_stop()),
+      instance_(facts_of(assembly, "simulation of " + assembly.scenario().name, std::filesystem::current_path()),
+                assembly.catalog(), parts_.control.safety().emergency_stop()),
       control_side_(instance_),
-      record_side_(instance_, control_side_, {{"robot", scenario.robot}, {"kadans", version}}),
+      record_side_(instance_, control_side_, {{"robot", assembly.scenario().robot}, {"kadans", version}}),
       behavior_side_({instance_, &assembly.host(), nullptr, parts_.behaviors, parts_.control.exchange(), echo, log,
                       assembly.decision_questions()}),
       service_(places.ctl, instance_),

@@ -62,15 +62,6 @@ void ProgressBar::tick(double time_s, std::span<const double>) {
 
 bool ProgressBar::stop_asked() const { return interrupted(); }
 
-void Pace::tick(double time_s, std::span<const double>) {
-  const auto since =
-      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(time_s));
-  const auto now = std::chrono::steady_clock::now();
-  if (!running_ || now > began_ + since + std::chrono::milliseconds(100)) began_ = now - since;  // late: start anew
-  running_ = true;
-  std::this_thread::sleep_until(began_ + since);
-}
-
 TraceObserver::TraceObserver(std::string title, SignalId signal, double duration_s)
     : signal_(signal), every_s_(duration_s / trace_points), trace_{std::move(title), {}, duration_s} {
   trace_.values.reserve(static_cast<std::size_t>(trace_points) + 2);

@@ -11,8 +11,8 @@
 
 namespace kadans {
 
-// Keeps a simulation at the pace that clients ask for: a multiple of the wall clock, which may change while it runs,
-// held, or tick by tick.
+// Slows a simulation down to a pace, which clients may change while it runs: a multiple of the wall clock, held, or
+// tick by tick. One that is slower does not catch up.
 class ViewerPacer final : public RunObserver {
  public:
   explicit ViewerPacer(LivePace& pace) noexcept : pace_(pace) {}
@@ -41,16 +41,6 @@ class ProgressBar final : public RunObserver {
   double duration_s_;
   bool shown_;
   int drawn_percent_ = -1;
-};
-
-// Slows the run down to the pace of the wall clock, between two ticks. A run that is slower does not catch up.
-class Pace final : public RunObserver {
- public:
-  void tick(double time_s, std::span<const double> row) override;
-
- private:
-  std::chrono::steady_clock::time_point began_;
-  bool running_ = false;
 };
 
 // Keeps every n-th value of one signal for the report.

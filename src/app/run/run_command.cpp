@@ -158,21 +158,6 @@ std::filesystem::path folder_of_records(const std::string& record) {
   return fs::canonical(record);
 }
 
-Instance::Facts facts_of(const RunOptions& options, const ScenarioConfig& scenario, const Assembly& assembly) {
-  namespace fs = std::filesystem;
-  const RobotConfig& robot = assembly.robot();
-  return {.name = robot.name,
-          .mode = options.virtual_time ? "run on virtual time" : "run",
-          .version = version,
-          .configuration = fs::absolute(robot.file).lexically_normal(),
-          .root = project_root(scenario.file),
-          .folders = folders_of(scenario),
-          .records = folder_of_records(options.record),
-          .control_period_s = robot.engine.control_period_s,
-          .behavior_period_s = robot.engine.behavior_period_s,
-          .subjects = viewer_subjects(assembly)};
-}
-
 // Many runs on virtual time may go on at the same time. So a run on virtual time is reachable only when a folder was
 // named.
 CtlServiceOptions place_of(const RunOptions& options) {
@@ -528,8 +513,9 @@ class WallClockRun {
   std::unique_ptr<JoystickTask> joystick_;
   std::unique_ptr<SupervisorTask> supervisor_;  // of the decisions, or nullptr
   Leaving leaving_;
-  Instance instance_{facts_of(options_, scenario_, assembly_), assembly_.catalog(),
-                     parts_.control.safety().emergency_stop()};
+  Instance instance_{
+      facts_of(assembly_, options_.virtual_time ? "run on virtual time" : "run", folder_of_records(options_.record)),
+      assembly_.catalog(), parts_.control.safety().emergency_stop()};
   ControlSide control_side_{instance_};
   RecordSide record_side_{instance_,
                           control_side_,

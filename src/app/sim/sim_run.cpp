@@ -86,8 +86,8 @@ void SimRun::make_reachable() {
   places.ctl.wanted = places.ctl.wanted && (paced || !options_.ctl.folder.empty());
   if (!places.ctl.wanted && !places.live.wanted() && !places.ros2.wanted()) return;
   inputs_.run["ctl"] = "yes";
-  remote_ = std::make_unique<SimRemote>(places, scenario_, assembly_,
-                                        RecordPlan{record_plan_.settings, {}, {}, nullptr}, log_, echo_);
+  remote_ =
+      std::make_unique<SimRemote>(places, assembly_, RecordPlan{record_plan_.settings, {}, {}, nullptr}, log_, echo_);
   remote_->pace().speed = options_.speed;
 }
 
@@ -96,13 +96,10 @@ int SimRun::run() {
   const bool alone = !continuation_ || continuation_->branches.size() == 1;
   ProgressBar progress(duration_s_, stderr_is_terminal() && !options_.json && alone);
   std::vector<RunObserver*> observers{&progress, &height_, &evidence_, &metrics_, this};
-  Pace pace;
+  LivePace wall_clock;
   std::optional<ViewerPacer> pacer;
-  if ((options_.live.wanted() || options_.ros2.wanted()) && remote_) {
-    observers.push_back(&pacer.emplace(remote_->pace()));
-  } else if (options_.realtime) {
-    observers.push_back(&pace);
-  }
+  const bool viewed = (options_.live.wanted() || options_.ros2.wanted()) && remote_;
+  if (viewed || options_.realtime) observers.push_back(&pacer.emplace(viewed ? remote_->pace() : wall_clock));
   if (trail_) observers.push_back(trail_.get());
   if (checkpoints_) observers.push_back(checkpoints_.get());
   if (remote_) {

@@ -124,7 +124,7 @@ class Simulation::Stepped {
     places.live.port = std::to_string(page.port);
     places.live.address = page.address;
     places.ctl.wanted = false;
-    remote = std::make_unique<SimRemote>(places, scenario, assembly, record_plan(assembly, {}, false), log, echo);
+    remote = std::make_unique<SimRemote>(places, assembly, record_plan(assembly, {}, false), log, echo);
     remote->begin(recorder.get(), record_file);
     pacer.emplace(remote->pace());
   }

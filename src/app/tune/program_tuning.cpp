@@ -1,9 +1,6 @@
 #include "program_tuning.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -86,7 +83,7 @@ class ProgramTuning {
       std::vector<double> scores;
       for (const Judged& one : judged) scores.push_back(score_of(one, first));
       search_.tell(scores);
-      tell_generation(scores);
+      if (!options_.json) print_generation(plan_, search_, scores);
     }
     const std::vector<double> found = values_at(axes_, search_.best());
     std::vector<double> start;
@@ -95,7 +92,7 @@ class ProgramTuning {
         judge_all(plan_.check_program.empty() ? plan_.program : plan_.check_program, {start, found});
     if (interrupted()) return exit_interrupted;
     for (const Judged& one : judged) (void)score_of(one, true);
-    if (!options_.write.empty()) write_durably(options_.write, json_text(by_name(found), 1) + "\n");
+    if (!options_.write.empty()) write_durably(options_.write, json_text(by_name(axes_, found), 1) + "\n");
     report(found, judged);
     return exit_passed;
   }
@@ -136,35 +133,17 @@ class ProgramTuning {
     return plan_.greatest ? -value : value;
   }
 
-  void tell_generation(const std::vector<double>& scores) const {
-    if (options_.json) return;
-    const double sign = plan_.greatest ? -1 : 1;
-    std::printf("  generation-%03zu  best %.5g, best so far %.5g\n", search_.generation() - 1,
-                sign * *std::ranges::min_element(scores), sign * search_.best_score());
-    std::fflush(stdout);
-  }
-
-  Json by_name(const std::vector<double>& values) const {
-    Json json = Json::object();
-    for (std::size_t i = 0; i < axes_.size(); ++i) json[axes_[i].parameter.pattern.name] = values[i];
-    return json;
-  }
-
   void report(const std::vector<double>& found, const std::vector<Judged>& judged) const {
     if (options_.json) {
       const Json json{{"tuning", plan_.name},
                       {"generations", plan_.generations},
-                      {"parameters", by_name(found)},
+                      {"parameters", by_name(axes_, found)},
                       {"before", judged[0].metrics},
                       {"after", judged[1].metrics}};
       std::puts(json_text(json).c_str());
       return;
     }
-    std::printf("%s%s%s\n", plan_.name.c_str(), plan_.doc.empty() ? "" : ": ", plan_.doc.c_str());
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-      std::printf("  %s  %s -> %s\n", axes_[i].parameter.pattern.name.c_str(), number_text(axes_[i].start).c_str(),
-                  number_text(found[i]).c_str());
-    }
+    print_found(plan_, axes_, found);
     std::printf("  before  %s\n  after   %s\n", json_text(judged[0].metrics).c_str(),
                 json_text(judged[1].metrics).c_str());
   }
@@ -192,8 +171,7 @@ int tune_by_program(const TuneOptions& options, const TunePlan& plan) {
   refuse_option(options.runs.has_value(), "--runs");
   refuse_option(!options.shard.empty(), "--shard");
   refuse_option(!options.out.empty(), "--out");
-  if (!options.write.empty() && std::filesystem::exists(options.write) && !options.overwrite)
-    throw InputError({.file = options.write, .message = "is there already; --overwrite replaces it"});
+  require_free(options);
   return ProgramTuning(options, plan).run();
 }
 
