@@ -22,7 +22,7 @@ class App;
 
 namespace kadans {
 
-struct SimOptions : RunChoices {
+struct SimOptions : RunChoices, ServiceOptions {
   bool json = false, verbose = false, no_record = false, realtime = false, watch = false;
   std::string metrics;  // plan whose metrics are reported; "": none
   std::string record;   // "": NAME.mcap in the working directory
@@ -33,10 +33,7 @@ struct SimOptions : RunChoices {
   std::vector<std::string> push;         // with from
   std::vector<std::string> branches;     // "hard: push torso=0,3,0"
   std::optional<double> hash_every_s;
-  CtlServiceOptions ctl;  // always with realtime, else when a folder is named
-  LiveServiceOptions live;
   ReportOptions report;
-  Ros2Options ros2;
   double speed = 1;  // with live or ros2: multiple of the wall clock's speed
 };
 void add_sim(CLI::App& app, SimOptions& options);
@@ -67,7 +64,7 @@ struct CheckOptions {
 void add_check(CLI::App& app, CheckOptions& options);
 int run_check(const CheckOptions& options);
 
-struct RunOptions {
+struct RunOptions : ServiceOptions {
   std::string robot;
   std::string plant = "bullet";
   std::string peer;        // address of the drives; "": the robot's own
@@ -92,9 +89,6 @@ struct RunOptions {
   double behaviors_patience_s = 0;              // time for the process to answer; 0: the default
   std::uint32_t behaviors_deaths = 0;           // deaths in a row before it stays down; 0: the default
   double behaviors_memory_MB = 256;             // beyond what the process has when it begins to play
-  CtlServiceOptions ctl;                        // on virtual time only when a folder is named
-  LiveServiceOptions live;
-  Ros2Options ros2;
 };
 void add_run(CLI::App& app, RunOptions& options);
 int run_live(const RunOptions& options);

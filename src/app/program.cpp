@@ -96,9 +96,7 @@ void add_run(CLI::App& app, RunOptions& options) {
          "Memory that such a process may take in addition to what it has when it begins to play (default: 256)")
       ->type_name("MB")
       ->check(number_within(1.0, 1e6));
-  add_ctl_service(*run, options.ctl);
-  add_live_service(*run, options.live);
-  add_ros2_service(*run, options.ros2);
+  add_services(*run, options);
   run->add_flag("--json", options.json, "Print one JSON object instead of text");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log and their transitions");
   run->add_option("--log-file", options.log_file, "Append all log lines to this file, transitions too (default: none)")

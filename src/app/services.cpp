@@ -15,6 +15,9 @@
 #include "version.h"
 
 namespace kadans {
+namespace {
+
+constexpr int domain_max = 232;  // higher numbers would give invalid ports
 
 void add_ctl_service(CLI::App& command, CtlServiceOptions& place) {
   CLI::Option* folder =
@@ -27,6 +30,48 @@ void add_ctl_service(CLI::App& command, CtlServiceOptions& place) {
       .add_option("--ctl-developers", place.developers,
                   "Group that may also change parameters and behaviors of this run")
       ->type_name("GROUP");
+}
+
+void add_live_service(CLI::App& command, LiveServiceOptions& place) {
+  command
+      .add_flag("--live{8765}", place.port,
+                "Serve this run to browsers and to viewers such as Foxglove; --live=PORT, 0: any free port")
+      ->check(whole_within(0, 65535));
+  command.add_option("--live-address", place.address, "Address to listen on (default: this machine alone)")
+      ->type_name("IP");
+  command.add_option("--live-token", place.token, "Token that a client needs to change anything (default: a new one)")
+      ->type_name("TEXT");
+  add_live_hosts(command, place);
+}
+
+void add_ros2_service(CLI::App& command, Ros2Options& place) {
+  CLI::Option* ros2 =
+      command
+          .add_flag("--ros2{-1}", place.domain,
+                    "Publish ROS 2 topics on this machine; --ros2=DOMAIN (default: ROS_DOMAIN_ID, else 0)")
+          ->check(whole_within(-1, domain_max));
+  command.add_option("--ros2-rate", place.rate_hz, "Rate of the topics (default: 100)")
+      ->type_name("HZ")
+      ->check(number_within(1.0, 1000.0))
+      ->needs(ros2);
+  command.add_flag("--ros2-commands", place.commands, "Carry out the commands that anybody sends to /kadans/command")
+      ->needs(ros2);
+}
+
+}  // namespace
+
+void add_live_hosts(CLI::App& command, LiveServiceOptions& place) {
+  command
+      .add_option("--live-host", place.hosts,
+                  "Another name of this machine, by which clients without the token may reach it")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+}
+
+void add_services(CLI::App& command, ServiceOptions& options) {
+  add_ctl_service(command, options.ctl);
+  add_live_service(command, options.live);
+  add_ros2_service(command, options.ros2);
 }
 
 CtlService::CtlService(const CtlServiceOptions& place, Instance& instance) {
@@ -50,26 +95,6 @@ void CtlService::start() {
 
 void CtlService::stop() noexcept {
   if (server_) server_->stop();
-}
-
-void add_live_service(CLI::App& command, LiveServiceOptions& place) {
-  command
-      .add_flag("--live{8765}", place.port,
-                "Serve this run to browsers and to viewers such as Foxglove; --live=PORT, 0: any free port")
-      ->check(whole_within(0, 65535));
-  command.add_option("--live-address", place.address, "Address to listen on (default: this machine alone)")
-      ->type_name("IP");
-  command.add_option("--live-token", place.token, "Token that a client needs to change anything (default: a new one)")
-      ->type_name("TEXT");
-  add_live_hosts(command, place);
-}
-
-void add_live_hosts(CLI::App& command, LiveServiceOptions& place) {
-  command
-      .add_option("--live-host", place.hosts,
-                  "Another name of this machine, by which clients without the token may reach it")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
 }
 
 ViewerSubjects viewer_subjects(const Assembly& assembly) {
@@ -138,8 +163,6 @@ void LiveService::stop() noexcept {
 
 namespace {
 
-constexpr int domain_max = 232;  // higher numbers would give invalid ports
-
 std::uint32_t domain_of(const Ros2Options& place) {
   if (place.domain != "-1") return static_cast<std::uint32_t>(std::stoul(place.domain));
   const char* const text = std::getenv("ROS_DOMAIN_ID");  // NOLINT(concurrency-mt-unsafe): before any thread
@@ -153,20 +176,6 @@ std::uint32_t domain_of(const Ros2Options& place) {
 }
 
 }  // namespace
-
-void add_ros2_service(CLI::App& command, Ros2Options& place) {
-  CLI::Option* ros2 =
-      command
-          .add_flag("--ros2{-1}", place.domain,
-                    "Publish ROS 2 topics on this machine; --ros2=DOMAIN (default: ROS_DOMAIN_ID, else 0)")
-          ->check(whole_within(-1, domain_max));
-  command.add_option("--ros2-rate", place.rate_hz, "Rate of the topics (default: 100)")
-      ->type_name("HZ")
-      ->check(number_within(1.0, 1000.0))
-      ->needs(ros2);
-  command.add_flag("--ros2-commands", place.commands, "Carry out the commands that anybody sends to /kadans/command")
-      ->needs(ros2);
-}
 
 Ros2Service::Ros2Service(const Ros2Options& place, Instance& instance, const Assembly& assembly, LivePace* pace,
                          int avoid_cpu) {

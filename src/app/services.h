@@ -23,7 +23,6 @@ struct CtlServiceOptions {
   bool wanted = true;
   std::string operators, developers;  // groups; "": the group of the process
 };
-void add_ctl_service(CLI::App& command, CtlServiceOptions& place);
 
 class CtlService {
  public:
@@ -49,8 +48,24 @@ struct LiveServiceOptions {
   bool wanted() const noexcept { return !port.empty(); }
   std::uint16_t port_number() const { return static_cast<std::uint16_t>(std::stoul(port)); }
 };
-void add_live_service(CLI::App& command, LiveServiceOptions& place);
 void add_live_hosts(CLI::App& command, LiveServiceOptions& place);
+
+// Shows a running instance on topics of ROS 2: --ros2.
+struct Ros2Options {
+  std::string domain;  // "": not wanted; "-1": from ROS_DOMAIN_ID
+  double rate_hz = 100;
+  bool commands = false;
+
+  bool wanted() const noexcept { return !domain.empty(); }
+};
+
+// Of a simulation or a run.
+struct ServiceOptions {
+  CtlServiceOptions ctl;  // without the wall clock only when a folder is named
+  LiveServiceOptions live;
+  Ros2Options ros2;
+};
+void add_services(CLI::App& command, ServiceOptions& options);
 
 // What viewers show of the assembled robot and of the further ones of its world.
 ViewerSubjects viewer_subjects(const Assembly& assembly);
@@ -73,16 +88,6 @@ class LiveService {
   std::unique_ptr<LiveHub> hub_;
   std::unique_ptr<LiveServer> server_;
 };
-
-// Shows a running instance on topics of ROS 2: --ros2.
-struct Ros2Options {
-  std::string domain;  // "": not wanted; "-1": from ROS_DOMAIN_ID
-  double rate_hz = 100;
-  bool commands = false;
-
-  bool wanted() const noexcept { return !domain.empty(); }
-};
-void add_ros2_service(CLI::App& command, Ros2Options& place);
 
 class Ros2Service {
  public:

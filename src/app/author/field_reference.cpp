@@ -1,5 +1,3 @@
-#include "field_reference.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,21 +7,14 @@
 #include "app/assembly/robot.h"
 #include "config/json/fields.h"
 #include "config/plan/experiment_plans.h"
+#include "engine/behavior_log.h"
+#include "reference_pages.h"
 #include "signal/number_text.h"
 
 namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string cell(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '|' || c == '<' || c == '*' || c == '_') safe += '\\';
-    safe += c;
-  }
-  return safe;
-}
 
 std::string range_text(double min, double max) {
   constexpr double exact_max = 9007199254740992.0;  // 2^53; beyond it there is no bound worth telling
@@ -41,11 +32,8 @@ std::string type_of(const FieldInfo& field) {
       return "whole number";
     case Kind::number:
       return "number";
-    case Kind::string: {
-      std::string choices;
-      for (const std::string& choice : field.choices) choices += (choices.empty() ? "" : ", ") + choice;
-      return choices.empty() ? "text" : choices;
-    }
+    case Kind::string:
+      return field.choices.empty() ? "text" : listed(field.choices);
     case Kind::plain:
       return "number, text, true or false";
     case Kind::object:
@@ -64,12 +52,12 @@ void add_rows(const FieldInfo& info, const std::string& path, std::string& text)
     const std::string name = path + field.name;
     if (!field.name.empty()) {
       const std::string range = range_text(field.min, field.max);
-      text += "| `" + name + "` | " + cell(type_of(field)) + (range.empty() ? "" : ", " + range) +
-              (field.unit.empty() ? "" : " " + cell(field.unit)) + " | " +
+      text += "| `" + name + "` | " + markdown_text(type_of(field)) + (range.empty() ? "" : ", " + range) +
+              (field.unit.empty() ? "" : " " + markdown_text(field.unit)) + " | " +
               (field.required               ? "required"
                : field.default_json.empty() ? ""
                                             : "`" + field.default_json + "`") +
-              " | " + cell(field.doc) + " |\n";
+              " | " + markdown_text(field.doc) + " |\n";
     }
     const bool many = field.kind == Kind::list || field.kind == Kind::map;
     if (!many)
@@ -103,11 +91,11 @@ void add_robot(const fs::path& file, std::map<std::string, TypeRows>& types, std
     for (const ParameterId id : object.parameters) {
       const Parameter& info = catalog.parameters.info(id);
       rows.parameters[last_word(info.name)] =
-          cell(info.unit) + " | " + range_text(info.min, info.max) + " | " + cell(info.doc);
+          markdown_text(info.unit) + " | " + range_text(info.min, info.max) + " | " + markdown_text(info.doc);
     }
     for (const SetpointId id : object.setpoints) {
       const Setpoint& info = catalog.setpoints[id];
-      rows.setpoints[last_word(info.name)] = cell(info.unit) + " | " + range_text(info.min, info.max) + " | ";
+      rows.setpoints[last_word(info.name)] = markdown_text(info.unit) + " | " + range_text(info.min, info.max) + " | ";
     }
   }
 }
@@ -116,12 +104,6 @@ void add_table(const std::string& what, const std::map<std::string, std::string>
   if (rows.empty()) return;
   text += "\n| " + what + " | unit | range | meaning |\n|---|---|---|---|\n";
   for (const auto& [name, row] : rows) text += "| `" + name + "` | " + row + " |\n";
-}
-
-std::string listed(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 }  // namespace
@@ -152,11 +134,12 @@ std::string object_reference(const fs::path& root) {
       "or set-point that each joint of an object has stands once. [control.md](control.md) is the guide.\n";
   for (const auto& [type, rows] : types) {
     known.erase(type);
-    text += "\n## " + type + "\n\nUsed by: " + listed(rows.robots) + ".\n";
+    text += "\n## " + type + "\n\nUsed by: " + listed({rows.robots.begin(), rows.robots.end()}) + ".\n";
     add_table("parameter", rows.parameters, text);
     add_table("set-point", rows.setpoints, text);
   }
-  if (!known.empty()) text += "\n## Others\n\nNone of these robots uses: " + listed(known) + ".\n";
+  if (!known.empty())
+    text += "\n## Others\n\nNone of these robots uses: " + listed({known.begin(), known.end()}) + ".\n";
   return text;
 }
 

@@ -1,5 +1,3 @@
-#include "man_page.h"
-
 #include <algorithm>
 #include <cctype>
 #include <sstream>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "app/command_line.h"
+#include "reference_pages.h"
 #include "version.h"
 
 namespace kadans {
@@ -118,27 +117,18 @@ std::string roff_commands(const CLI::App& program, const std::string& words) {
   return text;
 }
 
-std::string markdown(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '|' || c == '<' || c == '*' || c == '_') safe += '\\';
-    safe += c;
-  }
-  return safe;
-}
-
 void add_markdown(const CLI::App& command, const std::string& words, std::string& text) {
-  text += "\n## " + words + "\n\n" + markdown(command.get_description()) + ".\n\n```text\n" + usage_of(command, words) +
-          "\n```\n";
+  text += "\n## " + words + "\n\n" + markdown_text(command.get_description()) + ".\n\n```text\n" +
+          usage_of(command, words) + "\n```\n";
   std::string rows;
   for (const bool positional : {true, false}) {
     for (const CLI::Option* option : options_of(command, positional))
-      rows += "| `" + joined(option_words(*option), ' ') + "` | " + markdown(option->get_description()) + " |\n";
+      rows += "| `" + joined(option_words(*option), ' ') + "` | " + markdown_text(option->get_description()) + " |\n";
   }
   if (!rows.empty()) text += "\n| argument or option | meaning |\n|---|---|\n" + rows;
   const Footer footer = footer_of(command);
   if (!footer.examples.empty()) text += "\n```sh\n" + footer.examples + "```\n";
-  if (!footer.notes.empty()) text += "\n" + markdown(footer.notes);
+  if (!footer.notes.empty()) text += "\n" + markdown_text(footer.notes);
   for (const CLI::App* verb : visible_below(command)) add_markdown(*verb, words + " " + verb->get_name(), text);
 }
 
@@ -162,6 +152,15 @@ std::string man_page(const CLI::App& command, const std::string& words) {
   if (!footer.notes.empty()) text += ".SH NOTES\n" + roff(footer.notes);
   return text + ".SH SEE ALSO\n" + (program ? "" : "\\fBkadans\\fR(1), ") +
          "the manual in /usr/share/doc/kadans\\-doc (package kadans\\-doc)\n";
+}
+
+std::string markdown_text(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '|' || c == '<' || c == '*' || c == '_') safe += '\\';
+    safe += c;
+  }
+  return safe;
 }
 
 std::string command_reference(const CLI::App& program) {

@@ -6,8 +6,7 @@
 #include "app/commands.h"
 #include "app/terminal.h"
 #include "config/robot/project_root.h"
-#include "field_reference.h"
-#include "man_page.h"
+#include "reference_pages.h"
 #include "signal/durable_file.h"
 
 namespace kadans {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "engine/behavior_log.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -119,9 +120,7 @@ std::string BenchSession::ask(const Question& question) {
     if (!answer) continue;
     if (question.answers.empty() || std::ranges::find(question.answers, *answer) != question.answers.end())
       return *answer;
-    std::string known;
-    for (const std::string& one : question.answers) known += (known.empty() ? "" : ", ") + one;
-    person_.hear("'" + *answer + "' is no answer here; there are: " + known);
+    person_.hear("'" + *answer + "' is no answer here; there are: " + listed(question.answers));
     person_.ask(question);
   }
 }

@@ -40,19 +40,20 @@ std::vector<std::size_t> joints_of(const RobotConfig& robot, const std::vector<s
 bool run_step(const StepEntry& entry, const CommissionSettings& settings, Person& person, const OpenDrives& open,
               Progress& progress, CommissionReport& report) {
   const Robot robot = read_robot(settings.robot);
-  Wiring wiring(plant_type_named(robot.config, "--plant", {settings.plant, {}}), robot.config.model, settings.robot);
+  const PlantType& type = plant_type_named(robot.config, "--plant", {settings.plant, {}});
+  Wiring wiring(type, robot.config.model, settings.robot);
   std::vector<std::size_t> joints = joints_of(robot.config, settings.joints);
   std::erase_if(joints, [&](std::size_t j) { return progress.done(entry.name, robot.config.model.joints[j].name); });
   if (joints.empty()) return true;
   person.hear("== " + std::string(entry.name));
-  const OpenBench drives = open(robot);
-  if (!drives.bench) return false;
+  const std::unique_ptr<Bench> bench = open(robot);
+  if (!bench) return false;
   std::vector<double> drive_effort_max_Nm;
   for (const DriveSettings& drive : robot.config.plant.drives) drive_effort_max_Nm.push_back(drive.torque_max_Nm);
-  BenchSession session(*drives.bench, person, robot.config.model,
+  BenchSession session(*bench, person, robot.config.model,
                        {.share = settings.share,
                         .period_s = robot.config.engine.control_period_s,
-                        .words = drives.words,
+                        .words = type.drive_words(),
                         .drive_effort_max_Nm = drive_effort_max_Nm});
   if (entry.by_drives) session.by_drives();
   CommissionStep step{session, robot, robot.config, wiring, progress, entry.name, joints, report.problems};

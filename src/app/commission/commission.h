@@ -29,12 +29,8 @@ struct CommissionSettings {
 // The names of the steps, in their order.
 const std::vector<std::string>& commission_steps();
 
-struct OpenBench {
-  std::unique_ptr<Bench> bench;
-  DriveWords words = nullptr;
-};
-// Opens the drives of a robot that has just been read. No bench: somebody wants the program to end.
-using OpenDrives = std::function<OpenBench(const Robot& robot)>;
+// Opens the drives of a robot that has just been read. nullptr: somebody wants the program to end.
+using OpenDrives = std::function<std::unique_ptr<Bench>(const Robot& robot)>;
 
 struct CommissionReport {
   std::vector<std::string> problems;  // sentences

@@ -78,11 +78,9 @@ int run_commission(const CommissionOptions& options) {
   } else {
     person = std::make_unique<WrittenPerson>(options.answers);
   }
-  const OpenDrives open = [&](const Robot& robot) -> OpenBench {
+  const OpenDrives open = [&](const Robot& robot) {
     auto bench = std::make_unique<DriveBench>(robot, settings.plant, options.peer, "");
-    if (!bench->open()) return {};
-    const DriveWords words = bench->words();
-    return {std::move(bench), words};
+    return bench->open() ? std::move(bench) : nullptr;
   };
   const CommissionReport report = commission(settings, *person, open);
   for (const std::string& problem : report.problems) print_error(problem);

@@ -54,9 +54,8 @@ void find_gains(CommissionStep& step);
 // The least inertia that each joint's drive may feel: the others move as they like. With the rotors, at the pose 0.
 // `by_drives`: that of the drives, where two move two joints.
 std::vector<double> inertias_kg_m2(const RobotConfig& robot, bool by_drives = false);
-// "counter-clockwise, seen from above": how a joint turns in its positive direction, at the pose 0. Of a drive that
-// moves two joints what each of them does.
-std::string positive_turn(const RobotModel& model, std::size_t joint);
+// "counter-clockwise, seen from above": how a joint's drive turns it in its positive direction, at the pose 0. Of one
+// that moves two joints what each of them does.
 std::string positive_turn_of_drive(const RobotModel& model, std::size_t joint);
 std::string degrees_text(double rad);  // "1.2 degrees"
 

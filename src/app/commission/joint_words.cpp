@@ -68,11 +68,9 @@ std::string turn_text(const RobotModel& model, std::size_t joint, double sign) {
 
 }  // namespace
 
-std::string positive_turn(const RobotModel& model, std::size_t joint) { return turn_text(model, joint, 1); }
-
 std::string positive_turn_of_drive(const RobotModel& model, std::size_t joint) {
   const Transmission* const pair = model.coupling_of(joint);
-  if (pair == nullptr) return positive_turn(model, joint);
+  if (pair == nullptr) return turn_text(model, joint, 1);
   const std::size_t drive = pair->joints()[0] == joint ? 0 : 1;
   std::string text;
   for (std::size_t k = 0; k < 2; ++k) {

@@ -10,7 +10,8 @@ constexpr std::uint32_t publish_every_ticks = 20;
 
 }  // namespace
 
-SimRemote::SimRemote(const Places& places, Assembly& assembly, RecordPlan plan, BehaviorLog& log, LineEcho& echo)
+SimRemote::SimRemote(const ServiceOptions& places, Assembly& assembly, RecordPlan plan, BehaviorLog& log,
+                     LineEcho& echo)
     : parts_(assembly.parts()),
       model_(assembly.robot().model),
       log_(log),

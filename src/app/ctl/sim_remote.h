@@ -16,15 +16,10 @@ namespace kadans {
 
 class SimRemote final : public RunObserver {
  public:
-  struct Places {
-    CtlServiceOptions ctl;
-    LiveServiceOptions live;
-    Ros2Options ros2;
-  };
   // All references must outlive this object; after it nothing is said. `echo` is a sink of `log`, the log of the
   // behaviors. This object replaces the assembly's record sink. `plan` is for records that clients
   // order.
-  SimRemote(const Places& places, Assembly& assembly, RecordPlan plan, BehaviorLog& log, LineEcho& echo);
+  SimRemote(const ServiceOptions& places, Assembly& assembly, RecordPlan plan, BehaviorLog& log, LineEcho& echo);
   ~SimRemote() override;
   SimRemote(const SimRemote&) = delete;
   SimRemote& operator=(const SimRemote&) = delete;

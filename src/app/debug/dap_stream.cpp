@@ -7,6 +7,7 @@
 
 #include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
+#include "run_channel.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -66,13 +67,8 @@ std::optional<nlohmann::ordered_json> DapStream::next() {
 void DapStream::send(nlohmann::ordered_json message) {
   message["seq"] = ++sequence_;
   const std::string text = json_text(message);
-  const std::string all = "Content-Length: " + std::to_string(text.size()) + "\r\n\r\n" + text;
-  for (std::size_t sent = 0; sent < all.size();) {
-    const ssize_t more = write(out_, all.data() + sent, all.size() - sent);
-    if (more < 0 && errno == EINTR) continue;
-    if (more <= 0) return;  // whoever reads is gone, which read() will notice
-    sent += static_cast<std::size_t>(more);
-  }
+  // When whoever reads is gone, read() will notice.
+  (void)write_all(out_, "Content-Length: " + std::to_string(text.size()) + "\r\n\r\n" + text);
 }
 
 }  // namespace kadans

@@ -453,12 +453,7 @@ std::string DebuggedRun::in_copy(const std::function<std::string()>& work) {
     end_after(condition_s);
     goal_ = {.until = {}, .quiet = true, .step = {}};
     close(ends[0]);
-    text = work();
-    for (std::size_t sent = 0; sent < text.size();) {
-      const ssize_t more = write(ends[1], text.data() + sent, text.size() - sent);
-      if (more <= 0) break;
-      sent += static_cast<std::size_t>(more);
-    }
+    (void)write_all(ends[1], work());
     _exit(0);
   }
   close(ends[1]);

@@ -15,17 +15,6 @@
 namespace kadans {
 namespace {
 
-bool send_all(int socket, const char* bytes, std::size_t size) noexcept {
-  while (size > 0) {
-    const ssize_t sent = ::send(socket, bytes, size, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) return false;
-    bytes += sent;
-    size -= static_cast<std::size_t>(sent);
-  }
-  return true;
-}
-
 bool receive_all(int socket, char* bytes, std::size_t size) noexcept {
   while (size > 0) {
     const ssize_t got = ::recv(socket, bytes, size, 0);
@@ -55,6 +44,16 @@ struct Head {
 };
 
 }  // namespace
+
+bool write_all(int descriptor, std::string_view bytes) noexcept {
+  while (!bytes.empty()) {
+    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
 
 RunChannel& RunChannel::operator=(RunChannel&& other) noexcept {
   if (this != &other) {
@@ -90,7 +89,7 @@ bool RunChannel::send(const Json& json, const RunChannel* end) const noexcept {
   ssize_t sent = 0;
   do sent = sendmsg(socket_, &head.message, MSG_NOSIGNAL);
   while (sent < 0 && errno == EINTR);
-  return sent == static_cast<ssize_t>(sizeof head.length) && send_all(socket_, text.data(), text.size());
+  return sent == static_cast<ssize_t>(sizeof head.length) && write_all(socket_, text);
 }
 
 std::optional<Json> RunChannel::receive(RunChannel* end) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -38,6 +39,9 @@ inline void from_json(const Json& json, LineBreak& one) {
   json.at(0).get_to(one.id), json.at(1).get_to(one.chunk), json.at(2).get_to(one.line);
   json.at(3).get_to(one.condition), json.at(4).get_to(one.hits), json.at(5).get_to(one.log);
 }
+
+// False: whoever reads is gone. SIGPIPE must be ignored.
+bool write_all(int descriptor, std::string_view bytes) noexcept;
 
 class RunChannel {
  public:

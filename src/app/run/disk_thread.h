@@ -16,14 +16,11 @@ namespace kadans {
 class DiskThread {
  public:
   explicit DiskThread(RecordSide& records) : records_(records) {}
-  ~DiskThread() { stop(); }
-  DiskThread(const DiskThread&) = delete;
-  DiskThread& operator=(const DiskThread&) = delete;
 
   // Throws std::system_error.
   void start();
   // Forces what is there to the disk a last time, and waits for that.
-  void stop();
+  void stop() { thread_ = {}; }
 
  private:
   // One file, also after it was completed, until another takes its place.

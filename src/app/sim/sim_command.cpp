@@ -117,9 +117,7 @@ void add_sim(CLI::App& app, SimOptions& options) {
   add_number(*sim, "--hash-every", options.hash_every_s, 0.001, scenario_duration_max_s, "S",
              "With --json: print the state hash every S seconds");
   add_report_options(*sim, options.report, "Write a page about the run, NAME-SEED.html, into a folder", "always");
-  add_ctl_service(*sim, options.ctl);
-  add_live_service(*sim, options.live);
-  add_ros2_service(*sim, options.ros2);
+  add_services(*sim, options);
   add_number(*sim, "--speed", options.speed, 0.01, 100.0, "X",
              "With --live or --ros2: speed as a multiple of the wall clock's");
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");

@@ -82,7 +82,7 @@ SimRun::SimRun(const SimOptions& options, const RunChoices& choices, std::option
 
 void SimRun::make_reachable() {
   const bool paced = options_.realtime || options_.live.wanted() || options_.ros2.wanted();
-  SimRemote::Places places{options_.ctl, options_.live, options_.ros2};
+  ServiceOptions places = options_;
   places.ctl.wanted = places.ctl.wanted && (paced || !options_.ctl.folder.empty());
   if (!places.ctl.wanted && !places.live.wanted() && !places.ros2.wanted()) return;
   inputs_.run["ctl"] = "yes";

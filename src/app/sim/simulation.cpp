@@ -120,7 +120,7 @@ class Simulation::Stepped {
   }
 
   void show(const SimulationPage& page) {
-    SimRemote::Places places;
+    ServiceOptions places;
     places.live.port = std::to_string(page.port);
     places.live.address = page.address;
     places.ctl.wanted = false;

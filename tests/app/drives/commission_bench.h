@@ -262,12 +262,11 @@ struct Commissioned {
 };
 
 inline void go(Commissioned& all, const CommissionSettings& settings, const Truth& truth) {
-  const OpenDrives open = [&](const Robot& robot) -> OpenBench {
+  const OpenDrives open = [&](const Robot& robot) {
     auto bench = std::make_unique<VirtualBench>(robot, truth, all.seen);
     all.person.bench = bench.get();
     bench->hand = all.person.hand_at;
-    const DriveWords words = plant_type(robot.config.plant_types, truth.type).drive_words();
-    return {std::move(bench), words};
+    return bench;
   };
   all.report = commission(settings, all.person, open);
 }

@@ -105,10 +105,10 @@ class TypingPerson final : public Person {
 
 CommissionReport typed(Project& project, TypingPerson& person) {
   person.seen = &project.all.seen;
-  return commission(project.settings, person, [&](const Robot& robot) -> OpenBench {
+  return commission(project.settings, person, [&](const Robot& robot) {
     auto bench = std::make_unique<VirtualBench>(robot, project.truth, project.all.seen);
     person.bench = bench.get();
-    return {std::move(bench), nullptr};
+    return bench;
   });
 }
 
