@@ -2,7 +2,6 @@
 
 #include <type_traits>
 
-#include "app/commission/commission_command.h"
 #include "app/new/new_options.h"
 #include "commands.h"
 #include "terminal.h"

@@ -1,4 +1,5 @@
-// The program's commands. Each returns the program's exit code and throws InputError for a wrong file.
+// The program's commands: add_ puts one on the command line; run_, after parsing, returns the program's exit code and
+// throws InputError for a wrong file.
 #pragma once
 
 #include <cstdint>
@@ -137,6 +138,19 @@ struct JogOptions {
 void add_jog(CLI::App& app, JogOptions& options);
 int run_jog(const JogOptions& options);
 
+struct CommissionOptions {
+  std::string robot;
+  std::string plant;  // "": the only type with wiring that the robot's configuration has
+  std::string peer;   // address of the drives; "": the robot's own
+  double share = 0.1;
+  std::vector<std::string> steps;  // none: all
+  std::vector<std::string> joints;
+  std::string answers;  // file of lines; "": the terminal, or lines of the standard input
+  bool again = false;
+};
+void add_commission(CLI::App& app, CommissionOptions& options);
+int run_commission(const CommissionOptions& options);
+
 // The bench of servos: each of its commands is one of `kadans dynamixel`.
 struct DynamixelOptions {
   std::string device;
@@ -173,7 +187,6 @@ struct ReplayOptions {
   double at_s = 0;            // when
   std::string written;        // record of what the repetition of a run on threads computes; "": none
 };
-
 void add_replay(CLI::App& app, ReplayOptions& options);
 // Returns 0 when everything is the same, else 1. Throws InputError when the record cannot be run again.
 int run_replay(const ReplayOptions& options);
@@ -185,7 +198,6 @@ struct DebugOptions {
   double memory_MB = 1024;  // of all processes of the run
   bool from_record = false, allow_plugins = false;
 };
-
 void add_debug(CLI::App& app, DebugOptions& options);
 int run_debug(const DebugOptions& options);
 
@@ -282,7 +294,6 @@ struct BehaviorOptions {
   bool json = false;
   bool plugins = false;  // check loads plug-ins
 };
-
 void add_behavior(CLI::App& app, BehaviorOptions& options);
 int run_behavior(const CLI::App& app, const BehaviorOptions& options);
 
@@ -294,9 +305,7 @@ struct ReplOptions {
   std::optional<std::uint64_t> seed;
   double speed = 1;  // on a terminal: simulated seconds per second; 0: time passes only by :run
 };
-
 void add_repl(CLI::App& app, ReplOptions& options);
-// After parsing. Returns the program's exit code.
 int run_repl(const ReplOptions& options);
 
 // `kadans lua-stubs` and `kadans params`: show the tables of a robot and of a behavior, for editors and for people.
@@ -324,7 +333,7 @@ struct CtlOptions {
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
 };
 void add_ctl(CLI::App& app, CtlOptions& options);
-// After parsing. `words` are those of the whole command line. Returns the program's exit code.
+// `words` are those of the whole command line.
 int run_ctl(const CLI::App& app, const CtlOptions& options, const std::vector<std::string>& words);
 
 // `kadans push`: brings a robot's files to its computer.

@@ -3,13 +3,54 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "app/run/fed_plant.h"
-#include "app/run/read_only_plant.h"
 #include "kadans/plant/emulated_drives.h"
 #include "plant/imu/emulator/imu_world.h"
 #include "plant/imu/imu_plant.h"
 
 namespace kadans {
+namespace {
+
+// Stands for a plant in a run that repeats a record: it has its signals, and its sensors are those of the record.
+// Nothing hears its actuation, unless the run goes on in a model.
+class FedPlant final : public Plant {
+ public:
+  FedPlant(std::unique_ptr<Plant> plant, PlantExchange& record) : plant_(std::move(plant)), record_(record) {}
+
+  void declare_signals(SignalTable& table) const override { plant_->declare_signals(table); }
+  void read(SensorFrame& sensors) noexcept override {
+    const auto newest = record_.sensors.read();
+    copy_used(*newest, sensors);
+  }
+  void write(const ActuationFrame& actuation) noexcept override { record_.actuation.publish(actuation); }
+
+ private:
+  std::unique_ptr<Plant> plant_;  // never open
+  PlantExchange& record_;
+};
+
+// A plant that is only read: whatever the engine asks, its drives are asked for nothing, and no order reaches them.
+//
+// Control thread in the tick; the rest as of the plant behind it.
+class ReadOnlyPlant final : public Plant {
+ public:
+  explicit ReadOnlyPlant(Plant& plant) : plant_(plant) {}  // keeps a reference
+
+  void declare_signals(SignalTable& table) const override { plant_.declare_signals(table); }
+  bool open(bool (*give_up)() noexcept) override { return plant_.open(give_up); }
+  void close() noexcept override { plant_.close(); }
+  std::vector<PlantCount> link_counts() const override { return plant_.link_counts(); }
+  void read(SensorFrame& sensors) noexcept override { plant_.read(sensors); }
+  void write(const ActuationFrame& actuation) noexcept override {
+    nothing_.joint_count = actuation.joint_count;
+    plant_.write(nothing_);
+  }
+
+ private:
+  Plant& plant_;
+  ActuationFrame nothing_;
+};
+
+}  // namespace
 
 PlantVariant plant_variant(const ScenarioConfig& scenario, const RobotConfig& robot) {
   PlantVariant variant{.model = robot.model, .plant = robot.plant};

@@ -64,10 +64,6 @@ Tables tables_of_behavior(const ParamsOptions& options) {
   return tables;
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 const char* type_of(const ScriptArgument& argument) {
   constexpr std::array types{"number", "boolean", "text"};
   return argument.initial ? types[argument.initial->index()] : "table";
@@ -81,7 +77,7 @@ nlohmann::ordered_json default_of(const ScriptArgument& argument) {
 // An argument has the key "argument", its type; its value is the default.
 nlohmann::ordered_json json_of(const ScriptArgument& argument) {
   nlohmann::ordered_json one{{"name", argument.name}, {"argument", type_of(argument)}, {"value", default_of(argument)},
-                             {"unit", argument.unit}, {"min", number(argument.min)},   {"max", number(argument.max)}};
+                             {"unit", argument.unit}, {"min", argument.min},           {"max", argument.max}};
   if (!argument.one_of.empty()) one["one_of"] = argument.one_of;
   one["doc"] = argument.doc;
   return one;
@@ -96,14 +92,15 @@ std::string allowed_by(const ScriptArgument& argument) {
   return bounded ? printed("%g..%g", argument.min, argument.max) : std::string("any ") + type_of(argument);
 }
 
+// What is not finite is written as null.
 void print_json(const Tables& tables) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Row& row : tables.parameters) {
     all.push_back({{"name", row.name},
-                   {"value", number(row.value)},
+                   {"value", row.value},
                    {"unit", row.unit},
-                   {"min", number(row.min)},
-                   {"max", number(row.max)},
+                   {"min", row.min},
+                   {"max", row.max},
                    {"doc", row.doc}});
   }
   for (const ScriptArgument& argument : tables.arguments) all.push_back(json_of(argument));

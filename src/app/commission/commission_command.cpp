@@ -1,5 +1,3 @@
-#include "commission_command.h"
-
 #include <cstdio>
 #include <memory>
 
@@ -8,6 +6,7 @@
 
 #include "app/author/file_checks.h"
 #include "app/bench/drive_bench.h"
+#include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
 #include "commission.h"

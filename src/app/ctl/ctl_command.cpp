@@ -450,13 +450,14 @@ std::vector<std::string> without_host(std::vector<std::string> words) {
 
 int run_ctl(const CLI::App& app, const CtlOptions& options, const std::vector<std::string>& words) {
   if (!options.host.empty()) return RemoteHost(options.host).run(without_host(words), STDIN_FILENO, true);
-  const CLI::App* ctl = app.get_subcommand("ctl");
-  if (ctl->got_subcommand(console)) return talk_to_console(options);
+  std::string verb;
+  for (const CLI::App* at = app.get_subcommand("ctl"); !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    verb += (verb.empty() ? "" : " ") + at->get_name();
+  }
+  if (verb == console) return talk_to_console(options);
   for (const OrderInfo& order : order_table::orders) {
-    const auto [group, word] = group_of(order);
-    const bool grouped = !group.empty() && ctl->got_subcommand(group);
-    if (word.empty() || (!group.empty() && !grouped)) continue;
-    if ((grouped ? ctl->get_subcommand(group) : ctl)->got_subcommand(word)) return talk(order, options);
+    if (verb == order.words) return talk(order, options);
   }
   return exit_usage;
 }

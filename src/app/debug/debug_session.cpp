@@ -174,20 +174,19 @@ Json DebugSession::initialize(const Json& arguments) {
 
 Json DebugSession::launch(const Json& arguments) {
   if (doing_ != Doing::nothing) refuse_it("the run is there already");
-  DebugLaunch launch{.file = arguments.value("program", options_.file),
-                     .seed = {},
-                     .duration_s = {},
-                     .play = arguments.value("play", ""),
-                     .set = arguments.value("set", std::vector<std::string>()),
-                     .from_record = arguments.value("fromRecord", options_.from_record),
-                     .allow_plugins = options_.allow_plugins};
+  DebugLaunch launch;
+  launch.scenario = arguments.value("program", options_.file);
+  launch.play = arguments.value("play", "");
+  launch.set = arguments.value("set", std::vector<std::string>());
+  launch.from_record = arguments.value("fromRecord", options_.from_record);
+  launch.allow_plugins = options_.allow_plugins;
   if (arguments.contains("seed")) launch.seed = whole_number(arguments.at("seed"));
   if (arguments.contains("duration")) launch.duration_s = arguments.at("duration").get<double>();
   if (launch.duration_s && !(*launch.duration_s > 0 && *launch.duration_s <= scenario_duration_max_s))
     refuse_it("duration must be a number of seconds above 0");
-  if (options_.port && launch.file != options_.file)
+  if (options_.port && launch.scenario != options_.file)
     refuse_it("at a port, the command line says what runs: " + options_.file);
-  if (launch.file.empty()) refuse_it("name a scenario or a record, as \"program\" or on the command line");
+  if (launch.scenario.empty()) refuse_it("name a scenario or a record, as \"program\" or on the command line");
   stop_on_entry_ = arguments.value("stopOnEntry", false);
   stop_at_end_ = arguments.value("stopAtEnd", false);
   subject_.emplace(debug_subject(std::move(launch)));

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "app/author/file_checks.h"
-#include "app/run/run_choices.h"
 #include "app/sim/ordered_events.h"
 #include "app/sim/played_behaviors.h"
 #include "app/sim/repeated_run.h"
@@ -59,36 +58,11 @@ Json description(Assembly& assembly, const DebugSubject& subject) {
   };
   describe(assembly);
   for (const auto& other : assembly.others()) describe(*other);
-  return {{"file", fs::absolute(subject.launch.file).lexically_normal().string()},
+  return {{"file", fs::absolute(subject.launch.scenario).lexically_normal().string()},
           {"root", root.string()},
           {"sources", sources},
           {"states", states}};
 }
-
-// Repeats the branch of a record that was simulated from a checkpoint.
-class RecordedBranch final : public RunObserver {
- public:
-  RecordedBranch(const RunInputs& inputs, const ScenarioConfig& scenario, Assembly& assembly)
-      : inputs_(inputs), scenario_(scenario), assembly_(assembly) {
-    if (const auto fact = inputs.run.find("branch_tick"); fact != inputs.run.end())
-      tick_ = number_of<std::uint64_t>(fact->second);
-  }
-  void tick(double, std::span<const double>) override {}
-  void between_ticks(const RunMark& mark) override {
-    if (tick_ && mark.ticks == *tick_) {
-      actions_.emplace(branch_of(inputs_.run), scenario_, assembly_, 1e-9 * static_cast<double>(mark.time_ns));
-      actions_->begin(mark);
-    }
-    if (actions_) actions_->between_ticks(mark);
-  }
-
- private:
-  const RunInputs& inputs_;
-  const ScenarioConfig& scenario_;
-  Assembly& assembly_;
-  std::optional<std::uint64_t> tick_;
-  std::optional<BranchActions> actions_;
-};
 
 std::string judgement(const RunResult& result) {
   std::string text = result.error.empty() ? "" : result.error + "\n";
@@ -102,7 +76,7 @@ std::string judgement(const RunResult& result) {
 
 void simulate(RunChannel& channel, const DebugSubject& subject, const RunChoices& choices) {
   ScenarioConfig scenario = read_scenario(choices);
-  if (subject.recorded) add_ordered_events(subject.inputs, subject.launch.file, scenario);
+  if (subject.recorded) add_ordered_events(subject.inputs, subject.launch.scenario, scenario);
   RunLog log({}, lines_kept);
   Assembly assembly(scenario, choices.seed.value_or(scenario.seed), log);
   if (!subject.recorded) refuse_faulty_behaviors(scenario, assembly.catalog());
@@ -113,7 +87,7 @@ void simulate(RunChannel& channel, const DebugSubject& subject, const RunChoices
   });
   Checks checks(assembly.catalog().signals, judged, scenario.file, assembly.signal_states());
   DebuggedRun run(channel, assembly, log, &checks);
-  RecordedBranch branch(subject.inputs, scenario, assembly);
+  RecordedBranch branch(subject.inputs.run, scenario, assembly);
   run.begin(description(assembly, subject));
   const RunResult result = run_scenario(assembly.parts(), duration_s, checks, {&branch, &run});
   run.end({{"passed", result.passed}, {"text", judgement(result)}});
@@ -121,9 +95,9 @@ void simulate(RunChannel& channel, const DebugSubject& subject, const RunChoices
 
 // A run on threads: its files come out of the record.
 void repeat(RunChannel& channel, const DebugSubject& subject) {
-  const ScenarioConfig scenario = unpacked_scenario(subject.inputs, subject.launch.file, *subject.unpacked);
+  const ScenarioConfig scenario = unpacked_scenario(subject.inputs, subject.launch.scenario, *subject.unpacked);
   RepeatedRun repeated(
-      subject.launch.file, scenario, *subject.unpacked, subject.inputs.fact("root"),
+      subject.launch.scenario, scenario, *subject.unpacked, subject.inputs.fact("root"),
       played_elsewhere(subject.inputs) ? RepeatedRun::Behaviors::none : RepeatedRun::Behaviors::compared);
   DebuggedRun run(channel, repeated.assembly(), repeated.log(), nullptr);
   run.begin(description(repeated.assembly(), subject));
@@ -136,20 +110,14 @@ void repeat(RunChannel& channel, const DebugSubject& subject) {
 
 void debug(RunChannel& channel, const DebugSubject& subject) {
   const DebugLaunch& launch = subject.launch;
-  RunChoices choices;
   if (!subject.recorded) {
-    require_kind(launch.file, JsonKind::scenario);
-    choices.scenario = launch.file;
-    choices.seed = launch.seed;
-    choices.duration_s = launch.duration_s;
-    choices.play = launch.play;
-    choices.set = launch.set;
-    return simulate(channel, subject, choices);
+    require_kind(launch.scenario, JsonKind::scenario);
+    return simulate(channel, subject, launch);
   }
   if (subject.inputs.fact("clock") == clock_of_threads) return repeat(channel, subject);
-  choices = choices_of(subject.inputs.run, launch.file);
+  RunChoices choices = choices_of(subject.inputs.run, launch.scenario);
   const UnpackedInputs* const unpacked = subject.unpacked.get();
-  choices.scenario = unpacked ? unpacked->scenario().string() : find_scenario(subject.inputs, launch.file).string();
+  choices.scenario = unpacked ? unpacked->scenario().string() : find_scenario(subject.inputs, launch.scenario).string();
   choices.plugins = unpacked ? unpacked->plugins() : plugins_beside(choices.scenario, launch.allow_plugins);
   simulate(channel, subject, choices);
 }
@@ -158,7 +126,7 @@ void debug(RunChannel& channel, const DebugSubject& subject) {
 
 DebugSubject debug_subject(DebugLaunch launch) {
   DebugSubject subject{.launch = std::move(launch)};
-  const std::string& file = subject.launch.file;
+  const std::string& file = subject.launch.scenario;
   subject.recorded = is_record(file);
   if (!subject.recorded) return subject;
   if (subject.launch.seed || subject.launch.duration_s || !subject.launch.play.empty() || !subject.launch.set.empty())

@@ -1,23 +1,15 @@
 // Makes the run that is debugged: a simulation, or the repetition of a record.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
+#include "app/run/run_choices.h"
 #include "app/sim/input_files.h"
 #include "run_channel.h"
 
 namespace kadans {
 
-struct DebugLaunch {
-  std::string file;  // scenario or record
-  std::optional<std::uint64_t> seed;
-  std::optional<double> duration_s;
-  std::string play;
-  std::vector<std::string> set;
+struct DebugLaunch : RunChoices {  // its scenario may also be a record
   bool from_record = false, allow_plugins = false;
 };
 

@@ -22,23 +22,16 @@ struct DiffFindings {
   std::vector<std::string> facts;
 };
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
+// What is not finite is written as null.
 void print_json(const DiffFindings& found) {
   const RecordDiff& diff = found.diff;
   Json signals = Json::array();
   for (const SignalParting& p : diff.partings) {
-    signals.push_back(
-        {{"name", p.name},
-         {"unit", p.unit},
-         {"rows", p.rows},
-         {"first",
-          {{"time_s", seconds(p.first_ns)}, {"a", number_or_null(p.first_a)}, {"b", number_or_null(p.first_b)}}},
-         {"most",
-          {{"time_s", seconds(p.most_ns)},
-           {"a", number_or_null(p.most_a)},
-           {"b", number_or_null(p.most_b)},
-           {"by", number_or_null(p.most)}}}});
+    signals.push_back({{"name", p.name},
+                       {"unit", p.unit},
+                       {"rows", p.rows},
+                       {"first", {{"time_s", seconds(p.first_ns)}, {"a", p.first_a}, {"b", p.first_b}}},
+                       {"most", {{"time_s", seconds(p.most_ns)}, {"a", p.most_a}, {"b", p.most_b}, {"by", p.most}}}});
   }
   const Json json{{"a", found.a.file},
                   {"b", found.b.file},

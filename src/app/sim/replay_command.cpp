@@ -44,13 +44,12 @@ ScenarioConfig repeated_scenario(const std::string& record, const RunInputs& inp
 class Replay final : public RunObserver {
  public:
   Replay(const std::string& record, const RunInputs& inputs, const RunChoices& choices)
-      : inputs_(inputs),
-        reader_(record),
+      : reader_(record),
         scenario_(repeated_scenario(record, inputs, choices)),
         duration_s_(*choices.duration_s),
         assembly_(scenario_, *choices.seed, log_),
         comparison_(reader_, assembly_.catalog().signals),
-        branch_tick_(number_in(inputs.run, "branch_tick")) {}
+        branch_(inputs.run, scenario_, assembly_) {}
 
   void go(bool progress_shown) {
     Checks none(assembly_.catalog().signals);
@@ -64,12 +63,7 @@ class Replay final : public RunObserver {
   }
   void between_ticks(const RunMark& mark) override {
     at_end_ = comparison_.ended() && mark.ticks == number_in(recorded_result(), "control_ticks");
-    if (branch_tick_ && mark.ticks == *branch_tick_) {
-      const double at_s = 1e-9 * static_cast<double>(mark.time_ns);
-      branch_ = std::make_unique<BranchActions>(branch_of(inputs_.run), scenario_, assembly_, at_s);
-      branch_->begin(mark);
-    }
-    if (branch_) branch_->between_ticks(mark);
+    branch_.between_ticks(mark);
   }
   bool stop_asked() const override {
     return comparison_.parted() || at_end_ || (comparison_.ended() && !reader_.complete());
@@ -97,15 +91,13 @@ class Replay final : public RunObserver {
     return found == reader_.metadata().end() ? TextMap{} : found->second;
   }
 
-  const RunInputs& inputs_;
   McapReader reader_;
   RunLog log_;
   ScenarioConfig scenario_;
   double duration_s_;
   Assembly assembly_;
   RecordComparison comparison_;
-  std::optional<std::uint64_t> branch_tick_;
-  std::unique_ptr<BranchActions> branch_;
+  RecordedBranch branch_;
   RunResult result_;
   bool at_end_ = false;
 };

@@ -4,6 +4,7 @@
 
 #include "kadans/signal/nearest_name.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -124,6 +125,19 @@ void BranchActions::between_ticks(const RunMark& mark) const {
   const RunParts parts = assembly_.parts();
   pushes_.apply(parts.robot, 1e-9 * static_cast<double>(mark.time_ns),
                 1e-9 * static_cast<double>(parts.lockstep.control_period_ns()));
+}
+
+RecordedBranch::RecordedBranch(const TextMap& facts, const ScenarioConfig& scenario, Assembly& assembly)
+    : facts_(facts), scenario_(scenario), assembly_(assembly) {
+  if (const auto tick = facts.find("branch_tick"); tick != facts.end()) tick_ = number_of<std::uint64_t>(tick->second);
+}
+
+void RecordedBranch::between_ticks(const RunMark& mark) {
+  if (tick_ && mark.ticks == *tick_) {
+    actions_.emplace(branch_of(facts_), scenario_, assembly_, 1e-9 * static_cast<double>(mark.time_ns));
+    actions_->begin(mark);
+  }
+  if (actions_) actions_->between_ticks(mark);
 }
 
 }  // namespace kadans

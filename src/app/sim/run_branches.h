@@ -2,6 +2,7 @@
 // other behaviors, a push. The plant itself stays the same, because a robot does not change its masses while it moves.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,23 @@ class BranchActions {
   std::vector<Setting> settings_;
   std::vector<PlayItem> play_;
   Pushes pushes_;
+};
+
+// Repeats the branch of a record that was simulated from a checkpoint; nothing where the record's facts tell of none.
+class RecordedBranch final : public RunObserver {
+ public:
+  // Keeps references.
+  RecordedBranch(const TextMap& facts, const ScenarioConfig& scenario, Assembly& assembly);
+
+  void tick(double, std::span<const double>) override {}
+  void between_ticks(const RunMark& mark) override;
+
+ private:
+  const TextMap& facts_;
+  const ScenarioConfig& scenario_;
+  Assembly& assembly_;
+  std::optional<std::uint64_t> tick_;
+  std::optional<BranchActions> actions_;
 };
 
 }  // namespace kadans
