@@ -193,9 +193,8 @@ void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
           ->type_name("N")
           ->check(whole_within(0, dynamixel::id_max));
     }
-    command->add_option("--baud", options.baud, "Baud rate of the servos (default: 1000000; scan tries all)")
-        ->type_name("N")
-        ->check(whole_within(1, 10'000'000));
+    add_whole(*command, "--baud", options.baud, 1, 10'000'000,
+              "Baud rate of the servos (default: 1000000; scan tries all)");
     return command;
   };
   add("scan", "Find the servos on a serial port", false)

@@ -49,33 +49,23 @@ void add_run(CLI::App& app, RunOptions& options) {
          "--joystick", options.joystick,
          "Joystick that behaviors read as s.joystick: a device such as /dev/input/event5, or a recording of one")
       ->type_name("FILE");
-  run->add_option("--duration", options.duration_s, "Seconds to run (default: until SIGINT or SIGTERM)")
-      ->type_name("S")
-      ->check(number_within(0.001, 1e9));
+  add_number(*run, "--duration", options.duration_s, 0.001, 1e9, "S",
+             "Seconds to run (default: until SIGINT or SIGTERM)");
   run->add_option("--record", options.record,
                   "Write a record to this file, or to numbered files in this folder (default: none)")
       ->type_name("PATH");
   add_record_options(*run, options.recording);
-  run->add_option("--records-max", options.recording.folder_MB,
-                  "Room for numbered records and those of the flight recorder; the oldest go (default: the robot's "
-                  "record.folder_MB; 0: no bound)")
-      ->type_name("MB")
-      ->check(number_within(0.0, 1e7));
-  run->add_option("--seed", options.seed, "Seed of a model's random numbers (default: 1)")
-      ->type_name("N")
-      ->check(any_seed());
+  add_number(*run, "--records-max", options.recording.folder_MB, 0.0, 1e7, "MB",
+             "Room for numbered records and those of the flight recorder; the oldest go (default: the robot's "
+             "record.folder_MB; 0: no bound)");
+  add_seed(*run, options.seed, "Seed of a model's random numbers (default: 1)");
   run->add_flag("--soft", options.soft, "Run even without the rights that real time needs");
   run->add_flag("--threads-on-virtual-time", options.virtual_time,
                 "Run the same threads on virtual time, which waits for all of them");
   CLI::Option* sleep = run->add_flag("--sleep-only", options.sleep_only, "Sleep until the next tick, without spinning");
-  run->add_option("--spin-us", options.spin_us, "Time to spin after sleeping")
-      ->type_name("US")
-      ->check(number_within(1.0, 900.0))
-      ->excludes(sleep);
+  add_number(*run, "--spin-us", options.spin_us, 1.0, 900.0, "US", "Time to spin after sleeping")->excludes(sleep);
   run->add_flag("!--no-keep-awake", options.keep_awake, "Let the control thread's CPU idle between the ticks");
-  run->add_option("--cpu", options.cpu, "CPU of the control thread (default: an isolated one, else the last)")
-      ->type_name("N")
-      ->check(whole_within(0, 1023));
+  add_whole(*run, "--cpu", options.cpu, 0, 1023, "CPU of the control thread (default: an isolated one, else the last)");
   run->add_option("--behaviors", options.behaviors,
                   "Play behaviors in a thread (default), or in a process of their own, which may die")
       ->check(CLI::IsMember({"thread", "process"}));
@@ -83,19 +73,12 @@ void add_run(CLI::App& app, RunOptions& options) {
          "--decisions", options.decisions,
          "Run the supervisor's decisions in its thread, or in a process of their own (default: as --behaviors)")
       ->check(CLI::IsMember({"thread", "process"}));
-  run->add_option("--behaviors-patience", options.behaviors_patience_s,
-                  "Time without an answer after which such a process is killed (default: 0.3; on virtual time 10)")
-      ->type_name("S")
-      ->check(number_within(0.01, 1000.0));
-  run->add_option("--behaviors-deaths", options.behaviors_deaths,
-                  "Deaths in a row after which such a process is not started again (default: 8)")
-      ->type_name("N")
-      ->check(whole_within(1, 1'000'000'000));
-  run->add_option(
-         "--behaviors-memory", options.behaviors_memory_MB,
-         "Memory that such a process may take in addition to what it has when it begins to play (default: 256)")
-      ->type_name("MB")
-      ->check(number_within(1.0, 1e6));
+  add_number(*run, "--behaviors-patience", options.behaviors_patience_s, 0.01, 1000.0, "S",
+             "Time without an answer after which such a process is killed (default: 0.3; on virtual time 10)");
+  add_whole(*run, "--behaviors-deaths", options.behaviors_deaths, 1, 1'000'000'000,
+            "Deaths in a row after which such a process is not started again (default: 8)");
+  add_number(*run, "--behaviors-memory", options.behaviors_memory_MB, 1.0, 1e6, "MB",
+             "Memory that such a process may take in addition to what it has when it begins to play (default: 256)");
   add_services(*run, options);
   run->add_flag("--json", options.json, "Print one JSON object instead of text");
   run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log and their transitions");

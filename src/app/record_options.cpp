@@ -12,12 +12,9 @@ void add_record_options(CLI::App& command, RecordOptions& options) {
       .add_option("--signals", options.signals,
                   "Record only these signals: \"joint.*, base.*@100\" (default: the robot's choice, else all)")
       ->type_name("PATTERN[@HZ],...");
-  command
-      .add_option("--flight", options.flight_s,
-                  "Keep the last S seconds in memory, and write them when a fault latches; 0: none (default: the "
-                  "robot's flight_s in a run on the wall clock, else 0)")
-      ->type_name("S")
-      ->check(number_within(0.0, 600.0));
+  add_number(command, "--flight", options.flight_s, 0.0, 600.0, "S",
+             "Keep the last S seconds in memory, and write them when a fault latches; 0: none (default: the "
+             "robot's flight_s in a run on the wall clock, else 0)");
 }
 
 RecordPlan record_plan(const Assembly& assembly, const RecordOptions& options, bool flies) {

@@ -50,9 +50,7 @@ void add_ros2_service(CLI::App& command, Ros2Options& place) {
           .add_flag("--ros2{-1}", place.domain,
                     "Publish ROS 2 topics on this machine; --ros2=DOMAIN (default: ROS_DOMAIN_ID, else 0)")
           ->check(whole_within(-1, domain_max));
-  command.add_option("--ros2-rate", place.rate_hz, "Rate of the topics (default: 100)")
-      ->type_name("HZ")
-      ->check(number_within(1.0, 1000.0))
+  add_number(command, "--ros2-rate", place.rate_hz, 1.0, 1000.0, "HZ", "Rate of the topics (default: 100)")
       ->needs(ros2);
   command.add_flag("--ros2-commands", place.commands, "Carry out the commands that anybody sends to /kadans/command")
       ->needs(ros2);
@@ -169,9 +167,7 @@ std::uint32_t domain_of(const Ros2Options& place) {
   if (text == nullptr || *text == '\0') return 0;
   const std::optional<int> domain = number_of<int>(text);
   if (!domain || *domain < 0 || *domain > domain_max)
-    throw InputError(
-        InputProblem{.file = "ROS_DOMAIN_ID",
-                     .message = "'" + std::string(text) + "' must be from 0 to " + std::to_string(domain_max)});
+    refuse("ROS_DOMAIN_ID", "'" + std::string(text) + "' must be from 0 to " + std::to_string(domain_max));
   return static_cast<std::uint32_t>(*domain);
 }
 

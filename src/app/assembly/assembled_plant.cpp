@@ -94,8 +94,7 @@ std::unique_ptr<Plant> make_bus(const RobotConfig& robot, const PlantType& type,
 imu::SerialImuSettings serial_imu_at(const RobotConfig& robot, const PlantType& type, const char* option,
                                      const std::string& device) {
   imu::SerialImuSettings settings = robot.serial_imu;
-  if (!settings.given() && !device.empty())
-    throw InputError({.file = option, .message = robot.file + " says no plant.serial_imu (docs/imu.md)"});
+  if (!settings.given() && !device.empty()) refuse(option, robot.file + " says no plant.serial_imu (docs/imu.md)");
   if (!device.empty()) {
     settings.device = device;
     settings.place = {.file = option};

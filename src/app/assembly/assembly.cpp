@@ -160,7 +160,7 @@ Assembly::Assembly(Begun, const ScenarioConfig& scenario, std::uint64_t seed, Ru
     robot_.config.engine.sight = variant_.sees;
     take_supervisor();
   } catch (const std::invalid_argument& error) {
-    throw InputError({.file = robot_.config.file, .message = error.what()});
+    refuse(robot_.config.file, error.what());
   }
 }
 
@@ -202,7 +202,7 @@ void Assembly::complete() {
         std::make_unique<Estimator>(robot_.config.model, robot_.config.estimate, robot_.config.engine.control_period_s);
     safety_ = std::make_unique<Safety>(robot_.config.safety, robot_.config.model);
   } catch (const std::invalid_argument& error) {
-    throw InputError({.file = robot_.config.file, .message = error.what()});
+    refuse(robot_.config.file, error.what());
   }
   exchange_ = std::make_unique<EngineExchange>();
   foreign_first_ = catalog.signals.size();
@@ -267,7 +267,7 @@ void Assembly::open_sockets() {
     if (!supervising().perception.empty())
       perceived_ = std::make_unique<Datagrams>(supervising().perception, std::vector<std::string>());
   } catch (const InputError& error) {
-    throw InputError({.file = robot_.config.file, .message = std::string("supervisor: ") + error.what()});
+    refuse(robot_.config.file, std::string("supervisor: ") + error.what());
   }
   message_channel_ = messages_.get();
 }

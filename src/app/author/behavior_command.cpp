@@ -32,8 +32,7 @@ std::vector<std::string> test_files(const std::vector<std::string>& named) {
   std::vector<std::string> files;
   for (const std::string& name : named) {
     if (!fs::is_directory(name)) {
-      if (!name.ends_with("_test.lua"))
-        throw InputError({.file = name, .message = "is no file of tests: those are called ..._test.lua"});
+      if (!name.ends_with("_test.lua")) refuse(name, "is no file of tests: those are called ..._test.lua");
       files.push_back(name);
       continue;
     }
@@ -55,8 +54,7 @@ class BehaviorTests {
       if (interrupted()) return exit_interrupted;
       run(file);
     }
-    if (cases_.empty() && !options_.only.empty())
-      throw InputError(InputProblem{.file = "--only", .message = "no test has '" + options_.only + "' in its name"});
+    if (cases_.empty() && !options_.only.empty()) refuse("--only", "no test has '" + options_.only + "' in its name");
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
     if (!options_.json)
       std::printf("%zu passed, %zu failed, %.0f ms\n", count(Verdict::passed), count(Verdict::failed),
@@ -126,7 +124,7 @@ class BehaviorTests {
 
 int run_tests(const BehaviorOptions& options) {
   const std::vector<std::string> files = test_files(options.files);
-  if (files.empty()) throw InputError({.file = options.files.front(), .message = "there is no *_test.lua in it"});
+  if (files.empty()) refuse(options.files.front(), "there is no *_test.lua in it");
   catch_interrupts();
   return BehaviorTests(options).run(files);
 }

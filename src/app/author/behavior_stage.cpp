@@ -60,9 +60,8 @@ fs::path robot_of_behavior(const fs::path& behavior) {
   if (fs::exists(own)) return own;
   const std::vector<fs::path> robots = robots_in(configs);
   if (robots.size() == 1) return robots.front();
-  throw InputError({.file = behavior.string(),
-                    .message = "no robot goes with it: there is no " + own.string() +
-                               "; name one: kadans behavior with --robot FILE, kadans repl with a scenario"});
+  refuse(behavior, "no robot goes with it: there is no " + own.string() +
+                       "; name one: kadans behavior with --robot FILE, kadans repl with a scenario");
 }
 
 fs::path only_robot(const fs::path& folder, const std::string& named) {
@@ -71,16 +70,15 @@ fs::path only_robot(const fs::path& folder, const std::string& named) {
   if (robots.size() == 1) return robots.front();
   std::string names;
   for (const fs::path& robot : robots) names += (names.empty() ? ": " : ", ") + fs::proximate(robot).string();
-  throw InputError({.file = configs.string(),
-                    .message = robots.empty() ? "there is no robot.json in its folders; name one: " + named
-                                              : "there are several robots, name one: " + named + names});
+  refuse(configs, robots.empty() ? "there is no robot.json in its folders; name one: " + named
+                                 : "there are several robots, name one: " + named + names);
 }
 
 std::unique_ptr<TestStage> RobotStages::make(const fs::path& behavior, const Options& options) {
   const std::string& plant = options.plant;
   const std::vector<std::string> models = plant_type_names(&PlantType::is_model);
   if (!plant.empty() && std::ranges::find(models, plant) == models.end())
-    throw InputError({.file = "k.play", .message = unknown_name("plant", plant, models)});
+    refuse("k.play", unknown_name("plant", plant, models));
   ScenarioConfig scenario;
   scenario.file = behavior.string();
   scenario.name = behavior.stem().string();

@@ -46,8 +46,7 @@ int run_check(const CheckOptions& options) {
       code = exit_usage;
     }
   }
-  if (!any && code == exit_passed)
-    throw InputError({.file = options.files.front(), .message = "holds nothing of ours"});
+  if (!any && code == exit_passed) refuse(options.files.front(), "holds nothing of ours");
   return code;
 }
 

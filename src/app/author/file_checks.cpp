@@ -65,9 +65,7 @@ std::vector<fs::path> files_in(const fs::path& folder, bool scripts_only) {
   for (const fs::path& part : parts) add_below(part, scripts_only, files);
   std::ranges::sort(files);
   if (files.empty())
-    throw InputError(
-        {.file = folder.string(),
-         .message = scripts_only ? "there is no .lua in it" : "there is no .urdf, MJCF, .json or .lua in it"});
+    refuse(folder, scripts_only ? "there is no .lua in it" : "there is no .urdf, MJCF, .json or .lua in it");
   return files;
 }
 
@@ -78,7 +76,7 @@ std::vector<fs::path> chosen_by(const std::string& pattern) {
     for (std::size_t i = 0; i < found.gl_pathc; ++i) paths.emplace_back(found.gl_pathv[i]);
   }
   globfree(&found);
-  if (paths.empty()) throw InputError({.file = pattern, .message = "nothing has a name like that"});
+  if (paths.empty()) refuse(pattern, "nothing has a name like that");
   return paths;
 }
 
@@ -273,7 +271,7 @@ std::string FileChecks::check_script_file(const CheckedFile& checked_file) {
   if (checked.kind == ScriptKind::module) return "a module";
   if (checked.kind == ScriptKind::test) return "tests";
   if (known == nullptr && checked_file.found) return "loads; it is of no robot here, --robot FILE checks more";
-  if (known == nullptr) throw InputError({.file = file.string(), .message = missing});
+  if (known == nullptr) refuse(file, missing);
   return "fits " + known->robot.config.name;
 }
 
@@ -285,12 +283,9 @@ std::string FileChecks::check(const CheckedFile& checked) {
     const std::string what = check_script_file(checked);
     return what == "a module" || what == "tests" ? what : "behavior: " + what;
   }
-  if (extension != ".json")
-    throw InputError({.file = file.string(),
-                      .message = "not a file that can be checked: .urdf, .xacro, .xml (MJCF), .json or .lua"});
+  if (extension != ".json") refuse(file, "not a file that can be checked: .urdf, .xacro, .xml (MJCF), .json or .lua");
   const std::string what = check_json(file);
-  if (what.empty() && !checked.found)
-    throw InputError({.file = file.string(), .message = "is no robot, scenario, sweep or tuning of ours"});
+  if (what.empty() && !checked.found) refuse(file, "is no robot, scenario, sweep or tuning of ours");
   return what;
 }
 
@@ -314,9 +309,8 @@ void require_kind(const std::filesystem::path& file, JsonKind wanted) {
   const std::optional<JsonKind> kind = kind_in(file);
   if (!kind || *kind == wanted || *kind == JsonKind::other) return;
   const Known& is = known(*kind);
-  throw InputError({.file = file.string(),
-                    .message = std::string("is ") + is.name + ", not " + known(wanted).name + ": 'kadans " +
-                               is.command + " " + shell_word(file.string()) + "' " + is.does});
+  refuse(file, std::string("is ") + is.name + ", not " + known(wanted).name + ": 'kadans " + is.command + " " +
+                   shell_word(file.string()) + "' " + is.does);
 }
 
 }  // namespace kadans

@@ -167,13 +167,9 @@ void add_repl(CLI::App& app, ReplOptions& options) {
       ->type_name("FILE");
   repl->add_option("--play", options.play, "Behaviors to play instead of the scenario's: \"squat, wave\"")
       ->type_name("LIST");
-  repl->add_option("--seed", options.seed, "Seed of all random numbers (default: the scenario's)")
-      ->type_name("N")
-      ->check(any_seed());
-  repl->add_option("--speed", options.speed,
-                   "Speed on a terminal as a multiple of the wall clock's; 0: time passes by :run only (default: 1)")
-      ->type_name("X")
-      ->check(number_within(0.0, 1000.0));
+  add_seed(*repl, options.seed, "Seed of all random numbers (default: the scenario's)");
+  add_number(*repl, "--speed", options.speed, 0.0, 1000.0, "X",
+             "Speed on a terminal as a multiple of the wall clock's; 0: time passes by :run only (default: 1)");
   repl->footer("Type :help. With input from a pipe, time passes by :run only, and a wrong line makes the exit code 1.");
 }
 

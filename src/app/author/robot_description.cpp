@@ -16,7 +16,7 @@ constexpr std::size_t urdf_max_bytes = std::size_t{16} << 20U;
 
 std::string expanded_xacro(const std::filesystem::path& file) {
   check_input_file(file);
-  const auto fail = [&](const std::string& message) { throw InputError({.file = file.string(), .message = message}); };
+  const auto fail = [&](const std::string& message) { refuse(file, message); };
   ProgramOutput output;
   try {
     output = run_program({"xacro", std::filesystem::absolute(file).string()});
@@ -52,7 +52,7 @@ UrdfPackages packages_of(const std::vector<std::string>& options) {
   for (const std::string& package : options) {
     const std::size_t end = package.find('=');
     if (end == 0 || end == std::string::npos || !std::filesystem::is_directory(package.substr(end + 1)))
-      throw InputError({.file = "--package " + package, .message = "must be NAME=FOLDER, with a folder that is there"});
+      refuse("--package " + package, "must be NAME=FOLDER, with a folder that is there");
     packages[package.substr(0, end)] = package.substr(end + 1);
   }
   return packages;

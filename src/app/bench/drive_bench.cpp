@@ -29,7 +29,7 @@ DriveBench::DriveBench(const Robot& robot, const std::string& plant, const std::
       plant_ = make_bus(robot.config, type, peer, imu);
     }
   } catch (const std::invalid_argument& error) {
-    throw InputError({.file = robot.config.file, .message = error.what()});
+    refuse(robot.config.file, error.what());
   }
 }
 

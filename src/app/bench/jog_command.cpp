@@ -28,14 +28,10 @@ class JogRun {
     const std::vector<std::string> names = model.joint_names();
     const auto found = model.find_joint(options.joint);
     if (!found) {
-      throw InputError(
-          {.file = options.robot,
-           .message = "the robot has no joint '" + options.joint + "'" + did_you_mean(options.joint, names)});
+      refuse(options.robot, "the robot has no joint '" + options.joint + "'" + did_you_mean(options.joint, names));
     }
     const Joint& joint = model.joints[*found];
-    if (joint.passive())
-      throw InputError(
-          {.file = options.robot, .message = "joint '" + options.joint + "' is passive: nothing moves it"});
+    if (joint.passive()) refuse(options.robot, "joint '" + options.joint + "' is passive: nothing moves it");
     settings_ = {.joint = *found,
                  .torque_Nm = options.share * joint.effort_max_Nm,
                  .velocity_max_rad_s = options.speed_rad_s,
@@ -108,12 +104,10 @@ void add_jog(CLI::App& app, JogOptions& options) {
   jog->add_option("--imu", options.imu, "Serial port of the IMU (default: the configuration's)")->type_name("FILE");
   jog->add_option("--peer", options.peer, "Address of the drives (default: the configuration's)")
       ->type_name("HOST:PORT");
-  jog->add_option("--share", options.share, "Torque, as a share of the joint's greatest (default: 0.1)")
-      ->type_name("X")
-      ->check(number_within(0.001, 0.5));
-  jog->add_option("--speed", options.speed_rad_s, "Speed in rad/s at which no torque is left (default: 0.5)")
-      ->type_name("X")
-      ->check(number_within(0.01, 10.0));
+  add_number(*jog, "--share", options.share, 0.001, 0.5, "X",
+             "Torque, as a share of the joint's greatest (default: 0.1)");
+  add_number(*jog, "--speed", options.speed_rad_s, 0.01, 10.0, "X",
+             "Speed in rad/s at which no torque is left (default: 0.5)");
 }
 
 int run_jog(const JogOptions& options) {

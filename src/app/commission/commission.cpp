@@ -25,14 +25,13 @@ std::vector<std::size_t> joints_of(const RobotConfig& robot, const std::vector<s
   std::vector<std::size_t> joints;
   for (const std::string& name : wanted) {
     if (std::ranges::find(names, name) == names.end())
-      throw InputError(
-          {.file = robot.file, .message = "the robot has no joint '" + name + "'" + did_you_mean(name, names)});
+      refuse(robot.file, "the robot has no joint '" + name + "'" + did_you_mean(name, names));
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (robot.model.joints[i].passive()) continue;
     if (wanted.empty() || std::ranges::find(wanted, names[i]) != wanted.end()) joints.push_back(i);
   }
-  if (joints.empty()) throw InputError({.file = robot.file, .message = "none of these joints has a motor"});
+  if (joints.empty()) refuse(robot.file, "none of these joints has a motor");
   return joints;
 }
 

@@ -28,10 +28,9 @@ std::string wired_plant(const std::string& file) {
       types.emplace_back(type->name());
   }
   if (types.size() == 1) return types.front();
-  throw InputError({.file = file,
-                    .message = types.empty() ? "describes no drives on a bus, such as plant.hm2-eth "
-                                               "(docs/hostmot2.md) or plant.dynamixel (docs/dynamixel.md)"
-                                             : "describes drives on several buses: --plant says which"});
+  refuse(file, types.empty() ? "describes no drives on a bus, such as plant.hm2-eth "
+                               "(docs/hostmot2.md) or plant.dynamixel (docs/dynamixel.md)"
+                             : "describes drives on several buses: --plant says which");
 }
 
 }  // namespace
@@ -49,9 +48,8 @@ void add_commission(CLI::App& app, CommissionOptions& options) {
       ->type_name("TYPE");
   command->add_option("--peer", options.peer, "Address of the drives (default: the configuration's)")
       ->type_name("HOST:PORT");
-  command->add_option("--share", options.share, "No joint ever gets more than this share of its torque (default: 0.1)")
-      ->type_name("X")
-      ->check(number_within(0.001, 0.5));
+  add_number(*command, "--share", options.share, 0.001, 0.5, "X",
+             "No joint ever gets more than this share of its torque (default: 0.1)");
   command->add_option("--steps", options.steps, "Only these steps, as in names,direction (default: all)")
       ->type_name("LIST")
       ->delimiter(',')

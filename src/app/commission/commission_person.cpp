@@ -123,7 +123,7 @@ Person::Hand WrittenPerson::hand(std::int64_t now_ns, bool complete) {
     char* end = nullptr;
     holds_s_ = *line == "hold" ? std::numeric_limits<double>::infinity() : std::strtod(line->c_str() + 5, &end);
     if (!line->starts_with("hold") || (end != nullptr && *end != '\0') || !(holds_s_ >= 0))
-      throw InputError({.file = "--answers", .message = "'" + *line + "' is no answer here: 'hold' or 'hold S'"});
+      refuse("--answers", "'" + *line + "' is no answer here: 'hold' or 'hold S'");
     held_from_ns_ = now_ns;
     asked_ = false;
   }

@@ -19,7 +19,7 @@ Progress::Progress(const std::string& robot, std::string plant, bool anew)
   const JsonValue json = parse_json(read_input_file(file_), file_);
   const JsonMember* const of = json.find("plant");
   if (of == nullptr || of->value.text != plant_)
-    throw InputError({.file = file_, .message = "is of another plant than '" + plant_ + "'; --again begins anew"});
+    refuse(file_, "is of another plant than '" + plant_ + "'; --again begins anew");
   for (const JsonMember& step : json.members) {
     for (const JsonMember& joint : step.value.members) steps_[step.name][joint.name] = joint.value.text;
   }

@@ -16,9 +16,7 @@ const DriveWiringFields& fields_of(const PlantType& type) {
   for (const auto& one : plant_types()) {
     if (one->wiring() != nullptr) known += (known.empty() ? "" : ", ") + std::string(one->name());
   }
-  throw InputError(
-      {.file = "--plant",
-       .message = "'" + std::string(type.name()) + "' has no wiring to find out; such types of plant have: " + known});
+  refuse("--plant", "'" + std::string(type.name()) + "' has no wiring to find out; such types of plant have: " + known);
 }
 
 std::string json_of(const JsonValue& value) {
@@ -78,14 +76,13 @@ void Wiring::write() {
   const JsonValue merged = parse_based_json(edited, file_).value;
   for (const JsonEdit& edit : edits_) {
     const JsonValue* const is = find_at(merged, edit.path);
-    if (is == nullptr || json_of(*is) != edit.value)
-      throw InputError({.file = file_, .message = "'" + edit.path.back() + "' could not be written"});
+    if (is == nullptr || json_of(*is) != edit.value) refuse(file_, "'" + edit.path.back() + "' could not be written");
   }
   // Not what other programs do not take: the whole configuration is checked before the old one is gone.
   (void)read_robot_config_text(edited, file_, {});
   write_durably(file_, edited);
   text_ = read_input_file(file_);
-  if (text_ != edited) throw InputError({.file = file_, .message = "somebody else writes it"});
+  if (text_ != edited) refuse(file_, "somebody else writes it");
   merged_ = merged;
   edits_.clear();
 }

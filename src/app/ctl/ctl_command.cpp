@@ -331,8 +331,7 @@ int watch(CtlLink& link, const CtlOptions& options, const Json& answer) {
 
 int talk_to_console(const CtlOptions& options) {
   CtlLink link(options.socket, Role::develop);
-  if (options.json)
-    throw InputError(InputProblem{.file = "--json", .message = "a console is for people: repl has none"});
+  if (options.json) refuse("--json", "a console is for people: repl has none");
   return isatty(STDIN_FILENO) == 1 ? from_terminal(link) : from_pipe(link);
 }
 

@@ -8,6 +8,7 @@
 #include "config/json/foreign_json.h"
 #include "kadans/signal/input_error.h"
 #include "run_channel.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -15,9 +16,7 @@ namespace {
 
 constexpr std::size_t head_bytes_max = 1024, text_bytes_max = std::size_t{4} << 20U;
 
-[[noreturn]] void refuse_bytes(const std::string& why) {
-  throw InputError({.file = "debug adapter protocol", .message = why});
-}
+[[noreturn]] void refuse_bytes(const std::string& why) { refuse("debug adapter protocol", why); }
 
 // The length that the head gives. A head with other fields is none of an editor: a web page, which may send what it
 // likes to a port of this machine, cannot leave them out.

@@ -17,9 +17,7 @@
 namespace kadans {
 namespace {
 
-[[noreturn]] void fail(int port) {
-  throw InputError({.file = "--port " + std::to_string(port), .message = std::strerror(errno)});
-}
+[[noreturn]] void fail(int port) { refuse("--port " + std::to_string(port), std::strerror(errno)); }
 
 // Waits for one editor at a port of this machine, which no other machine reaches.
 int accepted_editor(int port) {
@@ -52,16 +50,10 @@ void add_debug(CLI::App& app, DebugOptions& options) {
       "debug", "Let an editor debug the behaviors of a simulation or a record, forwards and backwards");
   debug->add_option("file", options.file, "Scenario (JSON) or record (MCAP); default: what the editor launches")
       ->type_name("FILE");
-  debug
-      ->add_option("--port", options.port,
-                   "Wait for the editor at this port of this machine; 0: any free one (default: stdin and stdout)")
-      ->type_name("N")
-      ->check(whole_within(0, 65535));
-  debug
-      ->add_option("--memory", options.memory_MB,
-                   "Memory for the copies of the run from which it goes back (default: 1024)")
-      ->type_name("MB")
-      ->check(number_within(16.0, 1e6));
+  add_whole(*debug, "--port", options.port, 0, 65535,
+            "Wait for the editor at this port of this machine; 0: any free one (default: stdin and stdout)");
+  add_number(*debug, "--memory", options.memory_MB, 16.0, 1e6, "MB",
+             "Memory for the copies of the run from which it goes back (default: 1024)");
   debug->add_flag("--from-record", options.from_record, "Use the files inside the record, not those on the disk");
   debug->add_flag("--allow-plugins", options.allow_plugins,
                   "Load the project's plug-ins, even if they differ from the record's");
@@ -70,7 +62,7 @@ void add_debug(CLI::App& app, DebugOptions& options) {
 // The editor gets the protocol on stdout, so nothing else is printed there.
 int run_debug(const DebugOptions& options) {
   if (options.port && options.file.empty())  // whoever connects does not choose what runs
-    throw InputError(InputProblem{.file = "--port", .message = "name the scenario or record, too"});
+    refuse("--port", "name the scenario or record, too");
   std::signal(SIGPIPE, SIG_IGN);
   const int editor = options.port ? accepted_editor(*options.port) : -1;
   const DapStream stream = editor < 0 ? DapStream(STDIN_FILENO, STDOUT_FILENO) : DapStream(editor, editor);

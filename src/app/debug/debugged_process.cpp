@@ -130,7 +130,7 @@ DebugSubject debug_subject(DebugLaunch launch) {
   subject.recorded = is_record(file);
   if (!subject.recorded) return subject;
   if (subject.launch.seed || subject.launch.duration_s || !subject.launch.play.empty() || !subject.launch.set.empty())
-    throw InputError({.file = file, .message = "is a record, which says itself what was played, and with which seed"});
+    refuse(file, "is a record, which says itself what was played, and with which seed");
   subject.inputs = read_front(file);
   if (subject.launch.from_record || subject.inputs.fact("clock") == clock_of_threads)
     subject.unpacked = std::make_unique<UnpackedInputs>(subject.inputs, file, subject.launch.allow_plugins);

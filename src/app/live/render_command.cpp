@@ -32,7 +32,7 @@ PictureOptions picture_options(const RenderOptions& options) {
       std::sscanf(options.size.c_str(), "%dx%d%c", &picture.width, &picture.height, &rest);  // NOLINT: checked
   const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 4096; };
   if (got != 2 || !fits(picture.width) || !fits(picture.height))
-    throw InputError(InputProblem{.file = "--size", .message = "must be like 960x720, from 16 to 4096"});
+    refuse("--size", "must be like 960x720, from 16 to 4096");
   return picture;
 }
 
@@ -46,14 +46,10 @@ void add_render(CLI::App& app, RenderOptions& options) {
       ->check(CLI::ExistingFile);
   CLI::Option* at =
       render->add_option("--at", options.at_s, "Draw one picture, at this second")->type_name("S")->check(any_number());
-  CLI::Option* every = render->add_option("--every", options.every_s, "Draw a picture every S seconds")
-                           ->type_name("S")
-                           ->check(number_within(0.001, 1e6))
-                           ->excludes(at);
+  CLI::Option* every =
+      add_number(*render, "--every", options.every_s, 0.001, 1e6, "S", "Draw a picture every S seconds")->excludes(at);
   render->add_flag("--film", options.film, "Draw the whole record as an animated PNG")->excludes(at)->excludes(every);
-  render->add_option("--fps", options.frames_per_s, "Pictures in a second of the film (default: 20)")
-      ->type_name("N")
-      ->check(whole_within(1, 60));
+  add_whole(*render, "--fps", options.frames_per_s, 1, 60, "Pictures in a second of the film (default: 20)");
   render->add_option("-o,--out", options.out, "File, or with --every folder (default: named as the record, here)")
       ->type_name("PATH");
   render->add_option("--size", options.size, "Width and height (default: 960x720)")->type_name("WxH");

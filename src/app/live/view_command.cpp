@@ -35,9 +35,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
   options.live.port = "0";
-  view->add_option("--port", options.live.port, "Port (default: a free one)")
-      ->type_name("N")
-      ->check(whole_within(0, 65535));
+  add_whole(*view, "--port", options.live.port, 0, 65535, "Port (default: a free one)");
   view->add_option("--live-address", options.live.address, "Address to listen on (default: this machine alone)")
       ->type_name("IP");
   add_live_hosts(*view, options.live);

@@ -22,8 +22,7 @@ namespace kadans {
 int log_cut(const LogOptions& options) {
   const RecordCut cut{.span = span_of(options), .signals = options.signals, .inputs = options.inputs};
   if (options.inputs && options.from_s)
-    throw InputError(InputProblem{
-        .file = "--from", .message = "does not go with --inputs: a run is repeated from its record's beginning"});
+    refuse("--from", "does not go with --inputs: a run is repeated from its record's beginning");
   require_free(options);
   const RecordOutline record = outline_of(options.file);
   require_overlap(record, cut.span);
@@ -103,7 +102,7 @@ PlotFormat format_of(const std::string& file) {
   const std::string ending = std::filesystem::path(file).extension().string();
   if (ending == ".svg") return PlotFormat::svg;
   if (ending == ".png") return PlotFormat::png;
-  throw InputError({.file = file, .message = "a plot's file ends with .svg or .png"});
+  refuse(file, "a plot's file ends with .svg or .png");
 }
 
 void sketch(const SignalPlot& plot) {
@@ -182,9 +181,7 @@ void add_reading(CLI::App& log, LogOptions& options) {
   CLI::App* csv = verb(log, options, "csv", "Print signals as a table with units, with all digits");
   csv->add_option("signals", options.signals, std::string(signals_help) + " (default: all)")->type_name("SIGNAL...");
   add_span(*csv, options);
-  csv->add_option("--every", options.every_s, "Print a line every S seconds, with the newest values")
-      ->type_name("S")
-      ->check(number_within(1e-6, 1e6));
+  add_number(*csv, "--every", options.every_s, 1e-6, 1e6, "S", "Print a line every S seconds, with the newest values");
   add_out(*csv, options, "Write into a file (default: stdout)", "FILE");
 
   CLI::App* observations =
@@ -201,10 +198,8 @@ void add_making(CLI::App& log, LogOptions& options) {
 
   CLI::App* diff = verb(log, options, "diff", "Report where two records differ, and by how much");
   diff->add_option("other", options.other, "The record that it is compared with")->required()->type_name("OTHER");
-  diff->add_option("--tolerance", options.tolerance,
-                   "Largest difference between numbers that count as equal (default: 0)")
-      ->type_name("X")
-      ->check(number_within(0.0, 1e300));
+  add_number(*diff, "--tolerance", options.tolerance, 0.0, 1e300, "X",
+             "Largest difference between numbers that count as equal (default: 0)");
   diff->add_flag("--json", options.json, "Print one JSON object instead of text");
 
   CLI::App* cut = verb(log, options, "cut", "Write a time span or some signals as a new record");

@@ -17,8 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 std::int64_t nanoseconds(const char* option, double time_s) {
-  if (!(std::abs(time_s) <= 9e9))
-    throw InputError(InputProblem{.file = option, .message = "must be a time in seconds"});
+  if (!(std::abs(time_s) <= 9e9)) refuse(option, "must be a time in seconds");
   return std::llround(time_s * 1e9);
 }
 
@@ -28,17 +27,14 @@ TimeSpan span_of(const LogOptions& options) {
   TimeSpan span;
   if (options.from_s) span.from_ns = nanoseconds("--from", *options.from_s);
   if (options.to_s) span.to_ns = nanoseconds("--to", *options.to_s);
-  if (span.from_ns > span.to_ns)
-    throw InputError(
-        InputProblem{.file = "--to", .message = printed("%g s is before --from %g s", *options.to_s, *options.from_s)});
+  if (span.from_ns > span.to_ns) refuse("--to", printed("%g s is before --from %g s", *options.to_s, *options.from_s));
   return span;
 }
 
 void require_overlap(const RecordOutline& record, TimeSpan span) {
   if (span.from_ns <= record.last_ns && span.to_ns >= record.first_ns) return;
-  throw InputError({.file = record.file,
-                    .message = printed("holds nothing between these times: it goes from %.3f s to %.3f s",
-                                       seconds(record.first_ns), seconds(record.last_ns))});
+  refuse(record.file, printed("holds nothing between these times: it goes from %.3f s to %.3f s",
+                              seconds(record.first_ns), seconds(record.last_ns)));
 }
 
 void tell_problem(const McapReader& reader) {
@@ -56,10 +52,8 @@ std::string plural(std::uint64_t count, const char* what) {
 
 void require_free(const LogOptions& options) {
   std::error_code ignored;
-  if (fs::equivalent(options.out, options.file, ignored))
-    throw InputError({.file = options.out, .message = "is the record itself"});
-  if (fs::exists(options.out, ignored) && !options.force)
-    throw InputError({.file = options.out, .message = "is there already; --force replaces it"});
+  if (fs::equivalent(options.out, options.file, ignored)) refuse(options.out, "is the record itself");
+  if (fs::exists(options.out, ignored) && !options.force) refuse(options.out, "is there already; --force replaces it");
 }
 
 UnfinishedFile::UnfinishedFile(const fs::path& file) : file_(end_of_link(file)), unfinished_(file_) {
@@ -79,7 +73,7 @@ void UnfinishedFile::finish() {
   if (finished_) return;
   std::error_code error;
   fs::rename(unfinished_, file_, error);
-  if (error) throw InputError({.file = file_.string(), .message = "cannot be written: " + error.message()});
+  if (error) refuse(file_, "cannot be written: " + error.message());
   finished_ = true;
 }
 
@@ -88,8 +82,7 @@ LineOutput::LineOutput(const std::string& file) : stream_(stdout), name_(file.em
   if (file.empty()) return;
   unfinished_ = std::make_unique<UnfinishedFile>(file);
   stream_ = std::fopen(unfinished_->path().c_str(), "wb");
-  if (stream_ == nullptr)
-    throw InputError({.file = file, .message = "cannot be written: " + std::string(strerror(errno))});
+  if (stream_ == nullptr) refuse(file, "cannot be written: " + std::string(strerror(errno)));
 }
 
 LineOutput::~LineOutput() {
@@ -100,7 +93,7 @@ bool LineOutput::failed() const {
   if (errno == EPIPE && !unfinished_) {
     if (std::freopen("/dev/null", "w", stdout) != nullptr) return false;  // the rest of stdout's buffer is dropped
   }
-  throw InputError({.file = name_, .message = "cannot be written: " + std::string(strerror(errno))});
+  refuse(name_, "cannot be written: " + std::string(strerror(errno)));
 }
 
 bool LineOutput::put(std::string_view line) {

@@ -57,23 +57,17 @@ class PlantService {
   explicit PlantService(const PlantOptions& options) : options_(options) {
     if (kind_in(options.robot) == JsonKind::scenario) {
       scenario_ = read_scenario_config(options.robot);
-      if (!options.plant.empty())
-        throw InputError(
-            InputProblem{.file = "--plant", .message = "does not go with a scenario, which says its plant"});
+      if (!options.plant.empty()) refuse("--plant", "does not go with a scenario, which says its plant");
     } else {
       require_kind(options.robot, JsonKind::robot);
       robot_ = read_robot(options.robot);
     }
     server_ = make_server();
     if (!options.in_step) return;
-    if (names_.size() > 1)
-      throw InputError(
-          InputProblem{.file = "--in-step", .message = "is for one robot; the peers of several have the clock's time"});
+    if (names_.size() > 1) refuse("--in-step", "is for one robot; the peers of several have the clock's time");
     if (!server_->emulator(0).step_with_peer())
-      throw InputError(InputProblem{.file = "--in-step",
-                                    .message = options.imu.empty()
-                                                   ? "the protocol '" + options.as + "' does not count the peer's ticks"
-                                                   : "does not go with --imu: its device measures by the clock"});
+      refuse("--in-step", options.imu.empty() ? "the protocol '" + options.as + "' does not count the peer's ticks"
+                                              : "does not go with --imu: its device measures by the clock");
   }
 
   int run() {
@@ -107,13 +101,10 @@ class PlantService {
     const std::vector<ServedWorld::Site>& sites = world_->sites();
     for (const ServedWorld::Site& site : sites) names_.push_back(site.name.empty() ? site.robot.name : site.name);
     if (options_.listen.size() != sites.size())
-      throw InputError(InputProblem{
-          .file = "--listen",
-          .message = sites.size() == 1 ? "one robot is served: give one address"
-                                       : "once for each robot, in this order: " + CLI::detail::join(names_, ", ")});
+      refuse("--listen", sites.size() == 1 ? "one robot is served: give one address"
+                                           : "once for each robot, in this order: " + CLI::detail::join(names_, ", "));
     if (sites.size() > 1 && !(options_.imu.empty() && options_.faults.empty()))
-      throw InputError(
-          InputProblem{.file = options_.imu.empty() ? "--fault" : "--imu", .message = "is for one robot alone"});
+      refuse(options_.imu.empty() ? "--fault" : "--imu", "is for one robot alone");
     std::vector<std::unique_ptr<PlantEmulator>> emulators;
     for (std::size_t i = 0; i < sites.size(); ++i)
       emulators.push_back(make_emulator(sites[i].robot, options_.listen[i]));
@@ -131,9 +122,7 @@ class PlantService {
       return drives;
     }
     const imu::SerialImuSettings settings = serial_imu_at(robot, type, "--imu", options_.imu);
-    if (!settings.given())
-      throw InputError(
-          InputProblem{.file = "--imu", .message = "the protocol '" + options_.as + "' has the IMU in its frames"});
+    if (!settings.given()) refuse("--imu", "the protocol '" + options_.as + "' has the IMU in its frames");
     auto both =
         std::make_unique<imu::ImuServer>(std::move(drives), settings, robot.plant.imu.pose.orientation, options_.imu);
     plan_faults(*both);
@@ -145,7 +134,7 @@ class PlantService {
       try {
         drives.plan_faults({emulated_fault(text)});
       } catch (const std::invalid_argument& error) {
-        throw InputError(InputProblem{.file = "--fault", .message = text + ": " + error.what()});
+        refuse("--fault", text + ": " + error.what());
       }
     }
   }
@@ -272,9 +261,7 @@ void add_plant(CLI::App& app, PlantOptions& options) {
       ->add_option("--as", options.as,
                    "In whose protocol (default: udp): " + names(&PlantType::is_protocol) + ", or a plug-in's type")
       ->type_name("TYPE");
-  plant->add_option("--seed", options.seed, "Seed of the model's random numbers (default: 1, or the scenario's)")
-      ->type_name("N")
-      ->check(any_seed());
+  add_seed(*plant, options.seed, "Seed of the model's random numbers (default: 1, or the scenario's)");
   plant
       ->add_option(
           "--fault", options.faults,
@@ -286,9 +273,8 @@ void add_plant(CLI::App& app, PlantOptions& options) {
   plant->add_flag("--in-step", options.in_step,
                   "Let time pass with the peer's ticks, not with the clock: for a peer that is emulated or debugged");
   plant->add_flag("--soft", options.soft, "Run even without the rights that real time needs");
-  plant->add_option("--cpu", options.cpu, "CPU of the model's thread (default: an isolated one, else the last)")
-      ->type_name("N")
-      ->check(whole_within(0, 1023));
+  add_whole(*plant, "--cpu", options.cpu, 0, 1023,
+            "CPU of the model's thread (default: an isolated one, else the last)");
   plant->add_flag("--json", options.json, "Print each session as one JSON object on a line of its own");
 }
 

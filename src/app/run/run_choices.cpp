@@ -39,8 +39,7 @@ NumberEntry parse_setting(const std::string& text, const std::string& option) {
   const std::size_t equals = text.find('=');
   const std::string_view after = equals == std::string::npos ? "" : std::string_view(text).substr(equals + 1);
   const std::optional<double> value = number_of<double>(after);
-  if (!value)
-    throw InputError({.file = option, .message = "'" + text + "' must be NAME=NUMBER, such as ground.friction=0.3"});
+  if (!value) refuse(option, "'" + text + "' must be NAME=NUMBER, such as ground.friction=0.3");
   return {.key = text.substr(0, equals), .value = *value};
 }
 
@@ -58,9 +57,7 @@ ScenarioPush parse_push(const std::string& text, double at_s) {
     else
       push.impulse_Ns[count] = *impulse_Ns;
   }
-  if (count != 3)
-    throw InputError({.file = "--push",
-                      .message = "'" + text + "' must be LINK=X,Y,Z in Ns, at most 1e4 each, such as torso=0,2,0"});
+  if (count != 3) refuse("--push", "'" + text + "' must be LINK=X,Y,Z in Ns, at most 1e4 each, such as torso=0,2,0");
   return push;
 }
 
@@ -100,7 +97,7 @@ RunChoices choices_of(const TextMap& facts, const std::string& record) {
   choices.duration_s = number_of<double>(fact(facts, "duration_s"));
   if (!choices.seed || !choices.duration_s ||
       !(*choices.duration_s > 0 && *choices.duration_s <= scenario_duration_max_s))
-    throw InputError({.file = record, .message = "does not say with which seed and for how long it was recorded"});
+    refuse(record, "does not say with which seed and for how long it was recorded");
   choices.play = fact(facts, "play");
   choices.set = split(fact(facts, "set"));
   return choices;

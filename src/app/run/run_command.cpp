@@ -154,7 +154,7 @@ std::filesystem::path folder_of_records(const std::string& record) {
   if (!names_a_folder(record)) return (fs::current_path() / record).parent_path();
   std::error_code error;
   fs::create_directories(record, error);
-  if (error) throw InputError({.file = record, .message = "cannot be made: " + error.message()});
+  if (error) refuse(record, "cannot be made: " + error.message());
   return fs::canonical(record);
 }
 
@@ -231,8 +231,7 @@ class WallClockRun {
 
   int run() {
     if (options_.virtual_time && assembly_.world() == nullptr) {
-      throw InputError(
-          InputProblem{.file = "--threads-on-virtual-time", .message = "a plant that is no model has its own time"});
+      refuse("--threads-on-virtual-time", "a plant that is no model has its own time");
     }
     refuse_faulty_behaviors(scenario_, assembly_.catalog());
     assembly_.record_to(&control_side_);

@@ -12,7 +12,7 @@ ServedWorld::ServedWorld(const Robot& robot, const std::string& type, std::uint6
   try {
     model_ = served.make_world({robot.config.model, robot.config.plant, seed});
   } catch (const std::invalid_argument& error) {
-    throw InputError({.file = robot.config.file, .message = error.what()});
+    refuse(robot.config.file, error.what());
   }
   world_ = model_.get();
   robots_.push_back(&world_->robot(0));

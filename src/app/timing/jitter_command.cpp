@@ -292,24 +292,15 @@ void measure(JitterRun& run) {
 
 void add_jitter(CLI::App& app, JitterOptions& options) {
   CLI::App* jitter = app.add_subcommand("jitter", "Measure the timing of this machine, and compare it with cyclictest");
-  jitter->add_option("--seconds", options.seconds, "Seconds of samples at 1 kHz (default: 60)")
-      ->type_name("S")
-      ->check(number_within(0.1, 1000.0));
+  add_number(*jitter, "--seconds", options.seconds, 0.1, 1000.0, "S", "Seconds of samples at 1 kHz (default: 60)");
   jitter->add_flag("--load", options.load,
                    "Load the machine meanwhile: processes that compute, fill memory, write, switch, set timers");
   CLI::Option* sleep =
       jitter->add_flag("--sleep-only", options.sleep_only, "Sleep until the next tick, without spinning");
-  jitter->add_option("--spin-us", options.spin_us, "Time to spin after sleeping")
-      ->type_name("US")
-      ->check(number_within(1.0, 900.0))
-      ->excludes(sleep);
+  add_number(*jitter, "--spin-us", options.spin_us, 1.0, 900.0, "US", "Time to spin after sleeping")->excludes(sleep);
   jitter->add_flag("!--no-keep-awake", options.keep_awake, "Let the CPU idle between the beats");
-  jitter->add_option("--cpu", options.cpu, "CPU to measure on (default: an isolated one, else the last)")
-      ->type_name("N")
-      ->check(whole_within(0, 1023));
-  jitter->add_option("--priority", options.priority, "Priority of SCHED_FIFO (default: 90)")
-      ->type_name("N")
-      ->check(whole_within(1, 99));
+  add_whole(*jitter, "--cpu", options.cpu, 0, 1023, "CPU to measure on (default: an isolated one, else the last)");
+  add_whole(*jitter, "--priority", options.priority, 1, 99, "Priority of SCHED_FIFO (default: 90)");
   jitter->add_option("--svg", options.svg, "Draw the histogram into a file")->type_name("FILE");
   jitter->add_flag("--json", options.json, "Print one JSON object instead of text");
 }

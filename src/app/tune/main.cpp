@@ -83,7 +83,7 @@ Json by_name(const std::vector<TunedAxis>& axes, const std::vector<double>& valu
 
 void require_free(const TuneOptions& options) {
   if (!options.write.empty() && fs::exists(options.write) && !options.overwrite)
-    throw InputError(InputProblem{.file = options.write, .message = "is there already; --overwrite replaces it"});
+    refuse(options.write, "is there already; --overwrite replaces it");
 }
 
 void print_generation(const TunePlan& plan, const CmaEs& search, const std::vector<double>& scores) {

@@ -128,7 +128,7 @@ class ProgramTuning {
     std::string failure = judged.failure;
     if (failure.empty() && (metric == judged.metrics.end() || !metric->is_number()))
       failure = "gave no number " + plan_.score.name;
-    if (!failure.empty() && must) throw InputError({.file = plan_.program.front().name, .message = failure});
+    if (!failure.empty() && must) refuse(plan_.program.front().name, failure);
     const double value = failure.empty() ? metric->get<double>() : plan_.failed_score;
     return plan_.greatest ? -value : value;
   }
@@ -166,7 +166,7 @@ class ProgramTuning {
 
 int tune_by_program(const TuneOptions& options, const TunePlan& plan) {
   const auto refuse_option = [&](bool given, const char* option) {
-    if (given) throw InputError({.file = plan.file, .message = std::string(option) + " is for tunings of scenarios"});
+    if (given) refuse(plan.file, std::string(option) + " is for tunings of scenarios");
   };
   refuse_option(options.runs.has_value(), "--runs");
   refuse_option(!options.shard.empty(), "--shard");
