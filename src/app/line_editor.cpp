@@ -20,8 +20,8 @@ constexpr int history_lines = 1000;
 
 LineEditor* LineEditor::current = nullptr;
 
-LineEditor::LineEditor(std::string prompt, std::filesystem::path history_file, Complete complete)
-    : prompt_(std::move(prompt)), history_file_(std::move(history_file)), complete_(std::move(complete)) {
+LineEditor::LineEditor(std::string prompt, Complete complete)
+    : prompt_(std::move(prompt)), history_file_(state_file("history")), complete_(std::move(complete)) {
   current = this;
   using_history();
   stifle_history(history_lines);

@@ -18,8 +18,8 @@ class LineEditor {
   };
   using Complete = std::function<Completion(const std::string& text)>;
 
-  // The history is kept in history_file if it can be written; "": no history.
-  LineEditor(std::string prompt, std::filesystem::path history_file, Complete complete);
+  // The history is kept in state_file("history") if that can be written.
+  LineEditor(std::string prompt, Complete complete);
   ~LineEditor();
   LineEditor(const LineEditor&) = delete;
   LineEditor& operator=(const LineEditor&) = delete;

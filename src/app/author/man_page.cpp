@@ -51,24 +51,14 @@ Footer footer_of(const CLI::App& command) {
 
 // Text that roff would take for something else: escapes, dashes, a dot or an apostrophe at the start of a line.
 std::string roff(const std::string& text) {
+  constexpr std::pair<char, const char*> escapes[] = {{'\\', "\\e"},  {'-', "\\-"},   {'\'', "\\(aq"},
+                                                      {'`', "\\(ga"}, {'^', "\\(ha"}, {'~', "\\(ti"}};
   std::string safe;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     if ((c == '.' || c == '\'') && (i == 0 || text[i - 1] == '\n')) safe += "\\&";
-    if (c == '\\')
-      safe += "\\e";
-    else if (c == '-')
-      safe += "\\-";
-    else if (c == '\'')
-      safe += "\\(aq";
-    else if (c == '`')
-      safe += "\\(ga";
-    else if (c == '^')
-      safe += "\\(ha";
-    else if (c == '~')
-      safe += "\\(ti";
-    else
-      safe += c;
+    const auto* const found = std::ranges::find(escapes, c, &std::pair<char, const char*>::first);
+    safe += found == std::end(escapes) ? std::string(1, c) : found->second;
   }
   return safe;
 }

@@ -87,7 +87,7 @@ class Repl {
   int from_terminal() {
     std::printf("%s at %g times real time; :help tells what can be typed\n", assembly_.robot().model.name.c_str(),
                 speed_);
-    LineEditor editor(prompt(), state_file("history"), [this](const std::string& text) {
+    LineEditor editor(prompt(), [this](const std::string& text) {
       Console::Completion found = console_.complete(text);
       return LineEditor::Completion{found.begin, std::move(found.words)};
     });

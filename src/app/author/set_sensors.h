@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "estimate/leg_chain.h"
@@ -69,33 +70,21 @@ class SetSensors {
       }
       return std::nullopt;
     };
-    switch (field.part) {
-      case joint:
-        return one_of("joints", joints_);
-      case foot:
-        return one_of("feet", feet_);
-      case base:
-        return only("base");
-      case rate:
-        return only("base.angular_velocity_rad_s");
-      case support:
-        return only("support");
-      case odometry:
-        return only("odometry");
-      case safety:
-        return only("safety");
-      case joystick:
-        return only("joystick");
-      case ball:  // an entry of the world model with that name takes its place
-        return std::ranges::find(seen_, "ball") == seen_.end() ? only("seen.ball") : std::nullopt;
-      case seen: {
-        const std::optional<std::size_t> entry = one_of("seen", seen_);
-        return entry && field.is_of(seen, *entry) ? entry : std::nullopt;
-      }
-      case sensors:
-        return only("sensors");
-      case root:
-        break;
+    constexpr std::pair<StatusField::Part, const char*> of_the_robot[] = {
+        {base, "base"},       {rate, "base.angular_velocity_rad_s"},
+        {support, "support"}, {odometry, "odometry"},
+        {safety, "safety"},   {joystick, "joystick"},
+        {sensors, "sensors"}};
+    for (const auto& [part, path] : of_the_robot) {
+      if (field.part == part) return only(path);
+    }
+    if (field.part == joint) return one_of("joints", joints_);
+    if (field.part == foot) return one_of("feet", feet_);
+    // An entry of the world model with that name takes its place.
+    if (field.part == ball && std::ranges::find(seen_, "ball") == seen_.end()) return only("seen.ball");
+    if (field.part == seen) {
+      const std::optional<std::size_t> entry = one_of("seen", seen_);
+      if (entry && field.is_of(seen, *entry)) return entry;
     }
     return std::nullopt;
   }

@@ -49,7 +49,6 @@ class BenchSession {
     by_drives_ = true;
     see();
   }
-  double share() const noexcept { return settings_.share; }
   void tell(const std::string& sentence) { person_.hear(sentence); }
   // All drives are off meanwhile. Throws PersonGone.
   std::string ask(const Question& question);
@@ -58,7 +57,6 @@ class BenchSession {
   // before; "" when nothing did. `far`: this joint may go on as far as it is pushed. Throws PersonGone.
   std::string hold(const Question& question, std::size_t joint, Push& push, bool far = false);
   const BenchSight& sight() const noexcept { return sight_; }
-  const SensorFrame& sensors() const noexcept { return sensors_; }
   struct Range {
     double least_rad = 0, most_rad = 0;
   };

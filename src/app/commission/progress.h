@@ -17,7 +17,6 @@ class Progress {
   const std::string& found(std::string_view step, const std::string& joint) const;
   // Written durably at once.
   void set(std::string_view step, const std::string& joint, const std::string& found);
-  const std::string& file() const noexcept { return file_; }
 
  private:
   std::string file_, plant_;

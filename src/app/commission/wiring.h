@@ -32,7 +32,6 @@ class Wiring {
     const auto found = drives_.find(joint);
     return found == drives_.end() ? 1 : found->second.per_joint;
   }
-  const std::string& file() const noexcept { return file_; }
   // A field of a drive as JSON; "" where the configuration does not give it.
   std::string value(const std::string& joint, std::string_view field) const;
   bool flag(const std::string& joint, std::string_view field) const { return value(joint, field) == "true"; }

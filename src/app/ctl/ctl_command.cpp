@@ -260,7 +260,7 @@ int from_pipe(CtlLink& link) {
 int from_terminal(CtlLink& link) {
   catch_interrupts();
   std::puts(":help tells what can be typed; :quit leaves, the instance goes on");
-  LineEditor editor("kadans> ", state_file("history"), [&link](const std::string& text) {
+  LineEditor editor("kadans> ", [&link](const std::string& text) {
     const Json answer = ask(link, "complete", text);
     if (!answer.value("ok", false)) return LineEditor::Completion{};
     return LineEditor::Completion{answer.at("begin"), answer.at("words")};

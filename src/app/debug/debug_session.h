@@ -30,10 +30,6 @@ class DebugSession {
 
  private:
   enum class Doing : std::uint8_t { nothing, standing, running, searching, arriving, over };
-  struct Wish {
-    int id = 0;
-    std::string text;
-  };
   using Handler = Json (DebugSession::*)(const Json&);
 
   void handle(const Json& request);
@@ -127,7 +123,7 @@ class DebugSession {
   int last_id_ = 0;
   std::map<std::string, std::vector<LineBreak>> lines_;  // by path
   std::vector<LineBreak> functions_;
-  std::vector<Wish> states_, conditions_, data_;
+  std::vector<NamedBreak> states_, conditions_, data_;
   Json filters_ = Json::array();
 };
 

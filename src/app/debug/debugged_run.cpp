@@ -180,7 +180,7 @@ void DebuggedRun::between_ticks(const RunMark& mark) {
 std::optional<Json> DebuggedRun::look_at_tick() {
   std::optional<Json> why;
   if (conditions_ && conditions_->evaluate(1e-9 * static_cast<double>(time_ns_), row_)) {
-    for (NamedBreak& one : breaks_.signals) {
+    for (SignalBreak& one : breaks_.signals) {
       const bool holds = conditions_->holds(one.expression);
       if (holds && !one.held && !why) why = {{"reason", "data breakpoint"}, {"ids", {one.id}}, {"text", one.text}};
       one.held = holds;
@@ -383,7 +383,7 @@ void DebuggedRun::take_breaks(const Json& breaks) {
     for (LineCount& line : chunk.lines) line.broken = false;
   }
   for (const LineBreak& one : breaks_.lines) count(one.chunk.c_str(), one.line).broken = true;
-  for (const Json& one : breaks.at("states")) breaks_.states.push_back({one.at("id"), one.at("text"), false, 0});
+  breaks.at("states").get_to(breaks_.states);
   for (const Json& filter : breaks.at("filters")) {
     const std::string name = filter.at("name"), text = filter.value("condition", "");
     if (name == "fault") breaks_.fault = text;
@@ -395,12 +395,12 @@ void DebuggedRun::take_breaks(const Json& breaks) {
   if (breaks.at("signals").empty()) return;
   conditions_ = std::make_unique<SignalExpressions>(assembly_.catalog().signals, assembly_.signal_states());
   for (const Json& one : breaks.at("signals")) {
-    NamedBreak added{one.at("id"), one.at("text"), false, 0};
+    SignalBreak added{one.get<NamedBreak>()};
     if (ExpressionError error; conditions_->add(added.text, added.expression, error))
       breaks_.signals.push_back(std::move(added));
   }
   if (row_.empty() || !conditions_->evaluate(1e-9 * static_cast<double>(time_ns_), row_)) return;
-  for (NamedBreak& one : breaks_.signals) one.held = conditions_->holds(one.expression);
+  for (SignalBreak& one : breaks_.signals) one.held = conditions_->holds(one.expression);
 }
 
 void DebuggedRun::hear_orders() {

@@ -43,15 +43,14 @@ class DebuggedRun final : public RunObserver, private LineSink, private LineWatc
   void fault(const Fault& fault) override;
 
  private:
-  struct NamedBreak {
-    int id = 0;
-    std::string text;
-    bool held = false;  // of a signal's condition: it was true
+  struct SignalBreak : NamedBreak {
+    bool held = false;  // its condition was true
     std::size_t expression = 0;
   };
   struct Breaks {
     std::vector<LineBreak> lines;
-    std::vector<NamedBreak> states, signals;
+    std::vector<NamedBreak> states;
+    std::vector<SignalBreak> signals;
     std::optional<std::string> fault, transition;  // of which ones; "": of all
     bool error = false, check = false;
   };

@@ -40,6 +40,14 @@ inline void from_json(const Json& json, LineBreak& one) {
   json.at(3).get_to(one.condition), json.at(4).get_to(one.hits), json.at(5).get_to(one.log);
 }
 
+// A breakpoint on a state, or on a condition of signals.
+struct NamedBreak {
+  int id = 0;
+  std::string text;
+};
+inline void to_json(Json& json, const NamedBreak& one) { json = Json::array({one.id, one.text}); }
+inline void from_json(const Json& json, NamedBreak& one) { json.at(0).get_to(one.id), json.at(1).get_to(one.text); }
+
 // False: whoever reads is gone. SIGPIPE must be ignored.
 bool write_all(int descriptor, std::string_view bytes) noexcept;
 

@@ -160,16 +160,12 @@ std::string DebugSession::wrong_condition(const std::string& text) {
 }
 
 Json DebugSession::breaks() const {
-  Json lines = Json::array(), states = Json::array(), conditions = Json::array();
-  for (const auto& [path, wishes] : lines_) {
-    for (const LineBreak& one : wishes) lines.push_back(one);
-  }
-  for (const LineBreak& one : functions_) lines.push_back(one);
-  for (const Wish& one : states_) states.push_back({{"id", one.id}, {"text", one.text}});
-  for (const auto* wishes : {&conditions_, &data_}) {
-    for (const Wish& one : *wishes) conditions.push_back({{"id", one.id}, {"text", one.text}});
-  }
-  return {{"lines", lines}, {"states", states}, {"signals", conditions}, {"filters", filters_}};
+  std::vector<LineBreak> lines;
+  for (const auto& [path, wishes] : lines_) lines.insert(lines.end(), wishes.begin(), wishes.end());
+  lines.insert(lines.end(), functions_.begin(), functions_.end());
+  std::vector<NamedBreak> signals = conditions_;
+  signals.insert(signals.end(), data_.begin(), data_.end());
+  return {{"lines", lines}, {"states", states_}, {"signals", signals}, {"filters", filters_}};
 }
 
 // To a run that goes on; one that stands still hears them when it is let go.

@@ -35,11 +35,11 @@ std::string exact_text(double number) {
   return error == std::errc{} ? std::string(text, end) : "";
 }
 
-NumberEntry parse_setting(const std::string& text, const std::string& option) {
+NumberEntry parse_setting(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string_view after = equals == std::string::npos ? "" : std::string_view(text).substr(equals + 1);
   const std::optional<double> value = number_of<double>(after);
-  if (!value) refuse(option, "'" + text + "' must be NAME=NUMBER, such as ground.friction=0.3");
+  if (!value) refuse("--set", "'" + text + "' must be NAME=NUMBER, such as ground.friction=0.3");
   return {.key = text.substr(0, equals), .value = *value};
 }
 

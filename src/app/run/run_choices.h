@@ -34,8 +34,8 @@ struct RunChoices {
 // A text with enough digits to read back the same number.
 std::string exact_text(double number);
 
-// Reads "ground.friction=0.3". Throws InputError that names `option`.
-NumberEntry parse_setting(const std::string& text, const std::string& option = "--set");
+// Reads "ground.friction=0.3". Throws InputError that names --set.
+NumberEntry parse_setting(const std::string& text);
 // Reads "torso=0,2,0" as a push at at_s. Throws InputError.
 ScenarioPush parse_push(const std::string& text, double at_s);
 

@@ -253,9 +253,8 @@ class WallClockRun {
     LastResort last_resort(timing.real_time && !timing.virtual_time ? last_resort_priority : 0, exit_failed);
     RunThreads threads(timing,
                        {control_, behaviors_, plant_.get(), may_record ? &record_side_ : nullptr, joystick_.get(),
-                        supervisor_.get(), supervisor_ ? assembly_.supervisor()->period_ns() : 0},
-                       interrupted);
-    if (!threads.start(print_error)) return end_before_start(threads, last_resort);
+                        supervisor_.get(), supervisor_ ? assembly_.supervisor()->period_ns() : 0});
+    if (!threads.start()) return end_before_start(threads, last_resort);
     if (may_record && !timing.virtual_time) disk_.start();
     const double start_ms = ms_since_start(threads.origin_ns() + timing.control_period_ns);
     live_.start({{"Control tick: late", &threads.control().statistics().lateness},

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <thread>
 
+#include "app/terminal.h"
 #include "realtime/machine/placement.h"
 
 namespace kadans {
@@ -13,13 +14,12 @@ constexpr std::int64_t record_period_ns = 20'000'000, joystick_period_ns = 10'00
 
 }  // namespace
 
-RunThreads::RunThreads(const RunTiming& timing, const RunTasks& tasks, bool (*give_up)() noexcept)
+RunThreads::RunThreads(const RunTiming& timing, const RunTasks& tasks)
     : timing_(timing),
-      give_up_(give_up),
       line_(2 + std::size_t{tasks.plant != nullptr} + std::size_t{tasks.record != nullptr} +
                 std::size_t{tasks.joystick != nullptr} + std::size_t{tasks.supervisor != nullptr},
             start_ns),
-      supervisor_wait_(timing.virtual_time ? virtual_time_.make_wait(give_up) : nullptr) {
+      supervisor_wait_(timing.virtual_time ? virtual_time_.make_wait(interrupted) : nullptr) {
   const auto priority = [&](int wanted) { return timing.real_time && !timing.virtual_time ? wanted : 0; };
   const std::int64_t period_ns = timing.control_period_ns;
   // On the wall clock the model runs half a period later, so that its inputs and outputs always have the same age. It
@@ -71,7 +71,7 @@ void RunThreads::add(const TaskSettings& settings, Task& task, std::int64_t spin
   threads_.push_back(std::make_unique<TaskThread>(settings, task, *waits_.back()));
 }
 
-bool RunThreads::start(void (*tell)(const std::string& message)) {
+bool RunThreads::start() {
   if (!timing_.virtual_time) {
     if (timing_.keep_awake) awake_.emplace(timing_.cpu);
     (void)leave_cpu(timing_.cpu);  // the threads that are started here do so, too
@@ -83,23 +83,23 @@ bool RunThreads::start(void (*tell)(const std::string& message)) {
     throw;
   }
   if (timing_.virtual_time) return true;
-  const bool all = wait_for_all(tell);
+  const bool all = wait_for_all();
   supervisor_wait_ = std::make_unique<PosixWait>(0, line_.origin_ns());
   return all;
 }
 
-bool RunThreads::wait_for_all(void (*tell)(const std::string& message)) {
+bool RunThreads::wait_for_all() {
   constexpr std::chrono::milliseconds look_again{10};
   constexpr std::int64_t patience_ns = 1'000'000'000, say_again_ns = 10'000'000'000;
   std::int64_t say_ns = WallClock().now_ns() + patience_ns;
   while (!line_.is_open()) {
-    if (give_up_()) {
+    if (interrupted()) {
       cancel();
       return false;
     }
     if (WallClock().now_ns() >= say_ns) {
       say_ns += say_again_ns;
-      tell("waiting for a CPU: " + not_begun() + " cannot begin; another program in real time keeps it");
+      print_error("waiting for a CPU: " + not_begun() + " cannot begin; another program in real time keeps it");
     }
     std::this_thread::sleep_for(look_again);
   }

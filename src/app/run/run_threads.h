@@ -47,13 +47,12 @@ struct RunTiming {
 class RunThreads {
  public:
   // The tasks must outlive this object. Time 0 is a little after all threads have started. While the supervisor waits
-  // for the threads, or for virtual time that stands still, it calls `give_up`; when that returns true, it stops
-  // waiting.
-  RunThreads(const RunTiming& timing, const RunTasks& tasks, bool (*give_up)() noexcept);
+  // for the threads, or for virtual time that stands still, an interrupt of the program ends the wait.
+  RunThreads(const RunTiming& timing, const RunTasks& tasks);
 
-  // Waits until all threads have a CPU. After a second, and then every ten seconds, it calls `tell` with the threads
-  // that have none. False: the wait was given up and nothing has begun. Throws std::system_error.
-  [[nodiscard]] bool start(void (*tell)(const std::string& message));
+  // Waits until all threads have a CPU. After a second, and then every ten seconds, it tells which have none. False:
+  // the wait was ended and nothing has begun. Throws std::system_error.
+  [[nodiscard]] bool start();
   // Call it when the supervisor no longer waits. Returns the names of the threads that still run after `patience_ns`.
   // The caller must not destroy anything that such a thread uses.
   [[nodiscard]] std::vector<std::string> stop(std::int64_t patience_ns) noexcept;
@@ -71,11 +70,10 @@ class RunThreads {
   std::unique_ptr<Wait> make_wait(std::int64_t spin_ns);
   std::vector<std::string> join_all(std::int64_t patience_ns) noexcept;
   std::string not_begun() const;
-  bool wait_for_all(void (*tell)(const std::string& message));
+  bool wait_for_all();
   void cancel() noexcept;
 
   RunTiming timing_;
-  bool (*give_up_)() noexcept;
   StartLine line_;
   VirtualTime virtual_time_;
   std::unique_ptr<Wait> supervisor_wait_;
