@@ -133,20 +133,6 @@ fs::path robot_for(const fs::path& file, const BehaviorOptions& options) {
   return options.robot.empty() ? robot_of_behavior(file) : fs::path(options.robot);
 }
 
-int run_checks(const BehaviorOptions& options) {
-  int code = exit_passed;
-  FileChecks checks(options.robot, options.plugins);
-  for (const CheckedFile& checked : files_to_check(options.files, true)) {
-    try {
-      std::printf("ok  %s  %s\n", checked.file.c_str(), checks.check_script_file(checked).c_str());
-    } catch (const InputError& error) {
-      print_problems(error);
-      code = exit_usage;
-    }
-  }
-  return code;
-}
-
 // Graphviz lays the graph out.
 int draw_svg(const std::string& dot) {
   try {
@@ -210,7 +196,8 @@ void add_behavior(CLI::App& app, BehaviorOptions& options) {
 int run_behavior(const CLI::App& app, const BehaviorOptions& options) {
   const CLI::App* behavior = app.get_subcommand("behavior");
   if (behavior->got_subcommand("graph")) return run_graph(options);
-  return behavior->got_subcommand("check") ? run_checks(options) : run_tests(options);
+  if (behavior->got_subcommand("test")) return run_tests(options);
+  return FileChecks(options.robot, options.plugins).print_all(options.files, true);
 }
 
 }  // namespace kadans

@@ -1,9 +1,6 @@
-#include <cstdio>
-
 #include <CLI/CLI.hpp>
 
 #include "app/commands.h"
-#include "app/terminal.h"
 #include "config/robot/mesh_hull.h"
 #include "file_checks.h"
 #include "robot_description.h"
@@ -28,26 +25,11 @@ void add_check(CLI::App& app, CheckOptions& options) {
 }
 
 int run_check(const CheckOptions& options) {
-  int code = exit_passed;
-  bool any = false;
   const UrdfOptions urdf{.mesh_hull = mesh_hull,
                          .mesh_triangles = mesh_triangles,
                          .strict = options.strict,
                          .packages = packages_of(options.packages)};
-  FileChecks checks(options.robot, options.plugins, urdf);
-  for (const CheckedFile& checked : files_to_check(options.files, false)) {
-    try {
-      const std::string what = checks.check(checked);
-      if (what.empty()) continue;
-      std::printf("ok  %s  %s\n", checked.file.c_str(), what.c_str());
-      any = true;
-    } catch (const InputError& error) {
-      print_problems(error);
-      code = exit_usage;
-    }
-  }
-  if (!any && code == exit_passed) refuse(options.files.front(), "holds nothing of ours");
-  return code;
+  return FileChecks(options.robot, options.plugins, urdf).print_all(options.files, false);
 }
 
 }  // namespace kadans

@@ -13,6 +13,7 @@
 #include "app/commands.h"
 #include "app/sim/played_behaviors.h"
 #include "app/sim/repeated_run.h"
+#include "app/terminal.h"
 #include "behavior_stage.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
@@ -80,8 +81,10 @@ std::vector<fs::path> chosen_by(const std::string& pattern) {
   return paths;
 }
 
-}  // namespace
-
+// The named files, all files below a named folder, and all files that a pattern chooses ("config/*/robot.json"), each
+// once. In a folder .urdf (.URDF), .json and .lua files count, but not names that begin with a dot. In a whole project
+// only config, models and behaviors are searched. `scripts_only`: only .lua files. Throws InputError for a file that
+// does not exist and for a folder without files to check.
 std::vector<CheckedFile> files_to_check(const std::vector<std::string>& named, bool scripts_only) {
   std::vector<CheckedFile> all;
   std::set<fs::path> known;
@@ -100,10 +103,6 @@ std::vector<CheckedFile> files_to_check(const std::vector<std::string>& named, b
   }
   return all;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
 
 std::string with_warnings(std::string what, const std::vector<InputProblem>& warnings) {
   for (const InputProblem& warning : warnings) what += "\nwarning: " + warning.text();
@@ -133,6 +132,32 @@ const Known& known(JsonKind kind) {
   return all[static_cast<std::size_t>(kind)];
 }
 
+JsonKind kind_of(const JsonValue& json) {
+  const auto has = [&](const char* key) { return json.find(key) != nullptr; };
+  if (has("tune")) return JsonKind::tuning;
+  if (has("scenarios")) return JsonKind::sweep;
+  if (has("urdf") || has("control")) return JsonKind::robot;
+  return has("robot") || has("record") || has("duration_s") || has("checks") ? JsonKind::scenario : JsonKind::other;
+}
+
+// "; 2 pairs of links touch with all joints at 0, and pass through each other: a and b, c and d"
+std::string told_touching(const RobotConfig& robot) {
+  constexpr std::size_t shown_max = 12;
+  if (!robot.plant.self_collision) return "";
+  std::vector<std::pair<std::string, std::string>> pairs;
+  try {
+    pairs = touching_links(robot.model, robot.plant, TouchingAt::zero);
+  } catch (const std::invalid_argument&) {  // it may be driven by another plant, and Bullet's says so itself
+  }
+  if (pairs.empty()) return "";
+  std::string text = "; " + std::to_string(pairs.size()) +
+                     (pairs.size() == 1 ? " pair of links touches" : " pairs of links touch") +
+                     " with all joints at 0, and " + (pairs.size() == 1 ? "passes" : "pass") + " through each other: ";
+  for (std::size_t i = 0; i < std::min(pairs.size(), shown_max); ++i)
+    text += (i == 0 ? "" : ", ") + pairs[i].first + " and " + pairs[i].second;
+  return text + (pairs.size() > shown_max ? " ..." : "");
+}
+
 }  // namespace
 
 FileChecks::FileChecks(std::string robot, bool plugins, UrdfOptions urdf)
@@ -155,28 +180,6 @@ std::string FileChecks::check_description_of(const fs::path& file) {
   if (mimics > 0) what += "; " + std::to_string(mimics) + " joints mimic others";
   return with_warnings(what, warnings);
 }
-
-namespace {
-
-// "; 2 pairs of links touch with all joints at 0, and pass through each other: a and b, c and d"
-std::string told_touching(const RobotConfig& robot) {
-  constexpr std::size_t shown_max = 12;
-  if (!robot.plant.self_collision) return "";
-  std::vector<std::pair<std::string, std::string>> pairs;
-  try {
-    pairs = touching_links(robot.model, robot.plant, TouchingAt::zero);
-  } catch (const std::invalid_argument&) {  // it may be driven by another plant, and Bullet's says so itself
-  }
-  if (pairs.empty()) return "";
-  std::string text = "; " + std::to_string(pairs.size()) +
-                     (pairs.size() == 1 ? " pair of links touches" : " pairs of links touch") +
-                     " with all joints at 0, and " + (pairs.size() == 1 ? "passes" : "pass") + " through each other: ";
-  for (std::size_t i = 0; i < std::min(pairs.size(), shown_max); ++i)
-    text += (i == 0 ? "" : ", ") + pairs[i].first + " and " + pairs[i].second;
-  return text + (pairs.size() > shown_max ? " ..." : "");
-}
-
-}  // namespace
 
 std::string FileChecks::check_robot(const fs::path& file) {
   if (gate_.closed && !read_plugin_files(file).empty()) {
@@ -289,12 +292,22 @@ std::string FileChecks::check(const CheckedFile& checked) {
   return what;
 }
 
-JsonKind kind_of(const JsonValue& json) {
-  const auto has = [&](const char* key) { return json.find(key) != nullptr; };
-  if (has("tune")) return JsonKind::tuning;
-  if (has("scenarios")) return JsonKind::sweep;
-  if (has("urdf") || has("control")) return JsonKind::robot;
-  return has("robot") || has("record") || has("duration_s") || has("checks") ? JsonKind::scenario : JsonKind::other;
+int FileChecks::print_all(const std::vector<std::string>& named, bool scripts_only) {
+  int code = exit_passed;
+  bool any = false;
+  for (const CheckedFile& checked : files_to_check(named, scripts_only)) {
+    try {
+      const std::string what = scripts_only ? check_script_file(checked) : check(checked);
+      if (what.empty()) continue;
+      std::printf("ok  %s  %s\n", checked.file.c_str(), what.c_str());
+      any = true;
+    } catch (const InputError& error) {
+      print_problems(error);
+      code = exit_usage;
+    }
+  }
+  if (!any && code == exit_passed) refuse(named.front(), "holds nothing of ours");
+  return code;
 }
 
 std::optional<JsonKind> kind_in(const std::filesystem::path& file) {

@@ -20,12 +20,6 @@ struct CheckedFile {
   bool found = false;  // found in a folder: a file there that is not ours is passed over
 };
 
-// The named files, all files below a named folder, and all files that a pattern chooses ("config/*/robot.json"), each
-// once. In a folder .urdf (.URDF), .json and .lua files count, but not names that begin with a dot. In a whole project
-// only config, models and behaviors are searched. `scripts_only`: only .lua files. Throws InputError for a file that
-// does not exist and for a folder without files to check.
-std::vector<CheckedFile> files_to_check(const std::vector<std::string>& named, bool scripts_only);
-
 class FileChecks {
  public:
   // `robot` is the configuration against which behaviors are checked; "": the one for their folder. Loading a plug-in
@@ -35,8 +29,10 @@ class FileChecks {
   // Says what the file is, for people; "" for a JSON file found in a folder that is not ours. Throws InputError with
   // all mistakes.
   std::string check(const CheckedFile& checked);
-  // The same for a Lua file: "fits tulip", "a module", "tests". Throws InputError.
-  std::string check_script_file(const CheckedFile& checked);
+  // Prints what the named files are, with those in named folders and of patterns ("config/*/robot.json"), or on stderr
+  // their mistakes. `scripts_only`: only those in Lua. Returns the program's exit code. Throws InputError for a file
+  // that does not exist, and where there is nothing to check.
+  int print_all(const std::vector<std::string>& named, bool scripts_only);
 
  private:
   struct Known {
@@ -46,6 +42,7 @@ class FileChecks {
   };
   const Known& robot_at(const std::filesystem::path& config);
   const Known* robot_of(const std::filesystem::path& script, std::string& missing);
+  std::string check_script_file(const CheckedFile& checked);  // "fits tulip", "a module", "tests"
   std::string check_json(const std::filesystem::path& file);
 
   std::string check_description_of(const std::filesystem::path& file);
@@ -62,7 +59,6 @@ class FileChecks {
 // Tells the kind of one of our JSON files by its keys, for a command that was given the wrong kind.
 enum class JsonKind : std::uint8_t { other, scenario, robot, sweep, tuning };
 
-JsonKind kind_of(const JsonValue& json);
 std::optional<JsonKind> kind_in(const std::filesystem::path& file);  // nullopt: it cannot be read
 // Throws InputError for a file of another kind; the message says what it is and which command takes it. A file that
 // cannot be read, or whose kind is unknown, passes: its reader refuses it.
