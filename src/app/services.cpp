@@ -56,6 +56,16 @@ void add_ros2_service(CLI::App& command, Ros2Options& place) {
       ->needs(ros2);
 }
 
+std::uint32_t domain_of(const Ros2Options& place) {
+  if (place.domain != "-1") return static_cast<std::uint32_t>(std::stoul(place.domain));
+  const char* const text = std::getenv("ROS_DOMAIN_ID");  // NOLINT(concurrency-mt-unsafe): before any thread
+  if (text == nullptr || *text == '\0') return 0;
+  const std::optional<int> domain = number_of<int>(text);
+  if (!domain || *domain < 0 || *domain > domain_max)
+    refuse("ROS_DOMAIN_ID", "'" + std::string(text) + "' must be from 0 to " + std::to_string(domain_max));
+  return static_cast<std::uint32_t>(*domain);
+}
+
 }  // namespace
 
 void add_live_hosts(CLI::App& command, LiveServiceOptions& place) {
@@ -158,20 +168,6 @@ void LiveService::start(const std::vector<TimingSource>& timing) {
 void LiveService::stop() noexcept {
   if (server_) server_->stop();
 }
-
-namespace {
-
-std::uint32_t domain_of(const Ros2Options& place) {
-  if (place.domain != "-1") return static_cast<std::uint32_t>(std::stoul(place.domain));
-  const char* const text = std::getenv("ROS_DOMAIN_ID");  // NOLINT(concurrency-mt-unsafe): before any thread
-  if (text == nullptr || *text == '\0') return 0;
-  const std::optional<int> domain = number_of<int>(text);
-  if (!domain || *domain < 0 || *domain > domain_max)
-    refuse("ROS_DOMAIN_ID", "'" + std::string(text) + "' must be from 0 to " + std::to_string(domain_max));
-  return static_cast<std::uint32_t>(*domain);
-}
-
-}  // namespace
 
 Ros2Service::Ros2Service(const Ros2Options& place, Instance& instance, const Assembly& assembly, LivePace* pace,
                          int avoid_cpu) {

@@ -107,7 +107,7 @@ class RunSteps {
 class RunObserver {
  public:
   virtual ~RunObserver() = default;
-  virtual void tick(double time_s, std::span<const double> row) = 0;
+  virtual void tick(double /*time_s*/, std::span<const double> /*row*/) {}
   // Called for each fault that a robot's safety layer found; `fault.robot` says which robot's.
   virtual void fault(const Fault& fault) { (void)fault; }
   // Called after each tick and its step of the plant. Changes that it makes take effect in the next tick.

@@ -51,8 +51,6 @@ void SimRemote::begin(RecordSink* own, const std::string& own_file) {
   ros2_.start();
 }
 
-void SimRemote::tick(double, std::span<const double>) {}
-
 // To be called before the step that begins now.
 void SimRemote::push(const RunMark& mark) {
   const double time_s = 1e-9 * static_cast<double>(mark.time_ns);

@@ -31,7 +31,6 @@ class SimRemote final : public RunObserver {
   std::string end_record();
 
   LivePace& pace() noexcept { return pace_; }
-  void tick(double time_s, std::span<const double> row) override;
   void fault(const Fault& fault) override {
     instance_.tell(fault);
     record_side_.tell(fault);

@@ -18,6 +18,7 @@
 #include "telemetry/reading/record_observations.h"
 
 namespace kadans {
+namespace {
 
 int log_cut(const LogOptions& options) {
   const RecordCut cut{.span = span_of(options), .signals = options.signals, .inputs = options.inputs};
@@ -35,10 +36,6 @@ int log_cut(const LogOptions& options) {
   return exit_passed;
 }
 
-// `kadans log cat` and `kadans log csv`: print a record line by line.
-
-namespace {
-
 // Prints all lines. False: interrupted, or the reader has stopped reading.
 template <typename Lines>
 bool pour(Lines& lines, LineOutput& output) {
@@ -47,8 +44,6 @@ bool pour(Lines& lines, LineOutput& output) {
   }
   return true;
 }
-
-}  // namespace
 
 int log_cat(const LogOptions& options) {
   const TimeSpan span = span_of(options);
@@ -93,8 +88,6 @@ int log_csv(const LogOptions& options) {
   return exit_passed;
 }
 
-namespace {
-
 constexpr std::size_t signals_max = 64;  // nobody can distinguish more lines
 constexpr std::size_t sketch_columns = 72;
 
@@ -120,8 +113,6 @@ std::string title_of(const RecordOutline& record) {
   return name + (seed.empty() ? "" : ", seed " + seed);
 }
 
-}  // namespace
-
 int log_plot(const LogOptions& options) {
   const TimeSpan span = span_of(options);
   const PlotFormat format = options.out.empty() ? PlotFormat::svg : format_of(options.out);
@@ -143,8 +134,6 @@ int log_plot(const LogOptions& options) {
   std::printf("%s\n", options.out.c_str());
   return exit_passed;
 }
-
-namespace {
 
 constexpr const char* signals_help = "Names, patterns (\"joint.*knee*\") or front parts (joint.l_knee) of signals";
 

@@ -1,5 +1,5 @@
-// The verbs of `kadans log`, and their common parts: spans of time, output files that are not overwritten by mistake,
-// and output of lines.
+// The verbs of `kadans log` that stand in files of their own, and what verbs have in common: spans of time, output
+// files that are not overwritten by mistake, and output of lines.
 #pragma once
 
 #include <cstdio>
@@ -14,12 +14,7 @@
 namespace kadans {
 
 int log_info(const LogOptions& options);
-int log_cat(const LogOptions& options);
-int log_csv(const LogOptions& options);
-int log_plot(const LogOptions& options);
 int log_diff(const LogOptions& options);
-int log_cut(const LogOptions& options);
-int log_observations(const LogOptions& options);
 
 // The span of --from and --to. Throws InputError when they do not make a span.
 TimeSpan span_of(const LogOptions& options);

@@ -58,7 +58,6 @@ class CheckpointWriter final : public RunObserver {
   CheckpointWriter(RunInputs inputs, std::vector<PlannedCheckpoint> planned, Assembly& assembly,
                    const OrderedEvents& ordered)
       : inputs_(std::move(inputs)), planned_(std::move(planned)), assembly_(assembly), ordered_(ordered) {}
-  void tick(double, std::span<const double>) override {}
   void between_ticks(const RunMark& mark) override;
 
   const std::vector<PlannedCheckpoint>& missed() const noexcept { return planned_; }  // the run ended before them

@@ -16,7 +16,6 @@ struct HashMark {
 class HashTrail final : public RunObserver {
  public:
   explicit HashTrail(double every_s);  // > 0
-  void tick(double, std::span<const double>) override {}
   void between_ticks(const RunMark& mark) override;
 
   const std::vector<HashMark>& marks() const noexcept { return marks_; }

@@ -47,7 +47,6 @@ class RecordedBranch final : public RunObserver {
   // Keeps references.
   RecordedBranch(const TextMap& facts, const ScenarioConfig& scenario, Assembly& assembly);
 
-  void tick(double, std::span<const double>) override {}
   void between_ticks(const RunMark& mark) override;
 
  private:

@@ -152,7 +152,6 @@ TEST_CASE("A further robot's faults are its own, told with its name, and the fir
 
 TEST_CASE("Observers of a run, and so its record and its servers, are told the faults of all robots with their names") {
   struct Hearing final : RunObserver {
-    void tick(double, std::span<const double>) override {}
     void fault(const Fault& fault) override { heard.push_back(fault); }
     std::vector<Fault> heard;
   } hearing;
