@@ -116,27 +116,21 @@ class PlantService {
     const PlantType& type = plant_type_named(robot, "--as", {options_.as, {}}, &PlantType::is_protocol);
     PlantSite site = plant_site(robot, "");
     site.seed = options_.seed.value_or(1);
-    std::unique_ptr<PlantEmulator> drives = type.make_emulator(site, listen);
-    if (options_.imu.empty()) {
-      plan_faults(*drives);
-      return drives;
+    std::unique_ptr<PlantEmulator> made = type.make_emulator(site, listen);
+    if (!options_.imu.empty()) {
+      const imu::SerialImuSettings settings = serial_imu_at(robot, type, "--imu", options_.imu);
+      if (!settings.given()) refuse("--imu", "the protocol '" + options_.as + "' has the IMU in its frames");
+      made =
+          std::make_unique<imu::ImuServer>(std::move(made), settings, robot.plant.imu.pose.orientation, options_.imu);
     }
-    const imu::SerialImuSettings settings = serial_imu_at(robot, type, "--imu", options_.imu);
-    if (!settings.given()) refuse("--imu", "the protocol '" + options_.as + "' has the IMU in its frames");
-    auto both =
-        std::make_unique<imu::ImuServer>(std::move(drives), settings, robot.plant.imu.pose.orientation, options_.imu);
-    plan_faults(*both);
-    return both;
-  }
-
-  void plan_faults(PlantEmulator& drives) const {
     for (const std::string& text : options_.faults) {
       try {
-        drives.plan_faults({emulated_fault(text)});
+        made->plan_faults({emulated_fault(text)});
       } catch (const std::invalid_argument& error) {
         refuse("--fault", text + ": " + error.what());
       }
     }
+    return made;
   }
 
   // Serves until all peers have gone, on a thread of its own. False when the model failed.
