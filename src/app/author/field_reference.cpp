@@ -24,26 +24,11 @@ std::string range_text(double min, double max) {
 }
 
 std::string type_of(const FieldInfo& field) {
-  using Kind = FieldInfo::Kind;
-  switch (field.kind) {
-    case Kind::boolean:
-      return "true or false";
-    case Kind::integer:
-      return "whole number";
-    case Kind::number:
-      return "number";
-    case Kind::string:
-      return field.choices.empty() ? "text" : listed(field.choices);
-    case Kind::plain:
-      return "number, text, true or false";
-    case Kind::object:
-      return "object";
-    case Kind::list:
-      return "list";
-    case Kind::map:
-      return "object, keys by name";
-  }
-  return "";
+  if (field.kind == FieldInfo::Kind::string && !field.choices.empty()) return listed(field.choices);
+  constexpr const char* words[] = {
+      "true or false", "whole number",        "number", "text", "number, text, true or false", "object",
+      "list",          "object, keys by name"};
+  return words[static_cast<std::size_t>(field.kind)];
 }
 
 void add_rows(const FieldInfo& info, const std::string& path, std::string& text) {

@@ -296,22 +296,11 @@ Json request_of(const OrderInfo& order, const CtlOptions& options) {
     const auto given = options.given.find({order.verb, argument.name});
     if (given == options.given.end() || given->second.empty()) continue;
     const std::string& first = given->second.front();
-    switch (argument.kind) {
-      case OrderArgument::Kind::none:
-        break;
-      case OrderArgument::Kind::text:
-        request[argument.name] = first;
-        break;
-      case OrderArgument::Kind::number:
-        request[argument.name] = number_of<double>(first).value();
-        break;
-      case OrderArgument::Kind::flag:
-        request[argument.name] = true;
-        break;
-      case OrderArgument::Kind::texts:
-        request[argument.name] = given->second;
-        break;
-    }
+    using Kind = OrderArgument::Kind;
+    if (argument.kind == Kind::text) request[argument.name] = first;
+    if (argument.kind == Kind::number) request[argument.name] = number_of<double>(first).value();
+    if (argument.kind == Kind::flag) request[argument.name] = true;
+    if (argument.kind == Kind::texts) request[argument.name] = given->second;
   }
   return request;
 }
