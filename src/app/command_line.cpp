@@ -42,12 +42,10 @@ void CommandLine::offer(void (*add)(CLI::App&, Options&), Run does) {
   Options& options = options_.emplace_back().emplace<Options>();
   add(app, options);
   const CLI::App* const command = app.get_subcommands([](const CLI::App*) { return true; }).back();
-  runs_.emplace_back(command, [this, does, &options] {
-    if constexpr (std::is_invocable_v<Run, const Options&>)
-      return does(options);
-    else
-      return does(app, options);
-  });
+  if constexpr (std::is_invocable_v<Run, const Options&>)
+    runs_.emplace_back(command, [does, &options] { return does(options); });
+  else
+    runs_.emplace_back(command, [this, does, &options] { return does(app, options); });
 }
 
 CommandLine::CommandLine() : app(about, "kadans") {
