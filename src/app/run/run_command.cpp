@@ -132,7 +132,7 @@ class Leaving final : public BesideTick {
 };
 
 constexpr std::int64_t supervisor_period_ns = 50'000'000;
-constexpr std::size_t kept_lines = 1000;
+constexpr std::size_t log_lines_max = 1000;
 constexpr double state_period_s = 2;  // between saved states of the control engine
 // Limits at the end of a run: for threads that were told to stop or stand still, for each other part, for a server, for
 // a record on a slow disk; and for virtual time that stands still.
@@ -496,7 +496,7 @@ class WallClockRun {
   ServiceNotifier notifier_{environment("NOTIFY_SOCKET")};
   EventLog told_;  // from the behavior thread to the supervisor
   LineEcho echo_;
-  RunLog log_{{&told_, &echo_}, kept_lines};  // behavior thread
+  RunLog log_{{&told_, &echo_}, log_lines_max};  // behavior thread
   std::unique_ptr<PlantExchange> link_;
   std::unique_ptr<ProcessHost> process_;  // of the behaviors, or nullptr
   Assembly assembly_;
