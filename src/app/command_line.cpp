@@ -59,7 +59,7 @@ CommandLine::CommandLine() : app(about, "kadans") {
   offer(add_merge, run_merge);
   offer(add_margin, run_margin);
   offer(add_shrink, run_shrink);
-  offer(add_tune, [this](const TuneOptions&) { return start_tune_program(arguments.data()); });
+  offer(add_tune, [this](const TuneOptions&) { return start_tune_program(arguments_.data()); });
   offer(add_behavior, run_behavior);
   offer(add_repl, run_repl);
   offer(add_stubs, run_stubs);
@@ -72,7 +72,7 @@ CommandLine::CommandLine() : app(about, "kadans") {
   offer(add_dynamixel, run_dynamixel);
   offer(add_jitter, run_jitter);
   offer(add_ctl, [this](const CtlOptions& options) {
-    return run_ctl(app, options, {arguments.begin() + 1, arguments.end()});
+    return run_ctl(app, options, {arguments_.begin() + 1, arguments_.end()});
   });
   offer(add_push, run_push);
   offer(add_receive, run_receive);
@@ -86,7 +86,8 @@ CommandLine::CommandLine() : app(about, "kadans") {
   add_examples(app);
 }
 
-int CommandLine::run() const {
+int CommandLine::run(std::span<char*> arguments) {
+  arguments_ = arguments;
   for (const auto& [command, does] : runs_) {
     if (command->parsed()) return does();
   }

@@ -14,16 +14,17 @@
 
 namespace kadans {
 
-struct CommandLine {
+class CommandLine {
+ public:
   CommandLine();
   CommandLine(const CommandLine&) = delete;  // the parser points into it
   CommandLine& operator=(const CommandLine&) = delete;
 
-  // After parsing: runs the command that was given. Returns the program's exit code.
-  int run() const;
+  // After parsing: runs the command that was given. `arguments` is what was parsed, with the program's name and a null
+  // behind it, for commands that hand it on. Returns the program's exit code.
+  int run(std::span<char*> arguments);
 
   CLI::App app;
-  std::span<char*> arguments;  // what is parsed, for commands that hand it on
 
  private:
   // `add` adds the command, with options that are kept here; `run` gets them, and the parser before them if it wants
@@ -31,6 +32,7 @@ struct CommandLine {
   template <typename Options, typename Run>
   void offer(void (*add)(CLI::App&, Options&), Run does);
 
+  std::span<char*> arguments_;  // of run()
   std::deque<std::any> options_;
   std::vector<std::pair<const CLI::App*, std::function<int()>>> runs_;
 };

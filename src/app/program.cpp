@@ -134,7 +134,6 @@ std::string hint(const CLI::App& app, int argc, char** argv, const std::string& 
 int run(int argc, char** argv) {
   CommandLine line;
   CLI::App& app = line.app;
-  line.arguments = {argv, static_cast<std::size_t>(argc)};
   app.set_version_flag("--version", std::string("kadans ") + version);
   try {
     app.parse(argc, argv);
@@ -146,7 +145,7 @@ int run(int argc, char** argv) {
     return exit_usage;
   }
   if (app.got_subcommand("run") || app.got_subcommand("plant") || app.got_subcommand("jitter")) bind_all_functions();
-  return line.run();
+  return line.run({argv, static_cast<std::size_t>(argc)});
 }
 
 // Else the first files that are opened would get the numbers of those that are closed, and a record what is printed.

@@ -200,6 +200,7 @@ bool take_told(ByteReader& bytes, std::int64_t time_ns, Event& event) {
   if (kind > static_cast<std::uint8_t>(Event::Kind::emitted)) return false;
   event.kind = static_cast<Event::Kind>(kind);
   event.transition = {.time_ns = time_ns, .behavior = bytes.take_string(), .from = {}, .to = {}, .why = {}};
+  event.severity = BehaviorLog::Severity::info;
   event.text.clear();
   event.states.clear();
   if (event.kind == Event::Kind::transition) {

@@ -15,6 +15,7 @@ constexpr std::size_t stack_bytes = std::size_t{256} * 1024;
 }  // namespace
 
 void BusThread::start(const char* name, const char* whom, std::function<void()> serve) {
+  stop();
   serve_ = std::move(serve);
   stop_.store(false, std::memory_order_relaxed);
   sigset_t all, before;

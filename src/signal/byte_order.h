@@ -1,4 +1,5 @@
-// Little-endian fields in memory, as MCAP and CDR need them. ByteWriter appends, ByteReader takes and trusts nothing.
+// Little-endian fields in memory, as MCAP and CDR need them, and maps of texts, which are such fields, too. ByteWriter
+// appends, ByteReader takes and trusts nothing.
 #pragma once
 
 #include <bit>

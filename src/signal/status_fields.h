@@ -2,6 +2,7 @@
 // their `s`, the reference its text, and tests of behaviors the fields that they may set.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,9 +20,12 @@ namespace kadans {
 
 // A reference to a field of one of a few types, which reads and writes it as a number.
 class StatusReference {
+  using At = std::variant<double*, bool*, std::uint8_t*, std::uint32_t*, FaultCode*, std::uint64_t*>;
+
  public:
   template <typename T>
-  StatusReference(T& at) noexcept : at_(&at) {}  // NOLINT(google-explicit-constructor): a field's own type
+  requires(std::constructible_from<At, T*>) StatusReference(T& at)
+  noexcept : at_(&at) {}  // NOLINT(google-explicit-constructor): a field's own type
   template <typename Choice>
   requires(std::is_enum_v<Choice> && sizeof(Choice) == 1) StatusReference(Choice& at)
   noexcept  // NOLINT(google-explicit-constructor)
@@ -33,7 +37,7 @@ class StatusReference {
   void declare(SignalTable& table, Signal signal) const;
 
  private:
-  std::variant<double*, bool*, std::uint8_t*, std::uint32_t*, FaultCode*, std::uint64_t*> at_;
+  At at_;
 };
 
 struct StatusField {

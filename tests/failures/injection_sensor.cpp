@@ -15,6 +15,7 @@ void Injection::plan(ScenarioFault::Kind kind, SensorKind place, std::size_t ind
 }
 
 void Injection::sensor() {
+  static_assert(!of_sensor(static_cast<ScenarioFault::Kind>(6)));
   const auto kind = static_cast<ScenarioFault::Kind>(pick(6));
   switch (pick(3)) {
     case 0:

@@ -73,7 +73,8 @@ void FuzzProject::keep(std::string_view input, int number) {
 }
 
 FuzzInstance::FuzzInstance()
-    : host({.root = root_, .limits = limits}, with_parameters_by_object(robot.catalog), log),
+    : host({.root = root_, .limits = limits, .describe = behaviors_description},
+           with_parameters_by_object(robot.catalog), log),
       instance(facts_of(root_), robot.catalog, robot.safety.emergency_stop()) {
   log.add(record_side);
   robot.control.record_to(&control_side);

@@ -82,7 +82,7 @@ bool Supervisor::beat(const Beat&) {
 }
 
 LiveInstance::LiveInstance(const CtlServer::Settings& settings)
-    : host({.root = project.root}, with_parameters_by_object(robot.catalog), log),
+    : host({.root = project.root, .describe = behaviors_description}, with_parameters_by_object(robot.catalog), log),
       instance(facts_of(project), robot.catalog, robot.safety.emergency_stop()),
       server(std::make_unique<CtlServer>(instance, sockets, settings)) {
   log.add(record_side);

@@ -205,6 +205,16 @@ TEST_CASE("the simulated network delays, loses and repeats as its seed says, and
   };
   CHECK(heard(1) == heard(1));
   CHECK(heard(1) != heard(2));
+  SimulatedNetwork whole({.delay_s = 0.02}, 3, 1);
+  std::string_view datagram;
+  std::int64_t came_ns = 0;
+  for (std::int64_t i = 1; i <= 100; ++i) {
+    (void)whole.port(0).send(i * 50 * ms_ns, std::to_string(i));
+    for (const std::size_t other : {1U, 2U}) {
+      CHECK(whole.port(other).receive((i * 50 + 20) * ms_ns, datagram, came_ns));
+      CHECK(datagram == std::to_string(i));
+    }
+  }
 }
 
 }  // namespace message_test

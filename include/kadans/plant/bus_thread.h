@@ -19,8 +19,8 @@ class BusThread {
   BusThread(const BusThread&) = delete;
   BusThread& operator=(const BusThread&) = delete;
 
-  // `serve` ends soon after asked_to_stop(). `name`: at most 15 characters, shown by ps and top. Throws InputError:
-  // "the system gives no thread to WHOM".
+  // Stops what it serves first. `serve` ends soon after asked_to_stop(). `name`: at most 15 characters, shown by ps and
+  // top. Throws InputError: "the system gives no thread to WHOM".
   void start(const char* name, const char* whom, std::function<void()> serve);
   void ask_to_stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
   bool asked_to_stop() const noexcept { return stop_.load(std::memory_order_relaxed); }

@@ -28,10 +28,11 @@ std::unique_ptr<ScriptHost> make_script_host(const ScenarioConfig& scenario, con
 
 class Assembly {
  public:
-  // Reads the robot and the behaviors that the scenario names. Throws InputError with all mistakes. `log`, `link` and
-  // `outside` must outlive the assembly. With `link` the world runs on a thread of its own, and the engines use the
-  // other side of the link. What `outside` names runs in a process of its own, in a run on the wall clock. When the
-  // scenario's plant is no model, there is no world: parts(), world() and truth() cannot be used.
+  // Reads the robot and the behaviors that the scenario names. Throws InputError with all mistakes. `scenario`,
+  // `log`, `link` and what `outside` names must outlive the assembly. With `link` the world runs on a thread of its
+  // own, and the engines use the other side of the link. What `outside` names runs in a process of its own, in a run on
+  // the wall clock. When the scenario's plant is no model, there is no world: parts(), world() and truth() cannot be
+  // used.
   //
   // Each further robot of the scenario gets an assembly of its own. What it does is among this robot's signals, as
   // NAME.<signal>, and its behaviors report as NAME.<behavior>.
@@ -43,6 +44,8 @@ class Assembly {
            const Outside& outside);
   Assembly(const ScenarioConfig& scenario, std::uint64_t seed, RunLog& log, PlantExchange* link = nullptr)
       : Assembly(scenario, seed, log, link, Outside()) {}
+  template <typename... Rest>
+  Assembly(ScenarioConfig&& scenario, Rest&&... rest) = delete;
 
   const RobotConfig& robot() const noexcept { return robot_.config; }
   const Catalog& catalog() const noexcept { return control_system_->catalog; }

@@ -22,7 +22,7 @@ std::string field_reference();
 // Throws InputError.
 std::string object_reference(const std::filesystem::path& root);
 
-// Text in a table, which Markdown would take for something else.
+// The text as a table of Markdown shows it: what Markdown would take for something else is escaped.
 std::string markdown_text(const std::string& text);
 
 }  // namespace kadans

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "config/json/foreign_json.h"
-#include "kadans/signal/input_error.h"
 #include "run_channel.h"
 #include "signal/input_file.h"
 #include "signal/number_text.h"

@@ -2,7 +2,6 @@
 
 #include <exception>
 #include <filesystem>
-#include <optional>
 
 #include <fcntl.h>
 #include <unistd.h>

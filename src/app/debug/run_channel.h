@@ -51,6 +51,7 @@ inline void from_json(const Json& json, NamedBreak& one) { json.at(0).get_to(one
 // False: whoever reads is gone. SIGPIPE must be ignored.
 bool write_all(int descriptor, std::string_view bytes) noexcept;
 
+// SIGPIPE must be ignored.
 class RunChannel {
  public:
   RunChannel() = default;

@@ -80,6 +80,23 @@ void add_push(CLI::App& app, PushOptions& options) {
       "mistake in a file, or no such computer; unless 0, nothing has changed.");
 }
 
+namespace {
+
+// Throws InputError where there is no memory for them.
+MemoryFile packed_files(const Delivery& delivery) {
+  try {
+    MemoryFile packed;
+    write_delivery(delivery, "/proc/self/fd/" + std::to_string(packed.descriptor()));
+    return packed;
+  } catch (const InputError& error) {
+    throw InputError({.message = "the files cannot be packed: " + error.problems().front().message});
+  } catch (const std::system_error& error) {
+    throw InputError({.message = std::string("the files cannot be packed: ") + error.what()});
+  }
+}
+
+}  // namespace
+
 int run_push(const PushOptions& options) {
   const RemoteHost host(options.host);
   const fs::path robot =
@@ -90,8 +107,7 @@ int run_push(const PushOptions& options) {
   }
   const Delivery delivery = gather_delivery(robot);
   if (options.tested) refuse_untested(delivery, project_root(robot));
-  const MemoryFile packed;
-  write_delivery(delivery, "/proc/self/fd/" + std::to_string(packed.descriptor()));
+  const MemoryFile packed = packed_files(delivery);
   return host.run(words_for_there(options, delivery.name), packed.descriptor(), false);
 }
 
@@ -116,6 +132,7 @@ void take_in(const fs::path& file) {
     if (all > incoming_max_bytes) fail("more came in than a push may have");
     for (ssize_t done = 0; done < got;) {
       const ssize_t written = write(to, part.data() + done, static_cast<std::size_t>(got - done));
+      if (written < 0 && errno == EINTR && !interrupted()) continue;
       if (written < 0) fail(std::generic_category().message(errno));
       done += written;
     }

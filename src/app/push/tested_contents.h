@@ -1,4 +1,5 @@
 // Which contents have passed the whole suite of their project: `kadans test` writes it, `kadans push --tested` asks.
+// And the lists of lines that are kept between runs for it, and for the runs that failed.
 #pragma once
 
 #include <filesystem>

@@ -38,7 +38,7 @@ class DiskThread {
   Kept record_, flight_;
   std::mutex mutex_;
   std::condition_variable_any told_;
-  std::jthread thread_;
+  std::jthread thread_;  // last: it uses all others
 };
 
 }  // namespace kadans

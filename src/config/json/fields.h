@@ -226,7 +226,7 @@ void read_fields(const JsonValue& value, Problems& problems, Read&& read) {
 template <typename Read>
 FieldInfo describe_fields(Read&& read) {
   FieldInfo info;
-  Problems problems("");  // of a description there are none
+  Problems problems("");  // what empty values are refused for, which nobody is told
   Fields fields(info, problems);
   read(fields);
   return info;

@@ -78,10 +78,10 @@ void verify(const Fields& f, const ScenarioFault& fault) {
   const std::string kind = std::string(" of kind '") + info.name + "'";
   if (info.size[0] != '\0' && !f.has("size")) f.refuse(" is" + kind + " and needs size: " + info.size);
   if (info.size[0] == '\0' && f.has("size")) f.refuse("size", " means nothing to a fault" + kind);
-  const bool wants_of = fault.of_sensor() || fault.of_drive();
+  const bool wants_of = of_sensor(fault.kind) || of_drive(fault.kind);
   if (wants_of && fault.of.name.empty())
     f.refuse(" is" + kind + " and needs of: the " +
-             (fault.of_sensor() ? "joint, the foot's link, a sensor, or imu" : "drive"));
+             (of_sensor(fault.kind) ? "joint, the foot's link, a sensor, or imu" : "drive"));
   if (!wants_of && f.has("of")) f.refuse("of", " means nothing to a fault" + kind);
   if (!(fault.from_s < fault.until_s))
     f.refuse("until_s", fault.until_s, "after from_s, " + number_text(fault.from_s) + " s");

@@ -68,11 +68,17 @@ struct ScenarioFault {
   double from_s = 0;
   double until_s = std::numeric_limits<double>::infinity();  // not included
   double size = 0;                                           // see the fields' docs
-
-  bool of_sensor() const noexcept { return kind <= Kind::sensor_not_finite; }
-  bool of_drive() const noexcept { return kind >= Kind::drive_dead && kind <= Kind::drive_old; }
-  bool of_supply() const noexcept { return kind == Kind::supply || kind == Kind::emergency_button; }
 };
+constexpr bool of_sensor(ScenarioFault::Kind kind) noexcept { return kind <= ScenarioFault::Kind::sensor_not_finite; }
+constexpr bool of_drive(ScenarioFault::Kind kind) noexcept {
+  return kind >= ScenarioFault::Kind::drive_dead && kind <= ScenarioFault::Kind::drive_old;
+}
+constexpr bool of_supply(ScenarioFault::Kind kind) noexcept {
+  return kind == ScenarioFault::Kind::supply || kind == ScenarioFault::Kind::emergency_button;
+}
+constexpr bool of_commands(ScenarioFault::Kind kind) noexcept {
+  return kind >= ScenarioFault::Kind::commands_lost && kind <= ScenarioFault::Kind::commands_not_finite;
+}
 
 void fault_fields(Fields& f, ScenarioFault& fault);
 

@@ -403,10 +403,10 @@ class MjcfReader {
   void read_inertial(const MjcfElement& e, const Frame& own) {
     Inertia body;
     body.mass_kg = e.number("mass", 0);
-    auto m = e.numbers("diaginertia", 3, 3, {0, 0, 0});
-    body.xx = m[0], body.yy = m[1], body.zz = m[2];
+    const auto moments = e.numbers("diaginertia", 3, 3, {0, 0, 0});
+    body.xx = moments[0], body.yy = moments[1], body.zz = moments[2];
     if (e.has("fullinertia")) {
-      m = e.numbers("fullinertia", 6, 6, {0, 0, 0, 0, 0, 0});
+      const auto m = e.numbers("fullinertia", 6, 6, {0, 0, 0, 0, 0, 0});
       body.xx = m[0], body.yy = m[1], body.zz = m[2], body.xy = m[3], body.xz = m[4], body.yz = m[5];
     }
     robot_.links[own.link].inertia_at = e.at();

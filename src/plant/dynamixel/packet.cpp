@@ -98,27 +98,27 @@ Octets PacketWriter::finish() noexcept {
 
 bool PacketScanner::next(ReceivedPacket& packet) noexcept {
   for (;;) {
-    const Octets here = this->here();
-    const auto found = std::search(here.begin(), here.end(), header.begin(), header.end());
-    if (found == here.end()) {  // the last bytes may begin a header
-      const std::size_t keep = std::min(here.size(), header.size() - 1);
-      skip(here.size() - keep);
+    const Octets bytes = here();
+    const auto found = std::search(bytes.begin(), bytes.end(), header.begin(), header.end());
+    if (found == bytes.end()) {  // the last bytes may begin a header
+      const std::size_t keep = std::min(bytes.size(), header.size() - 1);
+      skip(bytes.size() - keep);
       return false;
     }
-    const auto before = static_cast<std::size_t>(found - here.begin());
+    const auto before = static_cast<std::size_t>(found - bytes.begin());
     if (before > 0) {
       skip(before);
       continue;
     }
-    if (here.size() < instruction_at) return false;
-    const std::size_t length = u16_at(here, length_at), size = instruction_at + length;
+    if (bytes.size() < instruction_at) return false;
+    const std::size_t length = u16_at(bytes, length_at), size = instruction_at + length;
     if (length < length_min || size > packet_bytes_max) {
       ++counts_.corrupt;
       skip(header.size());
       continue;
     }
-    if (here.size() < size) return false;
-    const Octets raw = here.first(size);
+    if (bytes.size() < size) return false;
+    const Octets raw = bytes.first(size);
     if (crc16(raw.first(size - 2)) != u16_at(raw, size - 2)) {
       ++counts_.corrupt;
       skip(header.size());

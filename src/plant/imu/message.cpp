@@ -65,25 +65,25 @@ std::size_t write_message(Message id, Octets data, std::span<std::uint8_t> into)
 
 bool MessageScanner::next(ReceivedMessage& message) noexcept {
   for (;;) {
-    const Octets here = this->here();
-    const bool begins = !here.empty() && here[0] == preamble && (here.size() < 2 || here[1] == alone);
-    if (here.empty()) return false;
+    const Octets bytes = here();
+    const bool begins = !bytes.empty() && bytes[0] == preamble && (bytes.size() < 2 || bytes[1] == alone);
+    if (bytes.empty()) return false;
     if (!begins) {
       skip(1);
       continue;
     }
-    if (here.size() < head_bytes) return false;
-    const std::size_t size = message_overhead + here[3];
-    const bool fits = here[3] <= data_bytes_max;
-    if (fits && here.size() < size) return false;
-    if (!fits || sum_of(here.subspan(1, size - 1)) != 0) {
+    if (bytes.size() < head_bytes) return false;
+    const std::size_t size = message_overhead + bytes[3];
+    const bool fits = bytes[3] <= data_bytes_max;
+    if (fits && bytes.size() < size) return false;
+    if (!fits || sum_of(bytes.subspan(1, size - 1)) != 0) {
       ++counts_.corrupt;
       skip(1);
       continue;
     }
     ++counts_.packets;
     drop(size);
-    message = {.id = here[2], .data = here.subspan(head_bytes, here[3])};
+    message = {.id = bytes[2], .data = bytes.subspan(head_bytes, bytes[3])};
     return true;
   }
 }

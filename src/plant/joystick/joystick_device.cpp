@@ -60,7 +60,7 @@ Stick open_stick(const JoystickSettings& settings, int& descriptor) {
     StickRanges ranges{};
     if (!read_ranges(descriptor, ranges)) throw std::invalid_argument("is no event device of Linux" + joysticks_here());
     return {settings, ranges};
-  } catch (const std::invalid_argument& error) {
+  } catch (const std::exception& error) {
     close(descriptor);
     throw InputError({.file = settings.device, .message = error.what()});
   }

@@ -22,10 +22,6 @@ class EmulatedLine {
   };
   Faults faults;
 
-  // When the host has the next byte; INT64_MAX: none is on the way.
-  std::int64_t due_ns() const noexcept {
-    return under_way_.empty() ? std::numeric_limits<std::int64_t>::max() : under_way_.front().due_ns;
-  }
   // Takes the bytes that the host has now.
   std::size_t take(std::span<std::uint8_t> into, std::int64_t now_ns) {
     std::size_t count = 0;
@@ -41,6 +37,10 @@ class EmulatedLine {
   EmulatedLine(std::uint64_t seed, std::string_view name) : random_(seed, name) {}
   ~EmulatedLine() = default;
 
+  // When the host has the next byte; INT64_MAX: none is on the way.
+  std::int64_t next_byte_ns() const noexcept {
+    return under_way_.empty() ? std::numeric_limits<std::int64_t>::max() : under_way_.front().due_ns;
+  }
   // Whether the byte is lost; else it may be another one now.
   bool disturbed(std::uint8_t& byte) {
     if (faults.lost > 0 && random_.uniform() < faults.lost) return true;

@@ -18,6 +18,7 @@ using Json = nlohmann::ordered_json;
 Json vector_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 constexpr const char* kind_names[] = {"state", "parallel", "region", "final", "history"};  // by Chart::Kind
+static_assert(std::size(kind_names) == static_cast<std::size_t>(Chart::Kind::history) + 1);
 
 Json number_of(StateIndex state) { return state == no_state ? Json(nullptr) : Json(state); }
 

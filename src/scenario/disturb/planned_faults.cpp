@@ -121,10 +121,10 @@ void FaultyPlant::OfDrive::heed(const DriveRequest& request, std::int64_t time_n
   if (fault.kind == Kind::drive_tripped && request.order == DriveOrder::reset) fault.kind = Kind::drive_disabled;
 }
 
-// The kinds of sensors stand first, then those of drives, then those of the supply.
 void FaultyPlant::add(const PlannedFault& fault) {
-  if (fault.kind < Kind::drive_dead) return sensor_faults_.push_back({.fault = fault, .first = {}});
-  if (fault.kind >= Kind::supply) return supply_faults_.push_back(fault);
+  if (of_sensor(fault.kind)) return sensor_faults_.push_back({.fault = fault, .first = {}});
+  if (of_supply(fault.kind)) return supply_faults_.push_back(fault);
+  if (!of_drive(fault.kind)) throw std::invalid_argument("a plant has no fault of this kind");
   if (fault.kind == Kind::drive_late && written_.empty()) written_.resize(late_ticks_max + 1);
   drive_faults_.push_back({.fault = fault, .held = {}, .order_seen = asked_[fault.index].number});
 }
@@ -195,6 +195,11 @@ void FaultyPlant::hash_held_back(StateHash& hash) const noexcept {
     for (std::size_t age = 0; age < late_ticks(planned.fault); ++age)
       add(written_before(age).joints[planned.fault.index]);
   }
+}
+
+void FaultyHost::add(const PlannedFault& fault) {
+  if (!of_commands(fault.kind)) throw std::invalid_argument("commands have no fault of this kind");
+  faults_.push_back(fault);
 }
 
 void FaultyHost::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -291,7 +296,7 @@ std::unique_ptr<FaultyPlant> make_faulty_plant(const ScenarioConfig& scenario, c
                                                std::size_t robot) {
   const double late_ticks = std::round(variant.actuation_delay_s / engine.control_period_s);
   const auto of_plant = [](const ScenarioFault& fault) {
-    return fault.of_sensor() || fault.of_drive() || fault.of_supply();
+    return of_sensor(fault.kind) || of_drive(fault.kind) || of_supply(fault.kind);
   };
   if (late_ticks == 0 && std::ranges::none_of(scenario.faults, of_plant)) return nullptr;
   auto faulty = std::make_unique<FaultyPlant>(world, seed, robot, variant.model.transmissions);
@@ -300,9 +305,9 @@ std::unique_ptr<FaultyPlant> make_faulty_plant(const ScenarioConfig& scenario, c
   Problems problems(scenario.file);
   for (const ScenarioFault& fault : scenario.faults) {
     PlannedFault planned = planned_fault(fault);
-    const bool found = fault.of_sensor()  ? find_sensor(fault.of, variant, planned, problems)
-                       : fault.of_drive() ? find_drive(fault.of, variant.model, planned, problems)
-                                          : fault.of_supply();
+    const bool found = of_sensor(fault.kind)  ? find_sensor(fault.of, variant, planned, problems)
+                       : of_drive(fault.kind) ? find_drive(fault.of, variant.model, planned, problems)
+                                              : of_supply(fault.kind);
     if (found) faulty->add(planned);
   }
   problems.throw_if_any();
@@ -312,7 +317,7 @@ std::unique_ptr<FaultyPlant> make_faulty_plant(const ScenarioConfig& scenario, c
 std::unique_ptr<FaultyHost> make_faulty_host(const ScenarioConfig& scenario, BehaviorHost& host) {
   std::unique_ptr<FaultyHost> faulty;
   for (const ScenarioFault& fault : scenario.faults) {
-    if (fault.kind < Kind::commands_lost || fault.kind > Kind::commands_not_finite) continue;
+    if (!of_commands(fault.kind)) continue;
     if (!faulty) faulty = std::make_unique<FaultyHost>(host);
     faulty->add(planned_fault(fault));
   }

@@ -67,7 +67,7 @@ class FaultyPlant final : public OneRobotWorld {
 
   static constexpr std::size_t late_ticks_max = 255;
 
-  void add(const PlannedFault& fault);
+  void add(const PlannedFault& fault);  // throws std::invalid_argument for one of commands
   // Removes all faults of sensors, drives and supply.
   void clear() noexcept {
     sensor_faults_.clear();
@@ -131,7 +131,7 @@ class FaultyPlant final : public OneRobotWorld {
 class FaultyHost final : public BehaviorHost {
  public:
   explicit FaultyHost(BehaviorHost& host) : host_(host), queue_(std::make_unique<CommandQueue>()), own_(*queue_) {}
-  void add(const PlannedFault& fault) { faults_.push_back(fault); }
+  void add(const PlannedFault& fault);  // throws std::invalid_argument for one of sensors, drives or supply
 
   void tick(const Snapshot& snapshot, CommandSender& commands) noexcept override;
 

@@ -14,7 +14,6 @@ namespace {
 
 constexpr NumberRange scale_range{0, 1000, ""};
 
-// Roll, pitch and yaw are those of the base's axes fixed in the world, applied in this order, as in URDF.
 Quat about(std::size_t axis, double angle_rad) {
   Quat q{std::cos(angle_rad / 2), 0, 0, 0};
   q[axis + 1] = std::sin(angle_rad / 2);
@@ -105,6 +104,7 @@ void Quantities::add_world(PlantSettings& plant) {
 void Quantities::add_start(PlantSettings& plant) {
   add_value("start.x_m", {-100, 100, "m"}, plant.base.position_m[0]);
   add_value("start.y_m", {-100, 100, "m"}, plant.base.position_m[1]);
+  // About axes that are fixed in the world, applied in this order, as in URDF.
   constexpr std::array<const char*, 3> names{"start.roll_rad", "start.pitch_rad", "start.yaw_rad"};
   for (std::size_t axis = 0; axis < names.size(); ++axis) {
     add(names[axis], {-4, 4, "rad"}, 0, [this, &plant, axis, start = plant.base.orientation](double angle_rad) {

@@ -69,6 +69,7 @@ constexpr OptionWords option_words[] = {  // as MotionOption::Type
     {"'minimum_jerk'|'trapezoid'", "text"},
     {"boolean", "boolean"},
     {"string[]", "list"}};
+static_assert(std::size(option_words) == static_cast<std::size_t>(MotionOption::Type::list) + 1);
 const OptionWords& words_of(const MotionOption& option) { return option_words[static_cast<std::size_t>(option.type)]; }
 
 std::string range(const MotionOption& option) {
@@ -263,6 +264,7 @@ constexpr ApiEntry written[] = {
 // Where a part of the snapshot is documented; as StatusField::Part.
 constexpr const char* part_owners[] = {"s",        "joint",  "base",     "rate", "foot",  "support",
                                        "odometry", "safety", "joystick", "ball", "entry", "sensors"};
+static_assert(std::size(part_owners) == static_cast<std::size_t>(StatusField::Part::sensors) + 1);
 
 std::string type_of(const StatusField& field) {
   if (field.type == StatusField::Type::number) return "number";

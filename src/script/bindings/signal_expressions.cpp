@@ -70,7 +70,7 @@ struct SignalExpressions::State {
   bool begun = false;
 };
 
-// [-0 +0] Raises when one gives no value of its kind.
+// [-0 +2] Raises when one gives no value of its kind.
 void SignalExpressions::evaluate_all(lua_State* state, double time_s, std::span<const double> row) {
   lua_rawgeti(state, LUA_REGISTRYINDEX, state_->values);
   const int values = lua_gettop(state);

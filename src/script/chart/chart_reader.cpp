@@ -45,6 +45,7 @@ constexpr NodeWords node_words[] = {  // as NodeKind
     {"k.behavior", behavior_keys}, {"k.state", state_keys},        {"k.parallel", parallel_keys},
     {"k.region", state_keys},      {"k.final", final_keys},        {"k.history", history_keys},
     {"k.call", state_keys},        {"k.decisions", decisions_keys}};
+static_assert(std::size(node_words) == static_cast<std::size_t>(NodeKind::decisions) + 1);
 
 const char* const* keys_of(NodeKind kind) noexcept { return node_words[static_cast<std::size_t>(kind)].keys; }
 

@@ -97,7 +97,11 @@ bool ChartRunner::select_event(lua_State* state, bool ends_only) {
 bool ChartRunner::post_with_data(lua_State* state, EventId event) {
   const std::int8_t place = queue_.free_place();
   const bool posted = queue_.send(event, place);
-  posted ? set_entry(state, tables_.event_data, place + 1) : lua_pop(state, 1);
+  if (posted) {
+    set_entry(state, tables_.event_data, place + 1);
+  } else {
+    lua_pop(state, 1);
+  }
   return posted;
 }
 

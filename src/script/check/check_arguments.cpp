@@ -78,6 +78,7 @@ const char* other_type(const Tokens& tokens, std::size_t at, const MotionOption&
                                                            {"string", " must be a text"},
                                                            {"boolean", " must be true or false"},
                                                            {"table", " must be a list { ... }"}};
+  static_assert(std::size(types) == static_cast<std::size_t>(MotionOption::Type::list) + 1);
   const auto& [type, wanted] = types[static_cast<std::size_t>(option.type)];
   return literal_type(tokens, at) == type ? nullptr : wanted;
 }

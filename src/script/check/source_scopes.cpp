@@ -331,6 +331,7 @@ void SourceScopes::walk(const SourceListener& listener) {
   function(0).returns = 0;  // the file's own
   function(0).line = tokens_[0].line;
   for (std::size_t at = 0; tokens_[at].kind != TokenKind::end;) at = step(at);
+  listener_ = {};  // it refers to who listens
 }
 
 std::vector<SourceFunction> SourceScopes::functions() const {

@@ -58,7 +58,8 @@ void put_reply(const BehaviorReply& reply, ByteWriter& bytes);
 [[nodiscard]] bool take_question(ByteReader& bytes, BehaviorQuestion& question);
 [[nodiscard]] bool take_reply(ByteReader& bytes, BehaviorReply& reply);
 
-// Orders and items of the play list likewise; an order's kind may be none that there is.
+// Orders and items of the play list: a missing value is read as zero or empty, and then the reader is not ok(). An
+// order's kind may be none that there is.
 void put_item(const PlayItem& item, ByteWriter& bytes);
 void put_event(const PlayedEvent& event, ByteWriter& bytes);
 void put_order(const PlayOrder& order, ByteWriter& bytes);

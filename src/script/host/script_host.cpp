@@ -342,7 +342,8 @@ BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot
     case BehaviorQuestion::Kind::why:
       return {.reasons = why(question.text, snapshot)};
     case BehaviorQuestion::Kind::describe:
-      return {.text = settings_.describe != nullptr ? settings_.describe(this) : ""};
+      if (settings_.describe == nullptr) throw InputError({.message = "nobody describes these behaviors"});
+      return {.text = settings_.describe(this)};
     case BehaviorQuestion::Kind::reload:
       throw InputError({.message = "behaviors are reloaded by an order"});
     case BehaviorQuestion::Kind::set_parameter:

@@ -49,7 +49,7 @@ class ScriptHost final : public ServedHost {
     // Bytes from keep() of another process's host: the host plays these instead of `play` and continues where that one
     // ended. They are read in the constructor and in the first tick.
     std::span<const std::byte> kept{};
-    std::string (*describe)(const ScriptHost* host) = nullptr;  // the charts for viewers; nullptr: nobody asks for them
+    std::string (*describe)(const ScriptHost* host) = nullptr;  // the charts for viewers
   };
   // Loads all behaviors, also those of events. Throws InputError with the problems of all files. `catalog` and `log`
   // must outlive the host.

@@ -92,6 +92,8 @@ void observe(Motion& motion, const Snapshot& snapshot, std::int64_t now_ns) noex
 
 const char* failure(const Motion& motion) noexcept {
   constexpr const char* failures[] = {"cancelled", "queue_full", "refused", "expired"};  // as of MotionState
+  static_assert(std::size(failures) ==
+                static_cast<int>(MotionState::expired) - static_cast<int>(MotionState::cancelled) + 1);
   if (motion.state < MotionState::cancelled) return nullptr;
   return failures[static_cast<int>(motion.state) - static_cast<int>(MotionState::cancelled)];
 }

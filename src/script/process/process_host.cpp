@@ -186,8 +186,9 @@ bool ChildAnswer::take_replies(BehaviorLink& link, std::map<std::uint32_t, Behav
 }
 
 void ChildAnswer::take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept {
-  const auto store = [](const auto& to, auto& from) {
-    for (std::size_t n = 0; n < to.size(); ++n) to[n]->store(once(from[n]), std::memory_order_relaxed);
+  const auto store = []<std::size_t count>(const std::array<std::atomic<std::uint32_t>*, count>& to,
+                                           std::array<std::uint32_t, count>& from) {
+    for (std::size_t n = 0; n < count; ++n) to[n]->store(once(from[n]), std::memory_order_relaxed);
   };
   store(play_numbers(play), link.answer.play);
   for (std::size_t i = 0; i < behaviors.size() && i < BehaviorLink::behaviors_max; ++i) {

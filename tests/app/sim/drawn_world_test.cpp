@@ -23,7 +23,7 @@ ScenarioConfig scenario_with(const std::string& world) {
 }
 
 struct Played {
-  explicit Played(const std::string& world) : robot(scenario_with(world), 1, log) {}
+  explicit Played(const std::string& world) : scenario(scenario_with(world)), robot(scenario, 1, log) {}
   RunResult run(double duration_s) {
     Checks none(robot.catalog().signals, {});
     return run_scenario(robot.parts(), duration_s, none, {});
@@ -34,6 +34,7 @@ struct Played {
   }
 
   RunLog log;
+  ScenarioConfig scenario;
   Assembly robot;
 };
 

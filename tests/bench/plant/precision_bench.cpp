@@ -158,7 +158,8 @@ class Positions final : public RunObserver {
 
 Motion walking(const Subject& subject, double duration_s) {
   RunLog log;
-  Assembly robot(read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/walk.json"), 1, log);
+  const ScenarioConfig scenario = read_scenario_config(KADANS_SOURCE_DIR "/config/scenarios/walk.json");
+  Assembly robot(scenario, 1, log);
   Positions positions(robot.catalog().signals, subject.model);
   std::vector<RunObserver*> observers{&positions};
   Checks checks(robot.catalog().signals);

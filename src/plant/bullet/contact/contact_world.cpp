@@ -8,7 +8,10 @@
 namespace kadans::bullet {
 class SteppedWorld final : public btMultiBodyDynamicsWorld {
  public:
-  using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
+  // With an own solver, which takes the free motion along with the contacts.
+  SteppedWorld(bool own_solver, btDispatcher* dispatcher, btBroadphaseInterface* pairs,
+               btMultiBodyConstraintSolver* solver, btCollisionConfiguration* configuration)
+      : btMultiBodyDynamicsWorld(dispatcher, pairs, solver, configuration), own_solver_(own_solver) {}
 
   // begin, solve and end are stepSimulation and internalSingleStepSimulation of one step.
   void begin(btScalar dt_s) {
@@ -18,7 +21,7 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     getDispatchInfo().m_timeStep = dt_s;
     performDiscreteCollisionDetection();
     getSolverInfo().m_timeStep = dt_s;
-    if (!own_solver) accelerate(dt_s);
+    if (!own_solver_) accelerate(dt_s);
   }
 
   void solve() {
@@ -28,7 +31,7 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     m_multiBodyConstraintSolver->solveMultiBodyGroup(&m_collisionObjects[0], m_collisionObjects.size(), manifolds,
                                                      manifold_count, nullptr, 0, rows, m_multiBodyConstraints.size(),
                                                      getSolverInfo(), nullptr, getDispatcher());
-    if (own_solver) return;
+    if (own_solver_) return;
     for (int i = 0; i < m_multiBodies.size(); ++i) m_multiBodies[i]->processDeltaVeeMultiDof2();
   }
 
@@ -46,8 +49,6 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
   void update_frames() {
     for (int i = 0; i < m_multiBodies.size(); ++i) update_frames(*m_multiBodies[i]);
   }
-
-  bool own_solver = false;  // which takes the free motion along with the contacts
 
  private:
   void accelerate(double dt_s) {
@@ -88,6 +89,7 @@ class SteppedWorld final : public btMultiBodyDynamicsWorld {
     bool stays;
   };
 
+  bool own_solver_;
   std::vector<Driven> driven_;  // in the next step
 };
 
@@ -114,8 +116,7 @@ ContactWorld::ContactWorld(const PlantSettings& settings, PairMask& mask, Fricti
   object_contact_.register_with(dispatcher_);
   const bool own = settings.solver != ContactSolver::stock;
   btMultiBodyConstraintSolver& solver = own ? tree_solver_ : stock_solver_;
-  world_ = std::make_unique<SteppedWorld>(&dispatcher_, &broadphase_, &solver, &configuration_);
-  world_->own_solver = own;
+  world_ = std::make_unique<SteppedWorld>(own, &dispatcher_, &broadphase_, &solver, &configuration_);
   world_->setGravity(to_bullet(settings.gravity_m_s2));
   broadphase_.getOverlappingPairCache()->setOverlapFilterCallback(&mask);
   world_->getDispatchInfo().m_useContinuous = false;

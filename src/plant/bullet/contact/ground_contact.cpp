@@ -12,7 +12,7 @@
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
-#include "touch_points.h"
+#include "part_contact.h"
 
 namespace kadans::bullet {
 namespace {

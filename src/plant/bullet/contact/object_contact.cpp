@@ -7,7 +7,7 @@
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
 
-#include "touch_points.h"
+#include "part_contact.h"
 
 namespace kadans::bullet {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <LinearMath/btAabbUtil2.h>
 
-#include "touch_points.h"
+#include "part_contact.h"
 
 namespace kadans::bullet {
 namespace {

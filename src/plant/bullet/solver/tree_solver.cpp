@@ -19,7 +19,13 @@ constexpr btScalar residual_wanted_m_s = 1e-3;
 constexpr btScalar tolerance = sizeof(btScalar) == sizeof(double) ? 1e-7 : 5e-5F;
 constexpr btScalar shorter_step = 0.7;  // after twice the iterations that each step has
 
+// Null where it was not added.
 Tree* tree_of(const btMultiBody* body) { return static_cast<Tree*>(body->getUserPointer()); }
+
+Tree* added(Tree* tree) {
+  if (tree == nullptr) throw std::logic_error("a body is added before its rows");
+  return tree;
+}
 
 bool at_limit(const JointLaw& law, btScalar impulse) { return impulse <= law.lower || impulse >= law.upper; }
 
@@ -32,7 +38,7 @@ void TreeSolver::add(btMultiBody& body) {
 }
 
 void TreeSolver::add(JointRows& rows) {
-  Tree* const tree = tree_of(&rows.body());
+  Tree* const tree = added(tree_of(&rows.body()));
   Coordinate along = rows.coordinate();
   along.joint = tree->shape().dof(along.joint);
   if (along.carrier >= 0) along.carrier = tree->shape().dof(along.carrier);
@@ -41,7 +47,7 @@ void TreeSolver::add(JointRows& rows) {
 }
 
 void TreeSolver::add(RollingRows& rows) {
-  rollings_.push_back({&rows, tree_of(&rows.body())});
+  rollings_.push_back({&rows, added(tree_of(&rows.body()))});
   joint_rows_.reserve(3 * joints_.size() + 3 * rollings_.size());
 }
 

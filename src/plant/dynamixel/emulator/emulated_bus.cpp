@@ -220,8 +220,9 @@ EmulatedBus::Message EmulatedBus::status(const EmulatedServo& servo, std::uint8_
 
 void EmulatedBus::answer(const Message& bytes, double delay_s) {
   const std::int64_t begin_ns = std::max(free_ns_, asked_ns_) + std::llround(1e9 * delay_s);
-  free_ns_ = begin_ns + std::llround(1e10 / baud_ * static_cast<double>(bytes.size()));
-  send(bytes, free_ns_ + usb_latency_ns_);
+  const std::int64_t end_ns = begin_ns + std::llround(1e10 / baud_ * static_cast<double>(bytes.size()));
+  send(bytes, end_ns + usb_latency_ns_);
+  free_ns_ = end_ns;
 }
 
 }  // namespace kadans::dynamixel

@@ -25,6 +25,8 @@ class EmulatedBus : public EmulatedLine {
 
   // The host begins to send these bytes now, at this baud rate.
   void receive(std::span<const std::uint8_t> bytes, std::int64_t now_ns, std::uint32_t baud);
+  // When take() has the next byte; INT64_MAX: none is on the way.
+  std::int64_t due_ns() const noexcept { return next_byte_ns(); }
   void set_usb_latency(std::int64_t latency_ns) noexcept { usb_latency_ns_ = latency_ns; }
   std::uint64_t instructions() const noexcept { return instructions_; }
   std::uint64_t sync_reads() const noexcept { return sync_reads_; }  // fast ones, too

@@ -155,7 +155,7 @@ void EmulatedImu::pass(std::int64_t now_ns) {
 }
 
 std::int64_t EmulatedImu::due_ns() const noexcept {
-  return measures_ ? std::min(EmulatedLine::due_ns(), next_ns_) : EmulatedLine::due_ns();
+  return measures_ ? std::min(next_byte_ns(), next_ns_) : next_byte_ns();
 }
 
 EmulatedImu::Settings device_of(const SerialImuSettings& settings) {

@@ -1,11 +1,12 @@
+#include "scenario/simulated_perception.h"
+
 #include <cmath>
 
 #include <doctest/doctest.h>
 
 #include "kadans/model/kinematics.h"
-#include "scenario/simulated_perception.h"
 
-namespace simulated_sight_test {
+namespace simulated_perception_test {
 
 using namespace kadans;
 
@@ -82,4 +83,4 @@ TEST_CASE("SimulatedSight is off by its noise and misses its share, the same wit
   CHECK(std::sqrt(bearing2 / pictures) == doctest::Approx(0.02).epsilon(0.05));
 }
 
-}  // namespace simulated_sight_test
+}  // namespace simulated_perception_test
