@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
-#include <ranges>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,8 +36,9 @@ class ParameterHistory {
  private:
   using Changes = std::map<std::string, ParameterChange>;
   static std::vector<ParameterChange> listed(const Changes& changes) {
-    const auto all = std::views::values(changes);
-    return {all.begin(), all.end()};
+    std::vector<ParameterChange> all;
+    for (const auto& [name, change] : changes) all.push_back(change);
+    return all;
   }
   void move_on(const ParameterChange& change);
 
