@@ -167,19 +167,19 @@ TEST_CASE("The posture is the side that the trunk lies on, also where roll and y
     Vec3 up;  // in the base frame: what the accelerometer says at rest, over g
     Posture posture;
   };
-  for (const auto& [up, posture] : {Row{{-0.2, 0.1, 0.97}, Posture::upright},
-                                    {{-0.997, 0, 0.07}, Posture::prone},
-                                    {{-0.997, 0.04, -0.06}, Posture::prone},
-                                    {{0.997, 0, 0.07}, Posture::supine},
-                                    {{0, -0.997, 0.07}, Posture::left},
-                                    {{0, 0.997, 0.07}, Posture::right},
-                                    {{0, 0.8, 0.59}, Posture::right},
-                                    {{0, 0.79, 0.61}, Posture::upright}}) {
+  for (const Row& row : {Row{{-0.2, 0.1, 0.97}, Posture::upright},
+                         {{-0.997, 0, 0.07}, Posture::prone},
+                         {{-0.997, 0.04, -0.06}, Posture::prone},
+                         {{0.997, 0, 0.07}, Posture::supine},
+                         {{0, -0.997, 0.07}, Posture::left},
+                         {{0, 0.997, 0.07}, Posture::right},
+                         {{0, 0.8, 0.59}, Posture::right},
+                         {{0, 0.79, 0.61}, Posture::upright}}) {
     TulipFixture robot;
-    robot.sensors.imu.acceleration_m_s2 = {9.81 * up[0], 9.81 * up[1], 9.81 * up[2]};
+    robot.sensors.imu.acceleration_m_s2 = {9.81 * row.up[0], 9.81 * row.up[1], 9.81 * row.up[2]};
     robot.advance();
-    CAPTURE(up[0]);
-    CAPTURE(up[1]);
-    CHECK(robot.status.base.posture == posture);
+    CAPTURE(row.up[0]);
+    CAPTURE(row.up[1]);
+    CHECK(robot.status.base.posture == row.posture);
   }
 }

@@ -245,7 +245,7 @@ TEST_CASE("What is whole but not ours is told apart") {
   Datagram datagram{};
   WireHead head;
   std::vector<std::byte> mode = copy(wire.actuation({.kind = WireKind::actuation}, {}, datagram));
-  for (const std::size_t at : {40 + 40, 40 + 41}) {  // there is no such mode, no such order to a drive
+  for (const std::size_t at : {40U + 40U, 40U + 41U}) {  // there is no such mode, no such order to a drive
     std::vector<std::byte> wrong = mode;
     wrong[at] = std::byte{7};
     seal(wrong);

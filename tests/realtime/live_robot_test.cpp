@@ -129,7 +129,6 @@ TEST_CASE("A model that comes late catches up a little, and the rest of the time
   IdealWorld plant(bench::robot(), bench::plant_settings());
   const auto link = std::make_unique<PlantExchange>();
   PlantTask task(*link, plant, tick_ns);
-  SensorFrame sensors;
   CHECK(task.beat({.missed = 3}));
   CHECK(link->sensors.newest().time_ns == 4 * tick_ns);
   CHECK(task.lost_periods() == 0);

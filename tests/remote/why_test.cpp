@@ -59,7 +59,7 @@ TEST_CASE("a chart is described with actions alone, internal transitions and an 
   CHECK(transitions[1]["internal"] == true);
   CHECK_FALSE(transitions[0].contains("internal"));
   CHECK(transitions[2]["number"] == transitions[3]["number"]);
-  const auto target = [&](int entry) {
+  const auto target = [&](std::size_t entry) {
     return chart["states"][transitions[entry]["target"].get<std::size_t>()]["path"];
   };
   CHECK(target(2) == "p.l.y");

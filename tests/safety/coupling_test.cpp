@@ -86,7 +86,7 @@ TEST_CASE("Beyond a drive's speed its torque in that direction fades, although b
 
 TEST_CASE("Speeds asked of coupled drives are kept within the drives' speed") {
   Bench bench = neck();
-  for (int i = 0; i < 2; ++i) bench.asked.joints[i] = {.velocity_rad_s = 6, .mode = ActuationMode::velocity};
+  for (std::size_t i = 0; i < 2; ++i) bench.asked.joints[i] = {.velocity_rad_s = 6, .mode = ActuationMode::velocity};
   bench.check();
   CHECK(bench.written.joints[0].velocity_rad_s == doctest::Approx(3));
   CHECK(bench.written.joints[1].velocity_rad_s == doctest::Approx(3));
@@ -130,7 +130,7 @@ TEST_CASE("Coupled joints that are asked for two modes damp in that tick, latche
   bench.check();
   const long allocations = heap.count();
   CHECK(allocations == 0);
-  for (int i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < 2; ++i) {
     CHECK(bench.written.joints[i].mode == ActuationMode::effort);
     CHECK(bench.written.joints[i].effort_Nm == doctest::Approx(-2.0));
     CHECK(bench.safety->joint_level(i) == SafetyLevel::damp);

@@ -141,7 +141,7 @@ TEST_CASE("Each message of a flight record is read without the messages before i
     REQUIRE(encoder.add(1000 + t, Ticks::time_ns(t), ticks.words[t], {}));
   }
   REQUIRE(messages.size() == 3);
-  for (const std::size_t which : {2, 0, 1}) {
+  for (const std::size_t which : {2U, 0U, 1U}) {
     InputDecoder decoder(alone);
     std::deque<TickTaken> read;
     CHECK(messages[which].size() <= InputEncoder::bytes_max(alone));

@@ -110,7 +110,8 @@ TEST_CASE(
 
 TEST_CASE("Gains with which a joint oscillates are let go at once, and not written") {
   for (const Bus& bus : {boards, servos}) {
-    for (const auto& [stiffness, damping] : {std::pair("400", "2"), std::pair("5", "0"), std::pair("1", "3")}) {
+    for (const auto& gains : {std::pair("400", "2"), std::pair("5", "0"), std::pair("1", "3")}) {
+      const char *const stiffness = gains.first, *const damping = gains.second;
       CAPTURE(bus.type);
       CAPTURE(stiffness);
       Project project(bus);

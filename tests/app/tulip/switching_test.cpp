@@ -176,7 +176,7 @@ Turns turn(const std::filesystem::path& project, double period_s, int second) {
     REQUIRE(row.size() == 6);
     found.switches += row[1] != std::exchange(sets, row[1]) ? 1 : 0;
     if (row[0] < 1.5) continue;
-    for (const std::size_t joint : {0, 1}) {
+    for (const std::size_t joint : {0U, 1U}) {
       squares[joint] += std::pow(0.3 * std::sin(1.4 * std::numbers::pi * row[0]) - row[2 + joint], 2);
     }
     found.energy_rad2_s2 = std::max(found.energy_rad2_s2, row[4] * row[4] + row[5] * row[5]);

@@ -78,7 +78,7 @@ TEST_CASE("what acts at once is judged by how quick the task's gain makes it") {
 
 TEST_CASE("on one foot whose ankle has no motor and too weak a spring it says that it cannot stand") {
   RobotModel loose = leg_robot();
-  for (const std::size_t roll : {1, 6}) loose.joints[roll].effort_max_Nm = 0;
+  for (const std::size_t roll : {1U, 6U}) loose.joints[roll].effort_max_Nm = 0;
   StandBench bench(loose);
   bench.set("passive_Nm_per_rad", 1);
   bench.run(100);

@@ -122,9 +122,9 @@ TEST_CASE("WalkPlan stands on the foot that xi is near, and on the other one whe
 TEST_CASE("WalkPlan foresees where xi will be from a pressure that is beside the foot's middle") {
   for (const double beside_m : {0.02, -0.02}) {
     std::array<double, 2> missed_m{};
-    for (const int foresees : {0, 1}) {
+    for (const std::size_t foresees : {0U, 1U}) {
       Pendulum robot;
-      robot.config.edge_share = foresees;
+      robot.config.edge_share = static_cast<double>(foresees);
       robot.run(3);
       robot.next_step();
       robot.beside_m = beside_m;

@@ -98,7 +98,7 @@ TEST_CASE("Position mode runs at the drives: both joints come to their places, u
     double most_Nm = 0;
     for (int i = 0; i < 2000; ++i) {
       plant.step(ms);
-      for (int k = 0; k < 2; ++k) most_Nm = std::max(most_Nm, std::abs(plant.truth().motor_torque_Nm[k]));
+      for (std::size_t k = 0; k < 2; ++k) most_Nm = std::max(most_Nm, std::abs(plant.truth().motor_torque_Nm[k]));
     }
     CHECK(plant.truth().position_rad[0] == doctest::Approx(0.5).epsilon(1e-4));
     CHECK(plant.truth().position_rad[1] == doctest::Approx(-0.3).epsilon(1e-4));

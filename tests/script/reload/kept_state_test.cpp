@@ -231,9 +231,10 @@ TEST_CASE("what lists a state twice is refused: what is in it would be active wi
   std::vector<std::byte> kept = kept_of(theatre);
   ByteWriter listed;
   listed.put_string("p.y.q");
-  const auto found = std::ranges::search(kept, listed.bytes());
-  REQUIRE_FALSE(found.empty());
-  *(found.end() - 3) = std::byte{'x'};  // p.x.q.r stands between the two
+  const std::span<const std::byte> wanted = listed.bytes();
+  const auto found = std::search(kept.begin(), kept.end(), wanted.begin(), wanted.end());
+  REQUIRE(found != kept.end());
+  *(found + static_cast<std::ptrdiff_t>(wanted.size()) - 3) = std::byte{'x'};  // p.x.q.r stands between the two
   theatre.host.reset();
   theatre.open({.kept = kept});
   theatre.tick();
