@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""parse.py BUILD INSTALLED -- BUILT: the compiler of the configured folder BUILD reads the sources of the targets INSTALLED that
+"""parse.py BUILD TARGETS -- BUILT: the compiler of the configured folder BUILD reads the sources of the TARGETS that
 the targets BUILT do not need, with all warnings. It generates no code."""
 import os
 import shlex
@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 build = sys.argv[1]
 between = sys.argv.index("--")
-installed, built = sys.argv[2:between], sys.argv[between + 1:]
+targets, built = sys.argv[2:between], sys.argv[between + 1:]
 
 
 def compilations(targets):
@@ -20,9 +20,9 @@ def compilations(targets):
 
 
 there = compilations(built)
-rest = {output: command for output, command in compilations(installed).items() if output not in there}
+rest = {output: command for output, command in compilations(targets).items() if output not in there}
 headers = [output for output in rest if "/cmake_pch." in output]
-generated = ["cmake_object_order_depends_target_" + target for target in installed]
+generated = ["cmake_object_order_depends_target_" + target for target in targets]
 subprocess.run(["cmake", "--build", build, "--target", *generated, *headers], check=True)
 sources = sorted(rest.keys() - set(headers))
 

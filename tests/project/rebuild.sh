@@ -2,7 +2,7 @@
 # rebuild.sh PRESET TARGET...: builds targets in the preset's way below the build folder, then runs those that are test
 # programs. With KADANS_SOAK set it builds and runs all there are, with the tests' usual counts. Address randomisation is
 # off throughout: ThreadSanitizer of gcc 12 does not start on kernels with more of it.
-# In the way "clang", without KADANS_SOAK, the compiler parses what else KADANS_INSTALLED names (parse.py).
+# In the way "clang", without KADANS_SOAK, the compiler parses what else KADANS_PARSED names (parse.py).
 set -euo pipefail
 preset=$1
 shift
@@ -35,4 +35,4 @@ passes() {
 }
 export -f passes
 printf '%s\n' "${programs[@]}" | xargs -P "${jobs:-$(nproc)}" -I{} bash -c 'passes "$0" "$1"' "$build/tests" {}
-[ "$preset" != clang ] || [ ${#quick[@]} -eq 0 ] || "$KADANS_SOURCE_DIR/tests/project/parse.py" "$build" $KADANS_INSTALLED -- "$@"
+[ "$preset" != clang ] || [ ${#quick[@]} -eq 0 ] || "$KADANS_SOURCE_DIR/tests/project/parse.py" "$build" $KADANS_PARSED -- "$@"
