@@ -185,9 +185,10 @@ TEST_CASE("McapWriter: a schema and a channel stand once in front of their first
   CHECK(read_all(file.path()).sequences.size() == 100);
   const std::vector<std::byte> whole = file.bytes();
   const auto times = [&](std::string_view text) {
+    const auto wanted = bytes_of(text);
     std::size_t count = 0;
     for (auto at = whole.begin();; ++at, ++count) {
-      at = std::ranges::search(at, whole.end(), bytes_of(text).begin(), bytes_of(text).end()).begin();
+      at = std::search(at, whole.end(), wanted.begin(), wanted.end());
       if (at == whole.end()) return count;
     }
   };

@@ -26,7 +26,9 @@ TEST_CASE("TULip kicks a ball 2 m far with either foot, straight ahead and to bo
     bool left;
     double rad;
   };
-  for (const auto& [left, rad] : {Asked{true, 0.0}, Asked{false, 0.35}, Asked{true, -0.35}}) {
+  for (const Asked& asked : {Asked{true, 0.0}, Asked{false, 0.35}, Asked{true, -0.35}}) {
+    const bool left = asked.left;
+    const double rad = asked.rad;
     // The tip of the foot is 0.235 m behind the middle of the ball.
     const double x_m = 0.07 + 0.235 * std::cos(rad), y_m = (left ? 0.09 : -0.09) + 0.235 * std::sin(rad);
     const std::string file = KADANS_SOURCE_DIR "/config/scenarios/kick.json";
