@@ -605,7 +605,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
     (void)leave_states(failing, failing.runner->gone_from(*old.runner), snapshot, commands);
   }
   old.runner->enter_again(past_->left);
-  static_cast<SentSoFar&>(old.bindings) = failing.bindings;
+  old.bindings.go_on_from(failing.bindings);
   old.want_sets();
   parts_ = std::move(past_->parts);
   number_states();
