@@ -361,12 +361,15 @@ class SourceCheck {
                                           "' reports what happened to the behavior, it cannot be emitted: give the "
                                           "event another name");
     }
+    const bool pattern = Chart::is_pattern(tokens[at].text);
+    if (id != no_event && pattern)
+      return problem(tokens[at].line, "'" + tokens[at].text + "' stands for several events: emit one of them");
     if (id != no_event && parts_.chart.made_by_runner(id)) {
       return problem(tokens[at].line, "'" + tokens[at].text +
                                           "' says how a state or a run ended, it cannot be emitted: give the event "
                                           "another name");
     }
-    if (id != no_event || parts_.chart.any_pattern_takes(tokens[at].text)) return;
+    if (id != no_event || (!pattern && parts_.chart.any_pattern_takes(tokens[at].text))) return;
     problem(tokens[at].line, "nothing in this behavior waits for the event '" + tokens[at].text + "'" +
                                  hint_text(tokens[at].text, parts_.chart.events));
   }
