@@ -9,6 +9,7 @@
 
 #include "chart_runner.h"
 #include "kadans/signal/state_hash.h"
+#include "script/lua/lua_state.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -276,8 +277,8 @@ void ChartRunner::report_gone(const ChartRunner& old, const std::vector<bool>& g
     StateIndex around = old.active_[i];
     while (gone[around]) around = old.chart_.states[around].parent;
     const StateIndex stays = find_state(chart_, old.chart_.states[around]), initial = chart_.states[stays].initial;
-    sink_.transitioned(old.chart_.states[old.active_[i]].path,
-                       chart_.states[initial != no_state ? initial : stays].path, "reload");
+    voice_.transitioned(old.chart_.states[old.active_[i]].path,
+                        chart_.states[initial != no_state ? initial : stays].path, "reload");
   }
 }
 

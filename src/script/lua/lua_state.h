@@ -22,11 +22,13 @@ namespace kadans {
 
 struct LuaCore;
 
-// Takes the lines that scripts print.
+// Takes the lines that scripts print, what their charts have to tell, and their transitions.
 class ScriptVoice {
  public:
   virtual ~ScriptVoice() = default;
   virtual void say_with(BehaviorLog::Severity severity, const char* text) noexcept = 0;
+  virtual void transitioned(const std::string& /*from*/, const std::string& /*to*/,
+                            const std::string& /*why*/) noexcept {}
 };
 
 class LuaState {
