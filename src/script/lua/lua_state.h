@@ -94,6 +94,7 @@ class LuaState {
   std::size_t used_bytes() const noexcept;
 
  private:
+  std::string_view text_of(std::string_view chunk) const noexcept;  // "": there is no such file
   static void* argument_of(lua_State* state) noexcept;
   [[noreturn]] void throw_error() const;
   void collect_in_time(int kB) noexcept;
