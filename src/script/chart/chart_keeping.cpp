@@ -49,15 +49,11 @@ struct OnceInState {
 
 std::uint64_t identity_of(const Chart& chart, const Chart::Transition& transition, std::uint8_t kind) noexcept {
   StateHash hash;
-  const auto add = [&](std::string_view text) {
-    hash.add(text.size());
-    for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
-  };
   hash.add(kind);
-  add(transition.on == no_event ? std::string_view{} : chart.events[static_cast<std::size_t>(transition.on)]);
-  add(transition.after_name);
+  hash.add(transition.on == no_event ? std::string_view{} : chart.events[static_cast<std::size_t>(transition.on)]);
+  hash.add(transition.after_name);
   hash.add(transition.after_s);
-  add(transition.why);
+  hash.add(transition.why);
   return hash.value();
 }
 
