@@ -113,8 +113,8 @@ void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& k
     }
     const auto chart = known.functions.find(one.source->chunk);
     if (chart == known.functions.end()) continue;
-    for (const auto& [at, keys] : chart->second) {  // all that begin there: which of them it is cannot be told
-      if (!keys.contains("when")) continue;
+    for (const auto& [at, begun] : chart->second) {  // all that begin there: which of them it is cannot be told
+      if (!begun.keys.contains("when")) continue;
       const int line = at;
       const auto begins = [line](const SourceFunction& function) { return function.line == line; };
       const auto returns = [&](const SourceFunction& function) { return begins(function) && function.returns_value; };
@@ -405,8 +405,7 @@ void check_sources(Behavior::Parts& parts, std::vector<InputProblem>& problems) 
   std::vector<ReadSource> read;
   for (const LuaState::Source& source : parts.lua->sources()) {
     read.push_back({&source, SourceScopes(lex_source(source.text), read.size(), facts)});
-    if (!parts.chart.machines.empty())
-      read.back().scopes.know_functions(known.functions[source.chunk], known.acting[source.chunk]);
+    if (!parts.chart.machines.empty()) read.back().scopes.know_functions(known.functions[source.chunk]);
   }
   name_modules(read, *parts.lua, known, facts);
   std::vector<SourceScopes*> files;
