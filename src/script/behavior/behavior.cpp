@@ -533,7 +533,6 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   const Behavior::Settings& settings = parts.settings;
   if (instructions == 0) instructions = settings.limits.load_instructions;
   open_lua(parts);
-  parts.bindings.inputs = settings.limits.inputs;
   parts.bindings.folders = settings.folders.project_file.empty() ? nullptr : &settings.folders;
   parts.lua->core().bindings = &parts.bindings;
   parts.lua->call_or_throw([&](lua_State* state) { read_file(state, parts); }, instructions,

@@ -55,7 +55,6 @@ struct SentSoFar {
 
 struct Bindings : SentSoFar {
   const Catalog* catalog = nullptr;
-  BehaviorInputs* const* inputs = nullptr;  // of a run that is recorded or repeated
   std::optional<SetPartition> partition;
   SetMask all_sets = 0;                          // those that any state may run on
   std::vector<SetMask> machine_sets;             // those that the states of each machine run on

@@ -20,8 +20,9 @@ class LuaState;
 
 struct LuaCore {
   LuaHeap heap;
+  const ScriptLimits& limits;
   ScriptError error{};
-  Budget budget{heap, error};
+  Budget budget{heap, error, limits};
   RandomStream random;
   TableSlots slots{};
   std::deque<ScriptParameter> parameters{};

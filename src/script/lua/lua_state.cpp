@@ -90,13 +90,12 @@ int open(lua_State* state) {
 LuaState::LuaState(Settings settings)
     : settings_(std::move(settings)),
       core_(new LuaCore{.heap = LuaHeap(settings_.limits.memory_bytes, settings_.limits.block_bytes),
+                        .limits = settings_.limits,
                         .random = RandomStream(settings_.seed, "script." + settings_.name)}) {
   core_->owner = this;
   lua_ = lua_newstate(allocate, core_.get());
   if (lua_ == nullptr) throw std::bad_alloc();
   core_->main = lua_;
-  core_->budget.ask(settings_.limits.inputs);
-  core_->budget.tell_lines_to(settings_.limits.watch);
   core_->heap.for_ticks(false);
   luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   lua_gc(lua_, LUA_GCSTOP, 0);
@@ -148,8 +147,8 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   const std::string chunk = "@" + source.chunk;
   try {
     source.text = read_input_file(path, source_bytes_max);
-    if (BehaviorInputs* const* inputs = settings_.limits.inputs; inputs != nullptr && *inputs != nullptr)
-      (*inputs)->file_read(path.string(), source.text);
+    if (BehaviorInputs* const inputs = settings_.limits.inputs_now(); inputs != nullptr)
+      inputs->file_read(path.string(), source.text);
   } catch (const InputError& error) {
     lua_pushfstring(state, "%s:1: %s", source.chunk.c_str(), error.problems().front().message.c_str());
     return false;
