@@ -20,15 +20,6 @@ std::string returned_name(const Tokens& tokens) {
   return named ? tokens[end - 1].text : "";
 }
 
-std::size_t end_of_bracket(const Tokens& tokens, std::size_t at) {
-  int depth = 0;
-  for (; tokens[at].kind != TokenKind::end; ++at) {
-    depth += tokens[at].is("[") ? 1 : tokens[at].is("]") ? -1 : 0;
-    if (depth == 0) break;
-  }
-  return at;
-}
-
 // Whether a function writes `name[computed] = ` or hands it to rawset.
 bool filled_while_it_runs(const Tokens& tokens, const std::string& name) {
   std::vector<bool> blocks;  // whether each is a function's
@@ -39,7 +30,7 @@ bool filled_while_it_runs(const Tokens& tokens, const std::string& name) {
     if (change < 0 && !blocks.empty()) blocks.pop_back();
     if (std::ranges::find(blocks, true) == blocks.end() || token.kind != TokenKind::name) continue;
     if (token.text == "rawset" && tokens[i + 2].text == name) return true;
-    if (token.text == name && tokens[i + 1].is("[") && tokens[end_of_bracket(tokens, i + 1) + 1].is("=")) return true;
+    if (token.text == name && tokens[i + 1].is("[") && tokens[end_of_block(tokens, i + 1) + 1].is("=")) return true;
   }
   return false;
 }
