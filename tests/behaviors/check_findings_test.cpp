@@ -70,6 +70,13 @@ const Case wrong[] = {
      "return k.behavior 't' { initial = 'o', k.state 'o' { endless = true, enter = function(m)\n"
      "m:emit 'done' end, k.final 'x' { outcome = 'done' } } }",
      "t.lua:3: 'done' says how a state or a run ended, it cannot be emitted: give the event another name"},
+    {"a pattern that is emitted",
+     "return k.behavior 't' { k.state 'a' { enter = function(m)\nm:emit 'heat.*' end, { on = 'heat.*', after = 1, to = "
+     "'a' } } }",
+     "t.lua:3: 'heat.*' stands for several events: emit one of them"},
+    {"a pattern that only '*' would take",
+     "return k.behavior 't' { k.state 'a' { enter = function(m)\nm:emit 'heat.*' end, { on = '*', to = 'a' } } }",
+     "t.lua:3: nothing in this behavior waits for the event 'heat.*'"},
     {"an event that is none of the emitted ones",
      "return k.behavior 't' { k.state 'a' { enter = function(m) m:emit(m.time_s > 1 and 'late' or 'soon') end,\n"
      "{ on = 'late', to = 'a' }, { on = 'never', to = 'a' }, { on = 'soon', to = 'a' } } }",

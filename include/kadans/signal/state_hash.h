@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 namespace kadans {
 
@@ -25,6 +26,10 @@ class StateHash {
   }
   void add(std::span<const double> values) noexcept {
     for (const double value : values) add(value);
+  }
+  void add(std::string_view text) noexcept {
+    add(text.size());
+    for (const char letter : text) add(static_cast<unsigned char>(letter));
   }
   std::uint64_t value() const noexcept { return hash_; }
 

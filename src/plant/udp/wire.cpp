@@ -106,10 +106,7 @@ const std::byte* payload(Bytes datagram) noexcept { return datagram.data() + wir
 
 void add_names(StateHash& hash, const std::vector<std::string>& names) {
   hash.add(names.size());
-  for (const std::string& name : names) {
-    hash.add(name.size());
-    for (const char c : name) hash.add(static_cast<unsigned char>(c));
-  }
+  for (const std::string& name : names) hash.add(name);
 }
 
 bool is_greeting(WireKind kind) noexcept {

@@ -156,15 +156,14 @@ void tick_chart(lua_State* state, Behavior::Parts& parts) {
 
 // The work of a tick but for the chart: tables filled with what they are going to hold anyway, and a function that uses
 // the interpreter as functions of charts do.
-void rehearse_tick(lua_State* state, Behavior::Parts& parts) {
-  Behavior::Parts::Rehearsal& rehearsal = parts.rehearsal;
-  parts.snapshot_tables.refill(*rehearsal.snapshot, rehearsal.now_ns);
-  if (rehearsal.function == LUA_NOREF) {
+void rehearse_tick(lua_State* state, Behavior::Parts& parts, const Snapshot& newest, std::int64_t now_ns) {
+  parts.snapshot_tables.refill(newest, now_ns);
+  if (parts.rehearsal == LUA_NOREF) {
     if (luaL_loadstring(state, rehearsal_text) != 0) lua_error(state);
     lua_call(state, 0, 1);
-    rehearsal.function = luaL_ref(state, LUA_REGISTRYINDEX);
+    parts.rehearsal = luaL_ref(state, LUA_REGISTRYINDEX);
   }
-  lua_rawgeti(state, LUA_REGISTRYINDEX, rehearsal.function);
+  lua_rawgeti(state, LUA_REGISTRYINDEX, parts.rehearsal);
   lua_pushboolean(state, 1);
   lua_call(state, 1, 1);
 }
@@ -254,36 +253,6 @@ void Behavior::Parts::transitioned(const std::string& from, const std::string& t
   log.transition(transition);
 }
 
-void Behavior::Parts::event_dropped(const char* event) noexcept {
-  char text[320];
-  std::snprintf(text, sizeof text, "event '%.200s' was dropped: no transition took it in its tick (told once)", event);
-  say_with(BehaviorLog::Severity::warning, text);
-}
-
-void Behavior::Parts::out_of_steps(const char* chunk, int line) noexcept {
-  char text[512];
-  std::snprintf(
-      text, sizeof text,
-      "%.300s:%d: a tick took all %u steps, the last one by the transition here; further events were dropped. "
-      "Do events lead to each other? (told once)",
-      chunk, line, ChartRunner::steps_max);
-  say_with(BehaviorLog::Severity::warning, text);
-}
-
-void Behavior::Parts::restless(const Chart::State& from, const Chart::State& to, int line,
-                               std::uint32_t ticks) noexcept {
-  char text[640];
-  std::snprintf(text, sizeof text,
-                "%.200s:%d: for %u ticks a state followed another at once, now '%.80s' after '%.80s': nothing takes "
-                "time. Should one wait, for a condition, an event or after > 0? (told once)",
-                from.chunk.c_str(), line, ticks, to.path.c_str(), from.path.c_str());
-  say_with(BehaviorLog::Severity::warning, text);
-}
-
-void Behavior::Parts::recovered(const ScriptError& taken) noexcept {
-  say_with(BehaviorLog::Severity::warning, ("error taken as an event: " + taken.text()).c_str());
-}
-
 Behavior::Behavior(const Settings& settings, const Catalog& catalog, BehaviorLog& log)
     : parts_(std::make_unique<Parts>(settings, catalog, log)), past_(std::make_unique<Past>()) {
   load_behavior(*parts_);
@@ -301,9 +270,7 @@ Behavior::~Behavior() = default;
 
 void Behavior::prepare(const Snapshot& newest) noexcept {
   if (failed() || finished()) return;
-  parts_->rehearsal.snapshot = &newest;
-  parts_->rehearsal.now_ns = clock_ns(newest);
-  (void)parts_->run([this](lua_State* state) { rehearse_tick(state, *parts_); });
+  (void)parts_->run([&](lua_State* state) { rehearse_tick(state, *parts_, newest, clock_ns(newest)); });
 }
 
 bool Behavior::tick(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -566,7 +533,6 @@ void load_behavior(Behavior::Parts& parts, std::uint64_t instructions) {
   const Behavior::Settings& settings = parts.settings;
   if (instructions == 0) instructions = settings.limits.load_instructions;
   open_lua(parts);
-  parts.bindings.inputs = settings.limits.inputs;
   parts.bindings.folders = settings.folders.project_file.empty() ? nullptr : &settings.folders;
   parts.lua->core().bindings = &parts.bindings;
   parts.lua->call_or_throw([&](lua_State* state) { read_file(state, parts); }, instructions,

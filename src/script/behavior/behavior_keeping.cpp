@@ -90,23 +90,6 @@ void take_sent(SentSoFar& bindings, ByteReader& bytes) {
   bindings.begun = bytes.take<std::uint8_t>() != 0;
 }
 
-// [-0 +1] Pushes the `vars` of a machine.
-void push_vars(lua_State* state, const RunnerTables::Machine& machine) {
-  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.content);
-  lua_pushliteral(state, "vars");
-  lua_rawget(state, -2);
-  lua_remove(state, -2);
-}
-
-// [-0 +1] Pushes an argument of a machine.
-void push_argument(lua_State* state, const RunnerTables::Machine& machine, const char* name) {
-  lua_rawgeti(state, LUA_REGISTRYINDEX, machine.content);
-  lua_getfield(state, -1, "args");
-  lua_getfield(state, -1, name);
-  lua_replace(state, -3);
-  lua_pop(state, 1);
-}
-
 constexpr std::size_t kept_bytes_max = std::size_t{256} << 10U;
 constexpr std::uint32_t unkept = UINT32_MAX;  // in place of the size of vars: the reason follows
 enum Tag : std::uint8_t { tag_nil, tag_false, tag_true, tag_number, tag_string, tag_table, tag_end, tag_motion };
@@ -177,7 +160,7 @@ std::string put_machines(Behavior::Parts& parts, ByteWriter& bytes) {
     bytes.put(std::uint32_t{0});
     const int top = lua_gettop(state);
     if (lua_checkstack(state, 8) == 0) why = "vars cannot be read";
-    if (why.empty()) push_vars(state, parts.tables.machines[i]);
+    if (why.empty()) push_entry(state, parts.tables.machines[i].content, "vars");
     if (why.empty()) (void)put_value(state, top + 1, bytes, why);
     lua_settop(state, top);
     bytes.set(at, static_cast<std::uint32_t>(bytes.size() - at - sizeof(std::uint32_t)));
@@ -350,7 +333,10 @@ void put_given(Behavior::Parts& parts, ByteWriter& bytes) {
       const bool argument = given.parameter == Chart::no_parameter;
       if (!argument && given.function == Chart::no_function) continue;
       lua_pushnumber(state, parts.bindings.evaluated[i][at]);
-      if (argument) push_argument(state, parts.tables.machines[i], given.name.c_str());
+      if (argument) {
+        push_entry(state, parts.tables.machines[i].content, "args");
+        lua_getfield(state, -1, given.name.c_str());
+      }
       ByteWriter value;
       if (put_value(state, lua_gettop(state), value, why)) {
         bytes.put<std::uint8_t>(1);
@@ -386,7 +372,7 @@ void take_machine(lua_State* state, Behavior::Parts& parts, ByteReader& bytes) {
     lua_pushlstring(state, why.data(), why.size());
     luaL_error(state, "%s: only plain data and motions are carried over", lua_tostring(state, -1));
   }
-  push_vars(state, parts.tables.machines[number]);
+  push_entry(state, parts.tables.machines[number].content, "vars");
   push_value(state, vars, parts.catalog);
   if (!lua_istable(state, -1)) luaL_error(state, "vars that are no table were kept");
   give_vars(state, machine, version);
@@ -605,7 +591,7 @@ bool Behavior::take_back(const Snapshot& snapshot, CommandSender& commands) noex
     (void)leave_states(failing, failing.runner->gone_from(*old.runner), snapshot, commands);
   }
   old.runner->enter_again(past_->left);
-  static_cast<SentSoFar&>(old.bindings) = failing.bindings;
+  old.bindings.go_on_from(failing.bindings);
   old.want_sets();
   parts_ = std::move(past_->parts);
   number_states();

@@ -20,7 +20,7 @@
 
 namespace kadans {
 
-struct Behavior::Parts final : ScriptVoice, TransitionSink {
+struct Behavior::Parts final : ScriptVoice {
   Parts(const Settings& wanted, const Catalog& offered, BehaviorLog& to);
   ~Parts() override = default;
   Parts(const Parts&) = delete;
@@ -30,10 +30,6 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   void say_with(BehaviorLog::Severity severity, const char* text) noexcept override;
   void tell_dropped(bool at_once) noexcept;  // logs how many lines were dropped
   void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept override;
-  void event_dropped(const char* event) noexcept override;
-  void out_of_steps(const char* chunk, int line) noexcept override;
-  void recovered(const ScriptError& error) noexcept override;
-  void restless(const Chart::State& from, const Chart::State& to, int line, std::uint32_t ticks) noexcept override;
   void tell_refused() noexcept;  // logs what the control engine has refused since the last call
   void tell_armed() noexcept;    // logs what became of armed transactions since the last call, and posts their events
   // Asks in the next tick for the control sets of the active states that are not active.
@@ -54,13 +50,9 @@ struct Behavior::Parts final : ScriptVoice, TransitionSink {
   RunnerTables tables;
   SnapshotTables snapshot_tables;
   std::unique_ptr<ChartRunner> runner;
-  Transition transition;  // reused, so that its strings keep their room
-  struct Rehearsal {
-    const Snapshot* snapshot = nullptr;
-    std::int64_t now_ns = 0;
-    int function = LUA_NOREF;
-  } rehearsal;
-  struct Reports {  // what is going to be an event in the next step of the chart (chart.h)
+  Transition transition;      // reused, so that its strings keep their room
+  int rehearsal = LUA_NOREF;  // registry: the function of rehearse_tick()
+  struct Reports {            // what is going to be an event in the next step of the chart (chart.h)
     std::array<Refusal, refusals_shown> refused{};
     std::uint32_t refused_count = 0;
     void note(const Refusal& refusal) noexcept {

@@ -6,8 +6,11 @@ namespace kadans {
 
 static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 
-void BehaviorStatus::declare(SignalTable& signals, const std::string& name) const {
-  const std::string prefix = "behavior." + name + ".";
+std::string BehaviorStatus::declare_numbered(SignalTable& signals, const std::string& name) const {
+  std::string free = name;
+  for (int number = 2; signals.find("behavior." + free + ".state"); ++number)
+    free = name + "_" + std::to_string(number);
+  const std::string prefix = "behavior." + free + ".";
   signals.add({prefix + "heap_bytes", "B", "Memory of the behavior's Lua state."}, &heap_bytes);
   signals.add({prefix + "instructions", "", "Lua instructions of its last tick, in steps of a thousand."},
               &instructions);
@@ -19,6 +22,7 @@ void BehaviorStatus::declare(SignalTable& signals, const std::string& name) cons
                 &regions[i]);
   }
   signals.add({prefix + "reloads", "", "New versions taken since the start."}, &reloads);
+  return free;
 }
 
 bool BehaviorStatus::is_region_path(std::string_view path) noexcept {
@@ -27,14 +31,6 @@ bool BehaviorStatus::is_region_path(std::string_view path) noexcept {
   };
   return !path.empty() && path.size() <= region_path_max && path.front() != '.' && path.back() != '.' &&
          path.find("..") == std::string_view::npos && std::ranges::all_of(path, fits);
-}
-
-std::string BehaviorStatus::declare_numbered(SignalTable& signals, const std::string& name) const {
-  std::string free = name;
-  for (int number = 2; signals.find("behavior." + free + ".state"); ++number)
-    free = name + "_" + std::to_string(number);
-  declare(signals, free);
-  return free;
 }
 
 }  // namespace kadans

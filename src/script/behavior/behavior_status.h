@@ -30,10 +30,8 @@ struct BehaviorStatus {
 
   static bool is_region_path(std::string_view path) noexcept;  // small enough, and parts between single dots
 
-  // Before the loop. Declares behavior.<name>.heap_bytes and so on, behavior.<name>.region.<path>. The name must not be
-  // in the table yet.
-  void declare(SignalTable& signals, const std::string& name) const;
-  // The same, but a name that is taken is replaced by the first free one of name_2, name_3 ... Returns the name.
+  // Before the loop. Declares behavior.<name>.heap_bytes and so on, behavior.<name>.region.<path>. A name that is taken
+  // is replaced by the first free one of name_2, name_3 ... Returns the name.
   std::string declare_numbered(SignalTable& signals, const std::string& name) const;
 };
 

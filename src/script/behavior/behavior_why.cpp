@@ -107,42 +107,24 @@ void ask_guards(lua_State* state, Asking& asking) {
   }
 }
 
-// The names of the function's arguments, s and m as a rule.
-std::array<std::string, 2> argument_names(const std::string& text) {
-  std::array<std::string, 2> names;
-  const std::size_t open = text.find('(', std::min(text.find("function"), text.size()));
-  const std::size_t close = text.find(')', std::min(open, text.size()));
-  if (close == std::string::npos) return names;
-  std::size_t number = 0;
-  for (std::size_t at = open + 1; at < close && number < names.size(); ++at) {
-    if (in_name(text[at])) names[number] += text[at];
-    if (text[at] == ',') ++number;
-  }
-  return names;
-}
-
-// The fields of the arguments that stand in a guard's text; no calls.
+// The fields of the function's arguments, s and m as a rule, that stand in a guard's text; no calls.
 std::vector<Seen> fields_read(const std::string& text) {
-  const std::array<std::string, 2> names = argument_names(text);
+  Tokens tokens = lex_source(text);
+  tokens.resize(tokens.size() + 4);
+  std::size_t open = 0;
+  while (!tokens[open].is("function") && tokens[open].kind != TokenKind::end) ++open;
+  while (!tokens[open].is("(") && tokens[open].kind != TokenKind::end) ++open;
+  const std::string snapshot = tokens[open + 1].text, machine = tokens[open + 2].is(",") ? tokens[open + 3].text : "";
   std::vector<Seen> all;
-  for (std::size_t at = 0; at < text.size() && all.size() < paths_max;) {
-    if (!in_name(text[at]) || (at > 0 && (in_name(text[at - 1]) || text[at - 1] == '.'))) {
-      ++at;
-      continue;
-    }
-    std::size_t end = at;
-    while (end < text.size() &&
-           (in_name(text[end]) || (text[end] == '.' && end + 1 < text.size() && in_name(text[end + 1]))))
-      ++end;
-    const std::string path = text.substr(at, end - at);
-    const std::size_t dot = std::min(path.find('.'), path.size());
-    const std::string first = path.substr(0, dot);
-    const std::size_t next = std::min(text.find_first_not_of(' ', end), text.size());
-    const bool calls = next < text.size() && (text[next] == '(' || text[next] == ':' || text[next] == '[');
+  for (std::size_t i = open; tokens[i].kind != TokenKind::end && all.size() < paths_max; ++i) {
+    const bool of_snapshot = tokens[i].is_name(snapshot);
+    if ((!of_snapshot && !tokens[i].is_name(machine)) || tokens[i - 1].is(".")) continue;
+    std::string path = tokens[i].text;
+    const std::size_t first = i;
+    for (; tokens[i + 1].is(".") && tokens[i + 2].kind == TokenKind::name; i += 2) path += "." + tokens[i + 2].text;
     const bool known = std::ranges::find(all, path, &Seen::path) != all.end();
-    if (!first.empty() && (first == names[0] || first == names[1]) && dot < path.size() && !calls && !known)
-      all.push_back({.path = path, .of_snapshot = first == names[0], .fields = {}});
-    at = end;
+    if (i > first && !tokens[i + 1].is_any({"(", ":", "["}) && !known)
+      all.push_back({.path = path, .of_snapshot = of_snapshot, .fields = {}});
   }
   return all;
 }

@@ -1,24 +1,16 @@
 #include "api.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <iterator>
-#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include <lua.hpp>
-
 #include "bindings.h"
-#include "script/chart/chart_arguments.h"
 #include "script/chart/chart_reader.h"
-#include "script/chart/chart_skills.h"
 #include "script/check/known_names.h"
-#include "script/lua/lua_core.h"
-#include "script/lua/lua_state.h"
 #include "script/motion/motion_options.h"
 #include "signal/number_text.h"
 #include "signal/status_fields.h"
@@ -30,35 +22,35 @@ namespace {
 // the table that the bindings read (motion_options.h).
 struct OptionTable {
   MotionOption::Method method;
-  const char* type;      // of the stubs
-  const char* argument;  // of which function
-  const char* title;
+  const char* type;  // of the stubs
+  const char* of;    // the function whose argument it is
 };
-constexpr OptionTable option_tables[] = {
-    {MotionOption::move, "kadans.MoveOptions", "move", "move"},
-    {MotionOption::set, "kadans.SetOptions", "set", "set"},
-    {MotionOption::through, "kadans.ThroughOptions", "move_through", "move_through"},
-    {MotionOption::point, "kadans.Point", "", "a point of move_through"},
-    {MotionOption::follow, "kadans.FollowLimits", "follow", "follow"}};
+constexpr OptionTable option_tables[] = {{MotionOption::move, "kadans.MoveOptions", "move"},
+                                         {MotionOption::set, "kadans.SetOptions", "set"},
+                                         {MotionOption::through, "kadans.ThroughOptions", "move_through"},
+                                         {MotionOption::point, "kadans.Point", "a point of move_through"},
+                                         {MotionOption::follow, "kadans.FollowLimits", "follow"}};
 
 struct ArgumentType {
-  const char* name;
+  std::string_view name;
   const char* type;
 };
-constexpr ArgumentType argument_types[] = {{"pose", "kadans.pose|table<string, number>"},
-                                           {"points", "kadans.Point[]"},
-                                           {"name", "string"},
-                                           {"setpoint", "string"},
-                                           {"preset", "string"},
-                                           {"set", "string"},
-                                           {"condition", "string|table"},
-                                           {"record", "fun(c: kadans.Machine)"},
-                                           {"event", "string"},
-                                           {"format", "string"},
-                                           {"value", "number"},
-                                           {"seconds", "number"},
-                                           {"table", "table<string, table>"},
-                                           {"...", "any"}};
+constexpr ArgumentType argument_types[] = {{"pose", ": kadans.pose|table<string, number>"},
+                                           {"points", ": kadans.Point[]"},
+                                           {"name", ": string"},
+                                           {"setpoint", ": string"},
+                                           {"preset", ": string"},
+                                           {"set", ": string"},
+                                           {"condition", ": string|table"},
+                                           {"record", ": fun(c: kadans.Machine)"},
+                                           {"event", ": string"},
+                                           {"format", ": string"},
+                                           {"value", ": number"},
+                                           {"seconds", ": number"},
+                                           {"table", ": table<string, table>"},
+                                           {"data", "?: table"},
+                                           {"receiver", "?: { to: string }"},
+                                           {"...", ": any"}};
 
 struct OptionWords {
   const char* type;   // of the stubs
@@ -81,16 +73,12 @@ std::string argument_type(std::string_view function, std::string_view name) {
   if (name == "options" || name == "limits") {
     for (const OptionTable& table : option_tables) {
       const bool needed = table.method == MotionOption::move || table.method == MotionOption::follow;
-      if (function == table.argument) return std::string(needed ? ": " : "?: ") + table.type;
+      if (function == table.of) return std::string(needed ? ": " : "?: ") + table.type;
     }
   }
-  if (name == "data") return "?: table";
-  if (name == "receiver") return "?: { to: string }";
   if (function == "pose" && name == "name") return ": kadans.pose";
-  for (const ArgumentType& known : argument_types) {
-    if (name == known.name) return std::string(": ") + known.type;
-  }
-  return "";
+  const auto known = std::ranges::find(argument_types, name, &ArgumentType::name);
+  return known == std::end(argument_types) ? "" : known->type;
 }
 
 std::string motion_option_stubs() {
@@ -117,7 +105,7 @@ std::string motion_option_reference() {
   for (const MotionOption& option : motion_options()) {
     std::string where;
     for (const OptionTable& table : option_tables) {
-      if ((option.methods & table.method) != 0) where += (where.empty() ? "" : ", ") + std::string(table.title);
+      if ((option.methods & table.method) != 0) where += (where.empty() ? "" : ", ") + std::string(table.of);
     }
     text += "| `" + std::string(option.name) + "` | " + where + " | " + range(option) + words_of(option).value + " | " +
             option.doc + " |\n";
@@ -419,84 +407,6 @@ std::string lua_stubs(const Catalog& catalog) {
     text += "\n";
   }
   return text + "---@type kadans\nlocal kadans\nreturn kadans\n";
-}
-
-namespace {
-
-std::string default_text(const ScriptArgument& argument) {
-  if (!argument.initial) return "a table";
-  if (const auto* number = std::get_if<double>(&*argument.initial)) return number_text(*number);
-  if (const auto* flag = std::get_if<bool>(&*argument.initial)) return *flag ? "true" : "false";
-  return "\"" + std::get<std::string>(*argument.initial) + "\"";
-}
-
-// "0.1..10 s", "\"left\", \"right\"".
-std::string allowed_text(const ScriptArgument& argument) {
-  const auto end = [](double value) { return std::isfinite(value) ? number_text(value) : ""; };
-  std::string text = end(argument.min) + ".." + end(argument.max);
-  if (text == "..") text.clear();
-  if (!argument.unit.empty()) text += (text.empty() ? "" : " ") + argument.unit;
-  for (const std::string& choice : argument.one_of) text += (text.empty() ? "\"" : ", \"") + choice + "\"";
-  return text;
-}
-
-// Of the skill whose table is at `skill`.
-std::string skill_text(lua_State* state, int skill) {
-  std::string text = text_of_field(state, skill, "doc") + ".\n";
-  lua_getfield(state, skill, "args");
-  const int declared = lua_gettop(state);
-  const std::vector<ScriptArgument> arguments = read_declarations(state, declared);
-  lua_pop(state, 1);
-  if (!arguments.empty()) text += "\n| argument | default | allowed | |\n|---|---|---|---|\n";
-  for (const ScriptArgument& argument : arguments) {
-    text += "| `" + argument.name + "` | " + default_text(argument) + " | " + allowed_text(argument) + " | " +
-            argument.doc + " |\n";
-  }
-  return text;
-}
-
-// By field, as Markdown. Nothing here raises but the module, before a string is made.
-void read_skills(lua_State* state, LuaState& lua, const std::filesystem::path& file,
-                 std::map<std::string, std::string>& skills) {
-  if (!lua.load_file(state, file)) lua_error(state);
-  lua_call(state, 0, 1);
-  const int module = lua_gettop(state);
-  luaL_checkstack(state, 16, "skills");
-  if (!lua_istable(state, module)) return;
-  for (lua_pushnil(state); lua_next(state, module) != 0; lua_settop(state, module + 1)) {
-    if (lua_type(state, module + 1) != LUA_TSTRING || !push_skill(state, module + 2)) continue;
-    skills[lua_tostring(state, module + 1)] = skill_text(state, lua_gettop(state));
-  }
-}
-
-std::string module_reference(const std::filesystem::path& root, const std::filesystem::path& file) {
-  LuaState lua({.root = root, .folder = file.parent_path(), .name = file.stem().string()});
-  std::map<std::string, std::string> skills;
-  lua.call_or_throw([&](lua_State* state) { read_skills(state, lua, file, skills); },
-                    lua.settings().limits.load_instructions, 0);
-  const std::string module = file.stem().string();
-  std::string text;
-  for (const auto& [field, skill] : skills) {
-    text += "\n### `" + module + "." + field + "`\n\n" + skill;
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string skill_reference(const std::filesystem::path& root) {
-  const std::filesystem::path folder = root / "behaviors/lib";
-  std::error_code none;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-    const std::string name = entry.path().filename().string();
-    if (name.ends_with(".lua") && !name.ends_with("_test.lua")) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  std::string text;
-  for (const std::filesystem::path& file : files) text += module_reference(root, file);
-  if (text.empty()) return "";
-  return "\n## Skills of behaviors/lib: `MODULE.SKILL \"state\" { argument = value, transitions }`\n" + text;
 }
 
 std::string api_reference(const std::filesystem::path& root) {

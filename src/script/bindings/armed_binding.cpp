@@ -229,13 +229,9 @@ int use(lua_State* state) {
   if (!bindings.recording)
     return luaL_error(state, "use() works inside the function of m:on; states name their sets in controls");
   const auto& sets = bindings.catalog->sets;
-  for (std::uint32_t i = 0; i < sets.size(); ++i) {
-    if (sets[i].name != name) continue;
-    (void)bindings.send({.kind = CommandKind::switch_set, .index = i});
-    return 0;
-  }
-  const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(sets); });
-  return luaL_error(state, "unknown control set '%s'%s", name, hint.data());
+  const auto number = &check_named(state, sets, name, "control set") - sets.data();
+  (void)bindings.send({.kind = CommandKind::switch_set, .index = static_cast<std::uint32_t>(number)});
+  return 0;
 }
 
 ArmedHandle& check_handle(lua_State* state) {

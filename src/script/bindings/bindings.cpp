@@ -149,16 +149,12 @@ int pose(lua_State* state) {
   const char* name = luaL_checkstring(state, 1);
   if (core_of(state).bindings == nullptr) return luaL_error(state, "no robot here has poses");
   const Catalog& catalog = *bindings_of(state).catalog;
-  for (const PoseInfo& known : catalog.poses) {
-    if (known.name != name) continue;
-    core_of(state).budget.charge(state, joint_instructions * static_cast<double>(known.position_rad.size()));
-    lua_newtable(state);
-    for (const auto& [joint, position_rad] : known.position_rad)
-      set_field(state, catalog.model->joints[joint].name.c_str(), position_rad);
-    return 1;
-  }
-  const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(catalog.poses); });
-  return luaL_error(state, "unknown pose '%s'%s", name, hint.data());
+  const PoseInfo& known = check_named(state, catalog.poses, name, "pose");
+  core_of(state).budget.charge(state, joint_instructions * static_cast<double>(known.position_rad.size()));
+  lua_newtable(state);
+  for (const auto& [joint, position_rad] : known.position_rad)
+    set_field(state, catalog.model->joints[joint].name.c_str(), position_rad);
+  return 1;
 }
 
 // k.log: lines for people, in the record and on the console, each with its severity.

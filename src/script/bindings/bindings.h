@@ -41,7 +41,7 @@ struct ConditionText {
 ConditionText read_condition_text(std::string_view text) noexcept;
 bool is_truth_of_simulation(std::string_view signal) noexcept;
 
-// What a behavior has sent, which the version after it goes on from.
+// What a behavior has sent, which the version that takes its place goes on from.
 struct SentSoFar {
   SetMask sets_sent = 0;                // the control sets that are active once all transactions sent are applied
   bool sets_lost = false;               // a transaction was refused that may have brought sets in
@@ -55,7 +55,6 @@ struct SentSoFar {
 
 struct Bindings : SentSoFar {
   const Catalog* catalog = nullptr;
-  BehaviorInputs* const* inputs = nullptr;  // of a run that is recorded or repeated
   std::optional<SetPartition> partition;
   SetMask all_sets = 0;                          // those that any state may run on
   std::vector<SetMask> machine_sets;             // those that the states of each machine run on
@@ -86,6 +85,7 @@ struct Bindings : SentSoFar {
   std::vector<PlayOrder> decided{};
   std::string order_text{}, order_problem{};  // kept here, because Lua does not destroy what it leaves by an error
 
+  void go_on_from(const Bindings& other) noexcept { SentSoFar::operator=(other); }
   bool has_object(std::size_t machine, std::uint32_t object) const noexcept {
     return machine >= machine_objects.size() || (machine_objects[machine] >> object & 1U) != 0;
   }

@@ -41,9 +41,8 @@ ParameterId read_parameter(lua_State* state, int index, const ObjectInfo& object
 int parameter(lua_State* state) {
   const ObjectInfo& object = check_object(state);
   const ParameterId id = read_parameter(state, 2, object);
-  const Bindings& bindings = bindings_of(state);
-  const double newest = bindings.catalog->parameters.newest(id);
-  BehaviorInputs* const inputs = bindings.inputs == nullptr ? nullptr : *bindings.inputs;
+  const double newest = bindings_of(state).catalog->parameters.newest(id);
+  BehaviorInputs* const inputs = core_of(state).limits.inputs_now();
   return lua_pushnumber(state, inputs == nullptr ? newest : inputs->parameter(newest)), 1;
 }
 

@@ -280,7 +280,7 @@ void TableSlots::find_place(lua_State* state) {
 
 std::size_t TableSlots::steps(lua_State* state, int index) const noexcept {
   constexpr std::size_t steps_per_hash_slot = 2;
-  if (!known()) return core_of(state).owner->settings().limits.block_bytes / sizeof(lua_Number);
+  if (!known()) return core_of(state).limits.block_bytes / sizeof(lua_Number);
   const Sizes sizes = sizes_at(lua_topointer(state, index), place_);
   return std::size_t{sizes.array} + steps_per_hash_slot * (std::size_t{sizes.hash_mask} + 1);
 }

@@ -242,11 +242,10 @@ void ChartRunner::give(lua_State* state, std::uint16_t machine, std::size_t numb
     bindings_of(state).evaluated[machine][number] = lua_tonumber(state, -1);
     return lua_pop(state, 1);
   }
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[machine].content);
-  lua_getfield(state, -1, "args");
-  push_plain_copy(state, lua_gettop(state) - 2);
+  push_entry(state, tables_.machines[machine].content, "args");
+  push_plain_copy(state, lua_gettop(state) - 1);
   lua_setfield(state, -2, given.name.c_str());
-  lua_pop(state, 3);
+  lua_pop(state, 2);
 }
 
 bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
@@ -275,9 +274,7 @@ bool ChartRunner::evaluate_call(lua_State* state, std::uint16_t number) {
 }
 
 void ChartRunner::push_arguments(lua_State* state) const {
-  lua_rawgeti(state, LUA_REGISTRYINDEX, tables_.machines[chart_.states[acting_].machine].content);
-  lua_getfield(state, -1, "args");
-  lua_remove(state, -2);
+  push_entry(state, tables_.machines[chart_.states[acting_].machine].content, "args");
 }
 
 }  // namespace kadans

@@ -9,6 +9,7 @@
 
 #include "chart_runner.h"
 #include "kadans/signal/state_hash.h"
+#include "script/lua/lua_state.h"
 #include "signal/byte_order.h"
 
 namespace kadans {
@@ -48,15 +49,11 @@ struct OnceInState {
 
 std::uint64_t identity_of(const Chart& chart, const Chart::Transition& transition, std::uint8_t kind) noexcept {
   StateHash hash;
-  const auto add = [&](std::string_view text) {
-    hash.add(text.size());
-    for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
-  };
   hash.add(kind);
-  add(transition.on == no_event ? std::string_view{} : chart.events[static_cast<std::size_t>(transition.on)]);
-  add(transition.after_name);
+  hash.add(transition.on == no_event ? std::string_view{} : chart.events[static_cast<std::size_t>(transition.on)]);
+  hash.add(transition.after_name);
   hash.add(transition.after_s);
-  add(transition.why);
+  hash.add(transition.why);
   return hash.value();
 }
 
@@ -276,8 +273,8 @@ void ChartRunner::report_gone(const ChartRunner& old, const std::vector<bool>& g
     StateIndex around = old.active_[i];
     while (gone[around]) around = old.chart_.states[around].parent;
     const StateIndex stays = find_state(chart_, old.chart_.states[around]), initial = chart_.states[stays].initial;
-    sink_.transitioned(old.chart_.states[old.active_[i]].path,
-                       chart_.states[initial != no_state ? initial : stays].path, "reload");
+    voice_.transitioned(old.chart_.states[old.active_[i]].path,
+                        chart_.states[initial != no_state ? initial : stays].path, "reload");
   }
 }
 

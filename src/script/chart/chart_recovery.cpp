@@ -16,6 +16,7 @@
 #include "chart_runner.h"
 #include "script/bindings/bindings.h"
 #include "script/lua/lua_core.h"
+#include "script/lua/lua_state.h"
 
 namespace kadans {
 namespace {
@@ -23,6 +24,10 @@ namespace {
 constexpr double failure_instructions = 500;
 constexpr int failure_slot = EventQueue::places + 1;  // in RunnerTables::event_data
 constexpr std::int8_t failure_place = EventQueue::places;
+
+void tell_taken(ScriptVoice& voice, const ScriptError& error) noexcept {
+  voice.say_with(BehaviorLog::Severity::warning, ("error taken as an event: " + error.text()).c_str());
+}
 
 }  // namespace
 
@@ -130,7 +135,7 @@ void ChartRunner::recover(lua_State* state) {
     lua_pushstring(state, failure_.message.data());
     lua_error(state);
   }
-  sink_.recovered(failure_);
+  tell_taken(voice_, failure_);
   take_step(state);
   forget_data(state, event);
 }

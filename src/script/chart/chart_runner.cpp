@@ -1,11 +1,13 @@
 #include "chart_runner.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include <lua.hpp>
 
 #include "script/bindings/bindings.h"
 #include "script/lua/lua_core.h"
+#include "script/lua/lua_state.h"
 #include "script/motion/motion.h"
 #include "signal/byte_order.h"
 
@@ -15,12 +17,20 @@ namespace {
 constexpr std::size_t state_steps = 2;              // to look at a state for one transition
 constexpr int shown_slot = EventQueue::places + 2;  // in RunnerTables::event_data
 
+// What is told once.
+template <typename... Values>
+void warn(ScriptVoice& voice, const char* pattern, Values... values) noexcept {
+  char text[640];
+  std::snprintf(text, sizeof text, pattern, values...);
+  voice.say_with(BehaviorLog::Severity::warning, text);
+}
+
 }  // namespace
 
-ChartRunner::ChartRunner(Chart& chart, const RunnerTables& tables, TransitionSink& sink)
+ChartRunner::ChartRunner(Chart& chart, const RunnerTables& tables, ScriptVoice& voice)
     : chart_(chart),
       tables_(tables),
-      sink_(sink),
+      voice_(voice),
       run_(chart.states.size()),
       guards_(chart.transitions.size()),
       histories_(chart.states.size()),
@@ -201,12 +211,17 @@ void ChartRunner::drop_events(lua_State* state, std::uint32_t steps) {
   for (std::size_t i = 0; i < queue_.size(); ++i) unhandled_ += chart_.is_report(queue_[i].id) ? 0 : 1;
   if (steps == steps_max && !told_steps_) {
     const Chart::Transition& last = chart_.transitions[selected_.front()];
-    sink_.out_of_steps(chart_.states[last.source].chunk.c_str(), last.line);
+    warn(voice_,
+         "%.300s:%d: a tick took all %u steps, the last one by the transition here; further events were dropped. "
+         "Do events lead to each other? (told once)",
+         chart_.states[last.source].chunk.c_str(), last.line, steps_max);
     told_steps_ = true;
   }
   for (std::size_t i = 0; i < queue_.size() && steps < steps_max; ++i) {
     const auto id = static_cast<std::size_t>(queue_[i].id);
-    if (!told_[id] && !chart_.is_report(queue_[i].id)) sink_.event_dropped(chart_.events[id].c_str());
+    if (!told_[id] && !chart_.is_report(queue_[i].id))
+      warn(voice_, "event '%.200s' was dropped: no transition took it in its tick (told once)",
+           chart_.events[id].c_str());
     told_[id] = true;
   }
   for (std::size_t i = 0; i < queue_.size(); ++i) forget_data(state, queue_[i]);
@@ -425,7 +440,7 @@ void ChartRunner::report(lua_State* state, std::uint16_t number) noexcept {
   for (const StateIndex index : active_) {
     if (chart_.states[index].parent == from) from = index;
   }
-  sink_.transitioned(chart_.states[from].path, chart_.states[transition.target].path, transition.why);
+  voice_.transitioned(chart_.states[from].path, chart_.states[transition.target].path, transition.why);
   if (shown_.id == no_event) note_restless(state, transition, from);
 }
 
@@ -444,7 +459,11 @@ void ChartRunner::note_restless(lua_State* state, const Chart::Transition& trans
   entered.restless_ns = now_ns_;
   if (ticks < restless_ticks || told_restless_) return;
   told_restless_ = true;
-  sink_.restless(chart_.states[from], chart_.states[transition.target], transition.line, ticks);
+  warn(voice_,
+       "%.200s:%d: for %u ticks a state followed another at once, now '%.80s' after '%.80s': nothing takes "
+       "time. Should one wait, for a condition, an event or after > 0? (told once)",
+       chart_.states[from].chunk.c_str(), transition.line, ticks, chart_.states[transition.target].path.c_str(),
+       chart_.states[from].path.c_str());
 }
 
 StateIndex ChartRunner::innermost(StateIndex around) const noexcept {

@@ -39,6 +39,7 @@ namespace kadans {
 class ByteReader;
 class ByteWriter;
 struct Motion;
+class ScriptVoice;
 class StepMeter;
 
 // Registry references of the values that are passed to the chart's functions.
@@ -58,26 +59,13 @@ struct RunnerTables {
   int make_result = Chart::no_function;  // calls a function with m and s and copies what it returns
 };
 
-class TransitionSink {
- public:
-  virtual ~TransitionSink() = default;
-  virtual void transitioned(const std::string& from, const std::string& to, const std::string& why) noexcept = 0;
-  // Both are told once: no transition took this event in its tick; a tick took all its steps, the last one by the
-  // transition in this line.
-  virtual void event_dropped(const char* event) noexcept = 0;
-  virtual void out_of_steps(const char* chunk, int line) noexcept = 0;
-  // Told once: for so many ticks in a row states followed each other at once, these the last ones.
-  virtual void restless(const Chart::State& from, const Chart::State& to, int line, std::uint32_t ticks) noexcept = 0;
-  virtual void recovered(const ScriptError& error) noexcept = 0;  // a transition for "error" is taken
-};
-
 // Which of the state's functions this is, by its registry reference: "enter", "when"; "call": one of a call's values.
 const char* cause_of(const Chart& chart, StateIndex index, int function) noexcept;
 
 class ChartRunner {
  public:
   // Make it before the first tick. All references must outlive the runner.
-  ChartRunner(Chart& chart, const RunnerTables& tables, TransitionSink& sink);
+  ChartRunner(Chart& chart, const RunnerTables& tables, ScriptVoice& voice);
 
   static constexpr std::uint32_t steps_max = 16;
   static constexpr std::uint32_t restless_ticks =
@@ -110,7 +98,7 @@ class ChartRunner {
   void leave_marked(lua_State* state, const std::vector<bool>& marks, std::int64_t now_ns);
   // Which of its active states the other one has not active: a mark for each state.
   std::vector<bool> gone_from(const ChartRunner& other) const;
-  // Tells the sink which active states of the old runner are gone.
+  // Tells the voice which active states of the old runner are gone.
   void report_gone(const ChartRunner& old, const std::vector<bool>& gone) noexcept;
   // The next tick enters the states again that leave_marked() left.
   void enter_again(const std::vector<bool>& marks) noexcept;
@@ -260,7 +248,7 @@ class ChartRunner {
 
   Chart& chart_;  // learns names of events
   const RunnerTables& tables_;
-  TransitionSink& sink_;
+  ScriptVoice& voice_;
   std::vector<StateRun> run_;
   std::vector<StateIndex> active_;            // in document order
   std::vector<std::uint16_t> selected_;       // transitions

@@ -165,10 +165,7 @@ struct ArgumentCheck {
   Mistakes task_table(const ObjectInfo& object, const std::vector<Range>& ranges, std::size_t at) const {
     Mistakes problems;
     std::vector<std::string> words;
-    for (const Range& range : ranges) {
-      const TaskWord word = task_word(range.name);
-      words.push_back(word.group.empty() ? word.key : word.group);
-    }
+    for (const Range& range : ranges) words.emplace_back(task_word(range.name, true).outer().data());
     for (const std::size_t key : keys_of_table(tokens, at)) {
       const std::string& name = tokens[key].text;
       if (std::ranges::find(words, name) != words.end()) continue;

@@ -49,58 +49,51 @@ void look_at_file(lua_State* state, Looked& looked) {
   if (kind == NodeKind::behavior || kind == NodeKind::decisions) looked.found.kind = ScriptKind::behavior;
 }
 
-// expect(x).to_equal, k.play "file" { options }: what is written out.
-class TestCalls {
- public:
-  TestCalls(const LuaState::Source& source, const Behavior::Settings& settings, std::vector<InputProblem>& problems)
-      : source_(source), settings_(settings), problems_(problems), tokens_(lex_source(source.text)) {
-    tokens_.resize(tokens_.size() + 4, SourceToken{TokenKind::end, "", tokens_.back().line});
-  }
+// expect(x).to_equal; `at` is behind the call.
+Mistakes matcher_mistakes(const Tokens& tokens, std::size_t at) {
+  const std::vector<std::string> known(std::begin(test_matchers), std::end(test_matchers));
+  if (tokens[at].is(".") && tokens[at + 1].text == "never") at += 2;
+  const SourceToken& name = tokens[at + 1];
+  if (!tokens[at].is(".") || name.kind != TokenKind::name || std::ranges::find(known, name.text) != known.end())
+    return {};
+  return {{name.line, "expect(...) has no '" + name.text + "'" + hint_text(name.text, known)}};
+}
 
-  void run() {
-    for (std::size_t i = 0; tokens_[i].kind != TokenKind::end; ++i) {
-      if (tokens_[i].kind != TokenKind::name) continue;
-      const bool of_module = i > 0 && tokens_[i - 1].is(".");
-      if (tokens_[i].text == "expect" && tokens_[i + 1].is("(") && !of_module) matcher(end_of_call(tokens_, i + 2));
-      if (tokens_[i].text == "play" && of_module) played(i + 1);
-    }
+// k.play "file" { options }; `at` is behind the name.
+Mistakes play_mistakes(const Tokens& tokens, std::size_t at, const Behavior::Settings& settings) {
+  Mistakes found;
+  if (tokens[at].is("(")) ++at;
+  if (tokens[at].kind != TokenKind::text) return found;
+  const std::string& file = tokens[at].text;
+  std::error_code ignored;
+  if (!fs::exists(settings.file.parent_path() / file, ignored) && !fs::exists(settings.root / file, ignored))
+    found.push_back(
+        {tokens[at].line, "k.play: there is no " + file + " beside this file, nor from the project's root on"});
+  if (!tokens[at + 1].is(",") || !tokens[at + 2].is("{")) return found;
+  for (const std::size_t part : parts_of(tokens, at + 3)) {
+    const SourceToken& key = tokens[part];
+    if (key.kind == TokenKind::name && tokens[part + 1].is("=") && key.text != "robot" && key.text != "plant" &&
+        key.text != "scenario")
+      found.push_back({key.line, "k.play has no option '" + key.text + "'; there are: robot, plant, scenario"});
   }
+  return found;
+}
 
- private:
-  void problem(const SourceToken& at, const std::string& message) {
-    problems_.push_back({source_.chunk, at.line, 0, message});
+// What a test calls, as far as it is written out.
+void check_test_calls(const LuaState::Source& source, const Behavior::Settings& settings,
+                      std::vector<InputProblem>& problems) {
+  Tokens tokens = lex_source(source.text);
+  tokens.resize(tokens.size() + 4, SourceToken{TokenKind::end, "", tokens.back().line});
+  const auto tell = [&](const Mistakes& found) {
+    for (const SourceMistake& one : found) problems.push_back({source.chunk, one.line, 0, one.message});
+  };
+  for (std::size_t i = 0; tokens[i].kind != TokenKind::end; ++i) {
+    const bool of_module = i > 0 && tokens[i - 1].is(".");
+    if (tokens[i].is_name("expect") && tokens[i + 1].is("(") && !of_module)
+      tell(matcher_mistakes(tokens, end_of_call(tokens, i + 2)));
+    if (tokens[i].is_name("play") && of_module) tell(play_mistakes(tokens, i + 1, settings));
   }
-
-  void matcher(std::size_t at) {
-    const std::vector<std::string> known(std::begin(test_matchers), std::end(test_matchers));
-    if (tokens_[at].is(".") && tokens_[at + 1].text == "never") at += 2;
-    const SourceToken& name = tokens_[at + 1];
-    if (!tokens_[at].is(".") || name.kind != TokenKind::name || std::ranges::find(known, name.text) != known.end())
-      return;
-    problem(name, "expect(...) has no '" + name.text + "'" + hint_text(name.text, known));
-  }
-
-  void played(std::size_t at) {
-    if (tokens_[at].is("(")) ++at;
-    if (tokens_[at].kind != TokenKind::text) return;
-    const std::string& file = tokens_[at].text;
-    std::error_code ignored;
-    if (!fs::exists(settings_.file.parent_path() / file, ignored) && !fs::exists(settings_.root / file, ignored))
-      problem(tokens_[at], "k.play: there is no " + file + " beside this file, nor from the project's root on");
-    if (!tokens_[at + 1].is(",") || !tokens_[at + 2].is("{")) return;
-    for (const std::size_t part : parts_of(tokens_, at + 3)) {
-      const SourceToken& key = tokens_[part];
-      if (key.kind == TokenKind::name && tokens_[part + 1].is("=") && key.text != "robot" && key.text != "plant" &&
-          key.text != "scenario")
-        problem(key, "k.play has no option '" + key.text + "'; there are: robot, plant, scenario");
-    }
-  }
-
-  const LuaState::Source& source_;
-  const Behavior::Settings& settings_;
-  std::vector<InputProblem>& problems_;
-  Tokens tokens_;
-};
+}
 
 void check_loaded(Looked& looked) {
   Behavior::Parts& parts = looked.parts;
@@ -108,7 +101,7 @@ void check_loaded(Looked& looked) {
   const LuaState::Source& own = parts.lua->sources().front();
   check_sources(parts, problems);
   if (looked.found.kind == ScriptKind::test) {
-    TestCalls(own, parts.settings, problems).run();
+    check_test_calls(own, parts.settings, problems);
   } else if (looked.unfinished) {
     problems.push_back({own.chunk, 1, 0, "returns a k.behavior without its table: return k.behavior \"name\" { ... }"});
   } else if (!looked.returned) {

@@ -1,6 +1,6 @@
 // Finds states that follow each other for ever without taking time: by transitions without a condition, with `after =
 // 0`, with the same condition on all of them, or for events that the states emit when they are entered. What it cannot
-// see is told when it happens (ChartRunner, TransitionSink).
+// see is told when it happens (ChartRunner).
 #include <algorithm>
 #include <map>
 #include <optional>

@@ -20,15 +20,6 @@ std::string returned_name(const Tokens& tokens) {
   return named ? tokens[end - 1].text : "";
 }
 
-std::size_t end_of_bracket(const Tokens& tokens, std::size_t at) {
-  int depth = 0;
-  for (; tokens[at].kind != TokenKind::end; ++at) {
-    depth += tokens[at].is("[") ? 1 : tokens[at].is("]") ? -1 : 0;
-    if (depth == 0) break;
-  }
-  return at;
-}
-
 // Whether a function writes `name[computed] = ` or hands it to rawset.
 bool filled_while_it_runs(const Tokens& tokens, const std::string& name) {
   std::vector<bool> blocks;  // whether each is a function's
@@ -39,7 +30,7 @@ bool filled_while_it_runs(const Tokens& tokens, const std::string& name) {
     if (change < 0 && !blocks.empty()) blocks.pop_back();
     if (std::ranges::find(blocks, true) == blocks.end() || token.kind != TokenKind::name) continue;
     if (token.text == "rawset" && tokens[i + 2].text == name) return true;
-    if (token.text == name && tokens[i + 1].is("[") && tokens[end_of_bracket(tokens, i + 1) + 1].is("=")) return true;
+    if (token.text == name && tokens[i + 1].is("[") && tokens[end_of_block(tokens, i + 1) + 1].is("=")) return true;
   }
   return false;
 }
@@ -113,8 +104,8 @@ void check_guard_values(const std::vector<ReadSource>& read, const KnownNames& k
     }
     const auto chart = known.functions.find(one.source->chunk);
     if (chart == known.functions.end()) continue;
-    for (const auto& [at, keys] : chart->second) {  // all that begin there: which of them it is cannot be told
-      if (!keys.contains("when")) continue;
+    for (const auto& [at, begun] : chart->second) {  // all that begin there: which of them it is cannot be told
+      if (!begun.keys.contains("when")) continue;
       const int line = at;
       const auto begins = [line](const SourceFunction& function) { return function.line == line; };
       const auto returns = [&](const SourceFunction& function) { return begins(function) && function.returns_value; };
@@ -361,12 +352,15 @@ class SourceCheck {
                                           "' reports what happened to the behavior, it cannot be emitted: give the "
                                           "event another name");
     }
+    const bool pattern = Chart::is_pattern(tokens[at].text);
+    if (id != no_event && pattern)
+      return problem(tokens[at].line, "'" + tokens[at].text + "' stands for several events: emit one of them");
     if (id != no_event && parts_.chart.made_by_runner(id)) {
       return problem(tokens[at].line, "'" + tokens[at].text +
                                           "' says how a state or a run ended, it cannot be emitted: give the event "
                                           "another name");
     }
-    if (id != no_event || parts_.chart.any_pattern_takes(tokens[at].text)) return;
+    if (id != no_event || (!pattern && parts_.chart.any_pattern_takes(tokens[at].text))) return;
     problem(tokens[at].line, "nothing in this behavior waits for the event '" + tokens[at].text + "'" +
                                  hint_text(tokens[at].text, parts_.chart.events));
   }
@@ -402,8 +396,7 @@ void check_sources(Behavior::Parts& parts, std::vector<InputProblem>& problems) 
   std::vector<ReadSource> read;
   for (const LuaState::Source& source : parts.lua->sources()) {
     read.push_back({&source, SourceScopes(lex_source(source.text), read.size(), facts)});
-    if (!parts.chart.machines.empty())
-      read.back().scopes.know_functions(known.functions[source.chunk], known.acting[source.chunk]);
+    if (!parts.chart.machines.empty()) read.back().scopes.know_functions(known.functions[source.chunk]);
   }
   name_modules(read, *parts.lua, known, facts);
   std::vector<SourceScopes*> files;

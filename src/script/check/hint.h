@@ -59,4 +59,14 @@ Hint make_hint(lua_State* state, const char* wrong, Fill fill) {
   return hint;
 }
 
+// The one of this name. Raises: "unknown pose 'x', did you mean 'y'?".
+template <typename Named>
+const Named& check_named(lua_State* state, const std::vector<Named>& all, const char* name, const char* kind) {
+  const auto found = std::ranges::find(all, name, &Named::name);
+  if (found != all.end()) return *found;
+  const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(all); });
+  luaL_error(state, "unknown %s '%s'%s", kind, name, hint.data());
+  __builtin_unreachable();
+}
+
 }  // namespace kadans

@@ -72,8 +72,9 @@ void read_place(lua_State* state, int reference, const char* key, std::size_t of
   lua_Debug function;
   lua_rawgeti(state, LUA_REGISTRYINDEX, reference);
   if (lua_getinfo(state, ">S", &function) == 0 || function.source[0] != '@') return;
-  known.functions[function.source + 1][function.linedefined].insert(key);
-  known.acting[function.source + 1][function.linedefined].insert(static_cast<StateIndex>(of));
+  auto& [keys, states] = known.functions[function.source + 1][function.linedefined];
+  keys.insert(key);
+  states.insert(static_cast<StateIndex>(of));
 }
 
 void read_functions(lua_State* state, const Chart& chart, KnownNames& known) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "script/behavior/behavior_parts.h"
+#include "source_scopes.h"
 
 namespace kadans {
 
@@ -26,9 +27,7 @@ struct KnownNames {
   std::map<std::string, Shape> modules;  // the author's, by their names in `require`; one that is no table is open
   // Fields that are assigned to tables of unknown owner; they may belong to any module.
   std::set<std::string> given_somewhere;
-  // The keys ("enter", "when" ...) of the chart's functions, by file and by the line where the function begins.
-  std::map<std::string, std::map<int, std::set<std::string>>> functions;
-  std::map<std::string, std::map<int, std::set<StateIndex>>> acting;  // the states whose functions these are
+  std::map<std::string, SourceScopes::ChartLines> functions;  // of the chart, by file
 };
 
 // `parts` is a loaded behavior or a module. For a module `m` and `s` are open, because its users are unknown.

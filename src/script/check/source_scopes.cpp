@@ -412,7 +412,6 @@ std::size_t SourceScopes::function_at(std::size_t start) {
   function.returns = 0;
   function.in_chart = !chart_ || chart_->contains(function.line);
   call_by_chart(start);
-  give_states(start);
   if (start >= 2 && tokens_[start - 1].is("=") && is_key(start - 2)) {
     function.literal = function.in_chart && is_at_once(tokens_[start - 2].text);
     give_key(tokens_[start - 2].text, {file_, start});
@@ -456,21 +455,17 @@ SourceMeaning SourceScopes::name_function(std::size_t start) {
   return holder;
 }
 
-// A function of the chart, however it came there, is known by its line, unless more of them begin in it.
-void SourceScopes::call_by_chart(std::size_t function) {
-  const int line = tokens_[function].line;
-  if (!chart_ || functions_by_line_[line] != 1) return;
-  const auto found = chart_->find(line);
-  if (found == chart_->end()) return;
-  for (const std::string& key : found->second) give_key(key, {file_, function});
-}
-
-// The states of the functions that begin in its line. Where several begin there, it must be one state.
-void SourceScopes::give_states(std::size_t function) {
-  const int line = tokens_[function].line;
-  const auto found = states_.find(line);
-  if (found == states_.end() || (functions_by_line_[line] != 1 && found->second.size() != 1)) return;
-  this->function(function).states.insert(found->second.begin(), found->second.end());
+// A function of the chart, however it came there, is known by its line. Where several begin there, its key is not, and
+// its state is when they all have one.
+void SourceScopes::call_by_chart(std::size_t start) {
+  const int line = tokens_[start].line;
+  if (!chart_ || !chart_->contains(line)) return;
+  const auto& [keys, states] = chart_->at(line);
+  const bool alone = functions_by_line_[line] == 1;
+  for (const std::string& key : keys) {
+    if (alone) give_key(key, {file_, start});
+  }
+  if (alone || states.size() == 1) function(start).states.insert(states.begin(), states.end());
 }
 
 std::size_t SourceScopes::local_at(std::size_t at) {

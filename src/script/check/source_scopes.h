@@ -147,18 +147,18 @@ using SourceListener = std::function<void(const SourceUse& use, const Tokens& to
 
 class SourceScopes {
  public:
-  // The keys ("enter", "when" ...) of the chart's functions, by the line where the function begins.
-  using ChartFunctions = std::map<int, std::set<std::string>>;
-  using ChartStates = std::map<int, std::set<std::uint16_t>>;  // the states whose functions these are
+  // The functions of the chart that begin in a line: their keys ("enter", "when" ...), and the states whose they are.
+  struct ChartLine {
+    std::set<std::string> keys;
+    std::set<std::uint16_t> states;
+  };
+  using ChartLines = std::map<int, ChartLine>;
 
   // `file` is its number among the files that share `facts`. `facts` must outlive this object.
   SourceScopes(Tokens tokens, std::size_t file, SourceFacts& facts);
   // Gives the functions of the chart: only these are guards, end within their tick, or get `m` and `s`. Without this
   // call, every function counts as what its key says.
-  void know_functions(ChartFunctions chart, ChartStates states) {
-    chart_ = std::move(chart);
-    states_ = std::move(states);
-  }
+  void know_functions(ChartLines chart) { chart_ = std::move(chart); }
   // Reads the file once and adds to the facts.
   void read() { walk({}); }
   void tell(const SourceListener& listener) { walk(listener); }
@@ -186,8 +186,7 @@ class SourceScopes {
   void return_at(std::size_t at);
   std::size_t function_at(std::size_t at);
   SourceMeaning name_function(std::size_t start);
-  void call_by_chart(std::size_t function);
-  void give_states(std::size_t function);
+  void call_by_chart(std::size_t start);
   std::size_t local_at(std::size_t at);
   std::size_t for_at(std::size_t at);
   std::size_t name_at(std::size_t at);
@@ -217,8 +216,7 @@ class SourceScopes {
   Tokens tokens_;
   std::size_t file_ = 0;
   SourceFacts* facts_;
-  std::optional<ChartFunctions> chart_;
-  ChartStates states_;
+  std::optional<ChartLines> chart_;
   std::map<int, int> functions_by_line_;  // number of functions that begin on each line
   std::vector<Block> blocks_;
   std::vector<Braces> braces_;

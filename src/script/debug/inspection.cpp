@@ -136,10 +136,7 @@ const char* Inspection::push_local(const Spot& spot, int number) {
 // [-0 +1 when true] vars or args of the machine that the state is in.
 bool Inspection::push_machine_field(StateIndex state, const char* field) {
   const Behavior::Parts& parts = behavior_.parts();
-  lua_rawgeti(lua_, LUA_REGISTRYINDEX, parts.tables.machines[parts.chart.states[state].machine].content);
-  lua_pushstring(lua_, field);
-  lua_rawget(lua_, -2);
-  lua_remove(lua_, -2);
+  push_entry(lua_, parts.tables.machines[parts.chart.states[state].machine].content, field);
   if (lua_istable(lua_, -1)) return true;
   lua_pop(lua_, 1);
   return false;

@@ -15,15 +15,15 @@
 
 namespace kadans {
 
+class ByteReader;
+class ByteWriter;
+
 // The motions that behaviors have started: for each set-point its target and its time of arrival, by the behaviors'
 // clock. They are taken from the committed transactions, so the robot can be halted without the help of any behavior.
 //
 // A velocity set-point that is not zero, and a trapezoid without a duration, count as under way until another command
 // replaces them. This is harmless: to stop a joint that rests, or to send it where it is, has no effect. Behavior
 // thread only.
-class ByteReader;
-class ByteWriter;
-
 class MotionsUnderWay {
  public:
   explicit MotionsUnderWay(const Catalog& catalog);  // `catalog` must outlive it

@@ -110,9 +110,10 @@ bool Budget::out_of_time() noexcept {
 }
 
 bool Budget::time_is_over() noexcept {
-  if (inputs_ == nullptr || *inputs_ == nullptr) return out_of_time();
+  BehaviorInputs* const inputs = limits_.inputs_now();
+  if (inputs == nullptr) return out_of_time();
   const auto over = [](void* self) noexcept { return static_cast<Budget*>(self)->out_of_time(); };
-  return (*inputs_)->time_is_over(over, this);
+  return inputs->time_is_over(over, this);
 }
 
 bool Budget::interrupted() noexcept {

@@ -41,14 +41,31 @@ class LineWatch {
 // interrupt_scripts(false).
 void interrupt_scripts(bool yes = true) noexcept;
 
+// What one playing behavior may use. Instructions are those of the Lua interpreter, counted in steps of a thousand; a
+// library call is charged in proportion to its work. Time is that of the wall clock, without the time in which the
+// machine ran other threads.
+struct ScriptLimits {
+  std::uint64_t tick_instructions = 200'000;
+  std::uint64_t load_instructions = 5'000'000;
+  std::uint64_t reload_instructions = 1'000'000;  // fewer, because all behaviors stand still meanwhile
+  std::int64_t tick_wall_ns = 0;                  // 0: no limit; so on a virtual clock, where a run repeats bit for bit
+  std::int64_t load_wall_ns = 0;                  // the same for loading or reloading a file
+  std::size_t memory_bytes = std::size_t{4} << 20;
+  std::size_t block_bytes = std::size_t{576} << 10;  // of one string or one table's array; the deepest stack fits
+  // Of a run that is recorded or repeated: whoever does that then says whether time is over, and what a parameter is.
+  BehaviorInputs* const* inputs = nullptr;
+  LineWatch* const* watch = nullptr;  // of a run that is debugged: hears of lines and errors
+
+  BehaviorInputs* inputs_now() const noexcept { return inputs != nullptr ? *inputs : nullptr; }
+  LineWatch* watch_now() const noexcept { return watch != nullptr ? *watch : nullptr; }
+};
+
 class Budget {
  public:
-  Budget(LuaHeap& heap, ScriptError& error) noexcept : heap_(heap), error_(error) {}
-  // Whether time is over is then said by whoever records or repeats the run, while there is one.
-  void ask(BehaviorInputs* const* inputs) noexcept { inputs_ = inputs; }
-  // A debugger hears of lines and errors, while there is one.
-  void tell_lines_to(LineWatch* const* watch) noexcept { watch_ = watch; }
-  LineWatch* watch() const noexcept { return watch_ != nullptr ? *watch_ : nullptr; }
+  // The references must outlive it.
+  Budget(LuaHeap& heap, ScriptError& error, const ScriptLimits& limits) noexcept
+      : heap_(heap), error_(error), limits_(limits) {}
+  LineWatch* watch() const noexcept { return limits_.watch_now(); }
 
   // Begins a new count. wall_ns 0: no limit of time.
   void begin(lua_State* state, std::uint64_t instructions, std::int64_t wall_ns) noexcept;
@@ -81,8 +98,7 @@ class Budget {
 
   LuaHeap& heap_;
   ScriptError& error_;
-  BehaviorInputs* const* inputs_ = nullptr;
-  LineWatch* const* watch_ = nullptr;
+  const ScriptLimits& limits_;
   std::uint64_t limit_ = 0, spent_ = 0;
   std::uint64_t charged_ = 0;  // since the last look at the clock
   int interval_ = 1;           // instructions from hook to hook
@@ -90,21 +106,6 @@ class Budget {
   std::int64_t look_ns_ = 0;         // on the wall clock: when to look at the thread's clock
   std::int64_t thread_end_ns_ = 0;   // on the thread's clock; 0: not looked at yet
   std::int64_t interrupted_ns_ = 0;  // on the wall clock: when the interruption was first seen; 0: not yet
-};
-
-// What one playing behavior may use. Instructions are those of the Lua interpreter, counted in steps of a thousand; a
-// library call is charged in proportion to its work. Time is that of the wall clock, without the time in which the
-// machine ran other threads.
-struct ScriptLimits {
-  std::uint64_t tick_instructions = 200'000;
-  std::uint64_t load_instructions = 5'000'000;
-  std::uint64_t reload_instructions = 1'000'000;  // fewer, because all behaviors stand still meanwhile
-  std::int64_t tick_wall_ns = 0;                  // 0: no limit; so on a virtual clock, where a run repeats bit for bit
-  std::int64_t load_wall_ns = 0;                  // the same for loading or reloading a file
-  std::size_t memory_bytes = std::size_t{4} << 20;
-  std::size_t block_bytes = std::size_t{576} << 10;  // of one string or one table's array; the deepest stack fits
-  BehaviorInputs* const* inputs = nullptr;           // of a run that is recorded or repeated: see Budget::ask
-  LineWatch* const* watch = nullptr;                 // of a run that is debugged
 };
 
 }  // namespace kadans

@@ -20,8 +20,9 @@ class LuaState;
 
 struct LuaCore {
   LuaHeap heap;
+  const ScriptLimits& limits;
   ScriptError error{};
-  Budget budget{heap, error};
+  Budget budget{heap, error, limits};
   RandomStream random;
   TableSlots slots{};
   std::deque<ScriptParameter> parameters{};
@@ -44,10 +45,16 @@ inline LuaCore& core_of(lua_State* state) noexcept {
   return *static_cast<LuaCore*>(core);
 }
 
-// [-0 +1] Pushes entry `at` of the table that a registry reference stands for.
+// [-0 +1] Pushes an entry of the table that a registry reference stands for.
 inline void push_entry(lua_State* state, int table, int at) {
   lua_rawgeti(state, LUA_REGISTRYINDEX, table);
   lua_rawgeti(state, -1, at);
+  lua_remove(state, -2);
+}
+inline void push_entry(lua_State* state, int table, const char* key) {
+  lua_rawgeti(state, LUA_REGISTRYINDEX, table);
+  lua_pushstring(state, key);
+  lua_rawget(state, -2);
   lua_remove(state, -2);
 }
 // [-1 +0] Gives it the value at the top of the stack.

@@ -1,7 +1,6 @@
 #include "lua_state.h"
 
 #include <algorithm>
-#include <cctype>
 #include <climits>
 #include <new>
 
@@ -91,13 +90,12 @@ int open(lua_State* state) {
 LuaState::LuaState(Settings settings)
     : settings_(std::move(settings)),
       core_(new LuaCore{.heap = LuaHeap(settings_.limits.memory_bytes, settings_.limits.block_bytes),
+                        .limits = settings_.limits,
                         .random = RandomStream(settings_.seed, "script." + settings_.name)}) {
   core_->owner = this;
   lua_ = lua_newstate(allocate, core_.get());
   if (lua_ == nullptr) throw std::bad_alloc();
   core_->main = lua_;
-  core_->budget.ask(settings_.limits.inputs);
-  core_->budget.tell_lines_to(settings_.limits.watch);
   core_->heap.for_ticks(false);
   luaJIT_setmode(lua_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   lua_gc(lua_, LUA_GCSTOP, 0);
@@ -149,8 +147,8 @@ bool LuaState::load_file(lua_State* state, const std::filesystem::path& path) {
   const std::string chunk = "@" + source.chunk;
   try {
     source.text = read_input_file(path, source_bytes_max);
-    if (BehaviorInputs* const* inputs = settings_.limits.inputs; inputs != nullptr && *inputs != nullptr)
-      (*inputs)->file_read(path.string(), source.text);
+    if (BehaviorInputs* const inputs = settings_.limits.inputs_now(); inputs != nullptr)
+      inputs->file_read(path.string(), source.text);
   } catch (const InputError& error) {
     lua_pushfstring(state, "%s:1: %s", source.chunk.c_str(), error.problems().front().message.c_str());
     return false;
@@ -200,37 +198,30 @@ std::vector<std::string> LuaState::module_names() const {
   return names;
 }
 
-std::string_view LuaState::line_text(std::string_view chunk, int line) const noexcept {
+std::string_view LuaState::text_of(std::string_view chunk) const noexcept {
   const auto source = std::ranges::find(sources_, chunk, &Source::chunk);
-  return source == sources_.end() ? std::string_view{} : line_of_text(source->text, line);
+  return source == sources_.end() ? std::string_view{} : source->text;
+}
+
+std::string_view LuaState::line_text(std::string_view chunk, int line) const noexcept {
+  return line_of_text(text_of(chunk), line);
 }
 
 int LuaState::line_of(std::string_view chunk, int from, std::string_view text) const {
-  for (const Source& source : sources_) {
-    if (source.chunk != chunk) continue;
-    const std::string& all = source.text;
-    std::size_t start = 0;
-    for (int line = 1; line < from && start != std::string::npos; ++line) {
-      start = all.find('\n', start);
-      if (start != std::string::npos) ++start;
-    }
-    const auto word = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
-    for (std::size_t at = all.find(text, start); at != std::string::npos; at = all.find(text, at + 1)) {
-      const std::size_t end = at + text.size();
-      if ((at > 0 && word(all[at - 1])) || (end < all.size() && word(all[end]))) continue;
-      return from + static_cast<int>(std::count(all.begin() + static_cast<std::ptrdiff_t>(start),
-                                                all.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
-    }
+  const std::string_view all = text_of(chunk);
+  const char* const first = line_of_text(all, from).data();  // nullptr: there is no such line
+  const std::size_t start = first == nullptr ? std::string_view::npos : static_cast<std::size_t>(first - all.data());
+  for (std::size_t at = all.find(text, start); at != std::string_view::npos; at = all.find(text, at + 1)) {
+    const std::size_t end = at + text.size();
+    if ((at > 0 && in_name(all[at - 1])) || (end < all.size() && in_name(all[end]))) continue;
+    return from + static_cast<int>(std::ranges::count(all.substr(start, at - start), '\n'));
   }
   return from;
 }
 
 double LuaState::search_instructions(std::string_view chunk) const noexcept {
   constexpr double bytes_per_instruction = 32;
-  for (const Source& source : sources_) {
-    if (source.chunk == chunk) return static_cast<double>(source.text.size()) / bytes_per_instruction;
-  }
-  return 0;
+  return static_cast<double>(text_of(chunk).size()) / bytes_per_instruction;
 }
 
 void LuaState::collect() noexcept {

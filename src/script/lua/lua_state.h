@@ -22,11 +22,13 @@ namespace kadans {
 
 struct LuaCore;
 
-// Takes the lines that scripts print.
+// Takes the lines that scripts print, what their charts have to tell, and their transitions.
 class ScriptVoice {
  public:
   virtual ~ScriptVoice() = default;
   virtual void say_with(BehaviorLog::Severity severity, const char* text) noexcept = 0;
+  virtual void transitioned(const std::string& /*from*/, const std::string& /*to*/,
+                            const std::string& /*why*/) noexcept {}
 };
 
 class LuaState {
@@ -92,6 +94,7 @@ class LuaState {
   std::size_t used_bytes() const noexcept;
 
  private:
+  std::string_view text_of(std::string_view chunk) const noexcept;  // "": there is no such file
   static void* argument_of(lua_State* state) noexcept;
   [[noreturn]] void throw_error() const;
   void collect_in_time(int kB) noexcept;

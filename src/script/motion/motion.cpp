@@ -38,9 +38,7 @@ int cancel(lua_State* state) {
   observe(*motion, *bindings.snapshot, bindings.now_ns);
   if (motion->over()) return lua_pushboolean(state, 1), 1;
   for (std::uint32_t i = 0; i < motion->count; ++i) {
-    if (!bindings.send({.kind = CommandKind::cancel_motion, .index = motion->setpoints()[i]})) {
-      return lua_pushnil(state), lua_pushliteral(state, "queue_full"), 2;
-    }
+    if (!bindings.send({.kind = CommandKind::cancel_motion, .index = motion->setpoints()[i]})) return queue_full(state);
   }
   bindings.note_cancelled(*motion);
   return lua_pushboolean(state, 1), 1;

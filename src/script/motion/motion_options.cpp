@@ -25,16 +25,8 @@ std::optional<SetpointId> position_setpoint(const Catalog& catalog, const Object
 
 void named_pose(lua_State* state, const ObjectInfo& object, const char* name, MotionTargets& targets) {
   const Catalog& catalog = *bindings_of(state).catalog;
-  const PoseInfo* pose = nullptr;
-  for (const PoseInfo& candidate : catalog.poses) {
-    if (candidate.name == name) pose = &candidate;
-  }
-  if (pose == nullptr) {
-    const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(catalog.poses); });
-    luaL_error(state, "unknown pose '%s'%s", name, hint.data());
-  }
-  for (const auto& [joint, position_rad] :
-       pose->position_rad) {  // nothing for a joint that another object moves, or none
+  const PoseInfo& pose = check_named(state, catalog.poses, name, "pose");
+  for (const auto& [joint, position_rad] : pose.position_rad) {  // some joints are another object's, or nobody's
     if (const auto id = position_setpoint(catalog, object, joint)) targets.add(*id, position_rad);
   }
   if (targets.count == 0) luaL_error(state, "pose '%s' holds no joint of '%s'", name, object.name.c_str());

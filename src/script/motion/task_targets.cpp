@@ -15,40 +15,10 @@ namespace kadans {
 namespace {
 
 constexpr std::string_view position_ending = ".position_rad", contact_group = "contact.";
-using Word = std::array<char, 64>;
-
-// As TaskWord, without the heap: Lua may raise while it lives.
-struct PlainWord {
-  Word group{}, key{};
-  int axis = 0;
-};
-
-PlainWord plain_word(std::string_view name, bool of_joint) noexcept {
-  PlainWord word;
-  if (of_joint && name.ends_with(position_ending)) {
-    put_text(word.key, name.substr(0, name.size() - position_ending.size()));
-    return word;
-  }
-  if (const std::size_t dot = name.find('.'); dot != std::string_view::npos) {
-    put_text(word.group, name.substr(0, dot));
-    name.remove_prefix(dot + 1);
-  }
-  put_text(word.key, name);
-  const std::size_t unit = name.rfind('_');
-  if (unit == std::string_view::npos || unit < 2 || name[unit - 2] != '_') return word;
-  const char axis = name[unit - 1];
-  if (axis < 'x' || axis > 'z') return word;
-  word.axis = axis - 'x' + 1;
-  put_text(word.key, name.substr(0, unit - 2));
-  const std::size_t begun = std::strlen(word.key.data());
-  name.remove_prefix(unit);
-  std::copy_n(name.data(), std::min(name.size(), word.key.size() - 1 - begun), word.key.data() + begun);
-  return word;
-}
 
 bool of_joint(const Setpoint& setpoint) noexcept { return setpoint.joint != no_joint; }
 
-double number_on_top(lua_State* state, const PlainWord& word) {
+double number_on_top(lua_State* state, const TaskWord& word) {
   if (lua_type(state, -1) != LUA_TNUMBER)
     luaL_error(state, "%s%s%s must be a number, not a %s", word.group.data(), word.group[0] != '\0' ? "." : "",
                word.key.data(), luaL_typename(state, -1));
@@ -67,7 +37,7 @@ void check_list(lua_State* state, const char* name) {
 }
 
 // The value of this word in the table at `index`, if it has one. Keeps the stack.
-bool find_value(lua_State* state, int index, const PlainWord& word, double& value) {
+bool find_value(lua_State* state, int index, const TaskWord& word, double& value) {
   const int top = lua_gettop(state);
   lua_pushvalue(state, index);
   if (word.group[0] != '\0') {
@@ -92,16 +62,16 @@ bool find_value(lua_State* state, int index, const PlainWord& word, double& valu
 // Raises on a key that is no word of the object's: of the table at `index`, or, with a group, of that group's.
 void check_words(lua_State* state, int index, const ObjectInfo& object, const char* group) {
   const Catalog& catalog = *bindings_of(state).catalog;
-  std::array<Word, 2 * max_joints> words{};
+  std::array<TaskWord::Text, 2 * max_joints> words{};
   std::array<const char*, 2 * max_joints + 1> names{};
   std::size_t count = 0;
   for (const SetpointId id : object.setpoints) {
     const Setpoint& setpoint = catalog.setpoints[id];
-    const PlainWord word = plain_word(short_name(object, setpoint.name), of_joint(setpoint));
+    const TaskWord word = task_word(short_name(object, setpoint.name), of_joint(setpoint));
     if (group != nullptr && std::strcmp(group, word.group.data()) != 0) continue;
-    const Word& own = group == nullptr && word.group[0] != '\0' ? word.group : word.key;
+    const TaskWord::Text& own = group == nullptr ? word.outer() : word.key;
     const bool known = std::any_of(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(count),
-                                   [&](const Word& other) { return other == own; });
+                                   [&](const TaskWord::Text& other) { return other == own; });
     if (known || count == words.size()) continue;
     words[count] = own;
     names[count] = words[count].data();
@@ -111,7 +81,7 @@ void check_words(lua_State* state, int index, const ObjectInfo& object, const ch
 }
 
 // The table of this group, if it is given.
-void check_group(lua_State* state, int index, const ObjectInfo& object, const Word& group) {
+void check_group(lua_State* state, int index, const ObjectInfo& object, const TaskWord::Text& group) {
   if (group[0] == '\0') return;
   lua_getfield(state, index, group.data());
   if (lua_istable(state, -1)) check_words(state, lua_gettop(state), object, group.data());
@@ -120,9 +90,27 @@ void check_group(lua_State* state, int index, const ObjectInfo& object, const Wo
 
 }  // namespace
 
-TaskWord task_word(const std::string& short_name) {
-  const PlainWord word = plain_word(short_name, short_name.ends_with(position_ending));
-  return {word.group.data(), word.key.data(), word.axis};
+TaskWord task_word(std::string_view name, bool of_joint) noexcept {
+  TaskWord word;
+  if (of_joint && name.ends_with(position_ending)) {
+    put_text(word.key, name.substr(0, name.size() - position_ending.size()));
+    return word;
+  }
+  if (const std::size_t dot = name.find('.'); dot != std::string_view::npos) {
+    put_text(word.group, name.substr(0, dot));
+    name.remove_prefix(dot + 1);
+  }
+  put_text(word.key, name);
+  const std::size_t unit = name.rfind('_');
+  if (unit == std::string_view::npos || unit < 2 || name[unit - 2] != '_') return word;
+  const char axis = name[unit - 1];
+  if (axis < 'x' || axis > 'z') return word;
+  word.axis = axis - 'x' + 1;
+  put_text(word.key, name.substr(0, unit - 2));
+  const std::size_t begun = std::strlen(word.key.data());
+  name.remove_prefix(unit);
+  std::copy_n(name.data(), std::min(name.size(), word.key.size() - 1 - begun), word.key.data() + begun);
+  return word;
 }
 
 bool has_tasks(const Catalog& catalog, const ObjectInfo& object) noexcept {
@@ -133,10 +121,10 @@ void read_tasks(lua_State* state, int index, const ObjectInfo& object, const cha
   const Catalog& catalog = *bindings_of(state).catalog;
   targets.count = 0;
   check_words(state, index, object, nullptr);
-  Word group{};
+  TaskWord::Text group{};
   for (const SetpointId id : object.setpoints) {  // in the object's order, so that every run sends the same
     const Setpoint& setpoint = catalog.setpoints[id];
-    const PlainWord word = plain_word(short_name(object, setpoint.name), of_joint(setpoint));
+    const TaskWord word = task_word(short_name(object, setpoint.name), of_joint(setpoint));
     if (word.group != group) check_group(state, index, object, group = word.group);
     double value = 0;
     if (!find_value(state, index, word, value)) continue;

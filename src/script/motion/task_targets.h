@@ -7,7 +7,8 @@
 // position_rad is the joint's name alone. What is left out, or nil, stays as it is.
 #pragma once
 
-#include <string>
+#include <array>
+#include <string_view>
 
 #include <lua.hpp>
 
@@ -15,13 +16,17 @@
 
 namespace kadans {
 
+// Without the heap: Lua may raise while it lives.
 struct TaskWord {
-  std::string group;  // "" without one
-  std::string key;
+  using Text = std::array<char, 64>;
+  Text group{};  // "" without one
+  Text key{};
   int axis = 0;  // 1, 2, 3: component of a vector; 0: a number
+
+  const Text& outer() const noexcept { return group[0] != '\0' ? group : key; }  // what stands in the table of tasks
 };
 // Of a set-point's name without its object's.
-TaskWord task_word(const std::string& short_name);
+TaskWord task_word(std::string_view short_name, bool of_joint) noexcept;
 
 // Whether it has set-points that belong to no joint.
 bool has_tasks(const Catalog& catalog, const ObjectInfo& object) noexcept;

@@ -3,26 +3,17 @@
 #include "kadans/signal/state_hash.h"
 
 namespace kadans {
-namespace {
-
-void add(StateHash& hash, std::string_view text) {
-  hash.add(text.size());
-  for (const char letter : text) hash.add(static_cast<unsigned char>(letter));
-}
-
-}  // namespace
-
 std::uint64_t fingerprint_of(const Catalog& catalog) {
   StateHash hash;
   for (ParameterId id = 0; id < catalog.parameters.size(); ++id) {
     const Parameter& parameter = catalog.parameters.info(id);
-    add(hash, parameter.name);
+    hash.add(parameter.name);
     hash.add(parameter.min);
     hash.add(parameter.max);
   }
   for (SetpointId id = 0; id < catalog.setpoints.size(); ++id) {
     const Setpoint& setpoint = catalog.setpoints[id];
-    add(hash, setpoint.name);
+    hash.add(setpoint.name);
     hash.add(setpoint.min);
     hash.add(setpoint.max);
     hash.add(setpoint.owner);
@@ -30,21 +21,21 @@ std::uint64_t fingerprint_of(const Catalog& catalog) {
     hash.add(setpoint.follows);
   }
   for (const ObjectInfo& object : catalog.objects) {
-    add(hash, object.name);
+    hash.add(object.name);
     for (const Preset& preset : object.presets) {
-      add(hash, preset.name);
+      hash.add(preset.name);
       for (const auto& value : preset.values) hash.add(value.first), hash.add(value.second);
     }
   }
   for (const ControlSetInfo& set : catalog.sets) {
-    add(hash, set.name);
+    hash.add(set.name);
     for (const std::uint32_t object : set.objects) hash.add(object);
   }
   for (const PoseInfo& pose : catalog.poses) {
-    add(hash, pose.name);
+    hash.add(pose.name);
     for (const auto& position : pose.position_rad) hash.add(position.first), hash.add(position.second);
   }
-  for (const Joint& joint : catalog.model->joints) add(hash, joint.name);
+  for (const Joint& joint : catalog.model->joints) hash.add(joint.name);
   hash.add(catalog.initial_sets);
   return hash.value();
 }

@@ -6,7 +6,7 @@
 // writes its answer, writes the request's number into it last of all, and rings (exchange/turn.h). As long as both keep
 // the rules, nothing is written and read at the same time, and an unfinished answer does not count. The runtime does
 // not rely on the rules: it never reads back what it wrote itself, and it copies what the process wrote before it uses
-// it (ChildAnswer). For this reason the snapshot goes through plain memory and not through Latest, whose writer
+// it (ProcessHost). For this reason the snapshot goes through plain memory and not through Latest, whose writer
 // keeps the index of its slot beside the slots.
 //
 // Trivially copyable, without pointers. Both sides run the same program, so the layout is the same.

@@ -51,159 +51,21 @@ std::uint64_t hash_of_kept(const std::byte* bytes, std::size_t size) noexcept {
   return hash.value();
 }
 
-ChildAnswer::ChildAnswer() {
-  bytes_.reserve(decltype(BehaviorLink::lines)::capacity());
-  commands_.reserve(CommandQueue::capacity());
-}
-
-bool ChildAnswer::is_ready(BehaviorLink& link) noexcept { return link.ready.is.given() == 1; }
-std::uint64_t ChildAnswer::fingerprint(BehaviorLink& link) noexcept { return copy_of(link.ready.fingerprint); }
-
-bool ChildAnswer::answers(BehaviorLink& link, std::uint32_t number) noexcept {
-  return link.answer.number.given() == number;
-}
-
-std::optional<std::vector<std::string>> ChildAnswer::names(BehaviorLink& link) {
-  const std::uint32_t count = once(link.ready.count);
-  if (count > BehaviorLink::behaviors_max) return std::nullopt;
-  std::vector<std::string> all;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const BehaviorLink::Name name = copy_of(link.ready.names[i]);
-    const auto end = std::ranges::find(name, '\0');
-    all.emplace_back(name.begin(), end);
-    if (end == name.end() || !is_name(all.back())) return std::nullopt;
-  }
-  return all;
-}
-
-std::vector<std::string> ChildAnswer::regions(BehaviorLink& link, std::size_t behavior) {
-  std::vector<std::string> paths;
-  for (BehaviorLink::RegionPath& written : link.ready.regions[behavior]) {
-    const BehaviorLink::RegionPath path = copy_of(written);
-    const auto end = std::ranges::find(path, '\0');
-    const std::string text(path.begin(), end);
-    const bool taken = std::ranges::find(paths, text) != paths.end();
-    if (end == path.end() || taken || !BehaviorStatus::is_region_path(text)) break;
-    paths.push_back(text);
-  }
-  return paths;
-}
-
-bool ChildAnswer::take_commands(BehaviorLink& link) {
-  const std::size_t waiting = link.commands.size();
-  commands_.clear();
-  if (waiting > CommandQueue::capacity()) return false;
-  for (std::size_t i = 0; i < waiting; ++i) commands_.push_back(copy_of(link.commands.peek(i)));
-  link.commands.drop(waiting);
-  for (std::size_t at = 0, count = 0; at < waiting; at += count + 1) {
-    count = commands_[at].count;
-    const bool whole =
-        commands_[at].kind == CommandKind::transaction && count > 0 && count < max_transaction && count < waiting - at;
-    if (!whole) return false;
-    for (std::size_t i = 1; i <= count; ++i) {
-      if (commands_[at + i].kind == CommandKind::order_drive) return false;  // drives are no behavior's to order
-    }
-  }
-  return true;
-}
-
-void ChildAnswer::send_on(CommandSender& commands, std::int64_t time_ns) const noexcept {
-  for (std::size_t at = 0; at < commands_.size(); at += commands_[at].count + 1) {
-    commands.begin(time_ns);
-    for (std::size_t i = 1; i <= commands_[at].count; ++i) (void)commands.add(commands_[at + i]);
-    (void)commands.commit();
-  }
-}
-
-bool ChildAnswer::tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t time_ns, bool counts) {
-  const std::size_t waiting = link.lines.size();
-  if (waiting > link.lines.capacity()) return false;
-  bytes_.resize(waiting);
-  for (std::size_t i = 0; i < waiting; ++i) bytes_[i] = link.lines.peek(i);
-  std::atomic_signal_fence(std::memory_order_seq_cst);
-  link.lines.drop(waiting);
-  ByteReader lines(bytes_);
-  while (lines.left() > 0) {
-    const auto line = lines.take_bytes(lines.take<std::uint32_t>());
-    if (!lines.ok()) return false;
-    if ((counts || is_said(line)) && !tell_line(line, log, time_ns)) return false;
-  }
-  return true;
-}
-
-bool ChildAnswer::tell_line(std::span<const std::byte> line, BehaviorLog& log, std::int64_t time_ns) {
-  ByteReader told(line);
-  if (!take_told(told, time_ns, event_)) return false;
-  event_.say_to(log);
-  return true;
-}
-
-void ChildAnswer::copy(std::span<const std::byte> shared) {
-  bytes_.resize(shared.size());
-  std::memcpy(bytes_.data(), shared.data(), shared.size());
-  std::atomic_signal_fence(std::memory_order_seq_cst);
-}
-
-bool ChildAnswer::take_kept(BehaviorLink& link, std::optional<std::vector<std::byte>>& kept) {
-  if (once(link.answer.kept_changed) == 0) return true;
-  const std::uint32_t size = once(link.answer.kept.size);
-  if (size == KeptState::none) return kept.reset(), true;
-  if (size > KeptState::bytes_max) return false;
-  const std::uint64_t hash = copy_of(link.answer.kept.hash);
-  copy(std::span(link.answer.kept.bytes).first(size));
-  if (hash_of_kept(bytes_.data(), size) != hash) return false;
-  if (!kept) kept.emplace();
-  kept->assign(bytes_.begin(), bytes_.end());
-  return true;
-}
-
-void ChildAnswer::take_plays(BehaviorLink& link, PlayReport& plays) noexcept {
-  plays.playing = copy_of(link.answer.plays.playing);
-  plays.count = std::min(once(link.answer.plays.count), std::uint32_t{PlayReport::behaviors_max});
-  for (PlayReport::Playing& one : plays.playing) one.name.back() = one.state.back() = '\0';
-}
-
-bool ChildAnswer::take_decided(BehaviorLink& link, std::vector<std::byte>& decided, std::vector<std::byte>& told) {
-  const std::uint32_t size = once(link.answer.decided_size), told_size = once(link.answer.told_size);
-  if (size > BehaviorLink::decided_bytes || told_size > BehaviorLink::told_bytes) return false;
-  copy(std::span(link.answer.decided).first(size));
-  decided.assign(bytes_.begin(), bytes_.end());
-  copy(std::span(link.answer.told).first(told_size));
-  told.assign(bytes_.begin(), bytes_.end());
-  return true;
-}
-
-bool ChildAnswer::take_replies(BehaviorLink& link, std::map<std::uint32_t, BehaviorReply>& replies) {
-  const std::uint32_t size = once(link.answer.reply_size);
-  if (size > BehaviorLink::reply_bytes) return false;
-  copy(std::span(link.answer.replies).first(size));
-  ByteReader bytes(bytes_);
-  while (bytes.left() > 0) {
-    const auto number = bytes.take<std::uint32_t>();
-    if (!take_reply(bytes, replies[number])) return false;
-  }
-  return true;
-}
-
-void ChildAnswer::take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept {
-  const auto store = []<std::size_t count>(const std::array<std::atomic<std::uint32_t>*, count>& to,
-                                           std::array<std::uint32_t, count>& from) {
-    for (std::size_t n = 0; n < count; ++n) to[n]->store(once(from[n]), std::memory_order_relaxed);
-  };
-  store(play_numbers(play), link.answer.play);
-  for (std::size_t i = 0; i < behaviors.size() && i < BehaviorLink::behaviors_max; ++i) {
-    store(behavior_numbers(behaviors[i]), link.answer.status[i]);
-    for (std::size_t r = 0; r < behaviors[i].region_paths.size(); ++r)
-      behaviors[i].regions[r].store(once(link.answer.regions[i][r]), std::memory_order_relaxed);
-  }
-}
-
 using Severity = BehaviorLog::Severity;
 
-// Fresh for each process, so that nothing which the one before left half written is ever looked at.
+// A process and the memory shared with it: fresh for each, so that nothing which the one before left half written is
+// ever looked at.
+//
+// Reads what the process wrote into the memory. The process may be dying or hostile, and may change anything at any
+// moment. So each number is read once, bounded, and used from the copy. Bytes are copied before they are read. Indices
+// of rings can only point into the rings (Ring masks them). The control engine checks the commands, as it does with
+// those of a thread. A function that returns false means: the process breaks the rules.
 struct ProcessHost::Incarnation {
   Incarnation(const Settings& settings, std::span<const std::byte> kept)
-      : link(*new (memory.get()) BehaviorLink), process(prepare(settings, kept), settings.arguments, memory) {}
+      : link(*new (memory.get()) BehaviorLink), process(prepare(settings, kept), settings.arguments, memory) {
+    copied.reserve(decltype(BehaviorLink::lines)::capacity());
+    answered.reserve(CommandQueue::capacity());
+  }
 
   const std::string& prepare(const Settings& settings, std::span<const std::byte> kept) noexcept {
     link.setup = settings.setup;
@@ -213,10 +75,161 @@ struct ProcessHost::Incarnation {
     return settings.program;
   }
 
+  bool is_ready() noexcept { return link.ready.is.given() == 1; }
+  std::uint64_t fingerprint() noexcept { return copy_of(link.ready.fingerprint); }
+  bool answers(std::uint32_t number) noexcept { return link.answer.number.given() == number; }
+
+  // nullopt when one of the names is invalid.
+  std::optional<std::vector<std::string>> names() {
+    const std::uint32_t count = once(link.ready.count);
+    if (count > BehaviorLink::behaviors_max) return std::nullopt;
+    std::vector<std::string> all;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const BehaviorLink::Name name = copy_of(link.ready.names[i]);
+      const auto end = std::ranges::find(name, '\0');
+      all.emplace_back(name.begin(), end);
+      if (end == name.end() || !is_name(all.back())) return std::nullopt;
+    }
+    return all;
+  }
+
+  // The paths of the behavior's regions, up to the first that is none.
+  std::vector<std::string> regions(std::size_t behavior) {
+    std::vector<std::string> paths;
+    for (BehaviorLink::RegionPath& written : link.ready.regions[behavior]) {
+      const BehaviorLink::RegionPath path = copy_of(written);
+      const auto end = std::ranges::find(path, '\0');
+      const std::string text(path.begin(), end);
+      const bool taken = std::ranges::find(paths, text) != paths.end();
+      if (end == path.end() || taken || !BehaviorStatus::is_region_path(text)) break;
+      paths.push_back(text);
+    }
+    return paths;
+  }
+
+  // Takes the answer's transactions out of the link. send_on() sends them with `time_ns` as their time.
+  [[nodiscard]] bool take_commands() {
+    const std::size_t waiting = link.commands.size();
+    answered.clear();
+    if (waiting > CommandQueue::capacity()) return false;
+    for (std::size_t i = 0; i < waiting; ++i) answered.push_back(copy_of(link.commands.peek(i)));
+    link.commands.drop(waiting);
+    for (std::size_t at = 0, count = 0; at < waiting; at += count + 1) {
+      count = answered[at].count;
+      const bool whole =
+          answered[at].kind == CommandKind::transaction && count > 0 && count < max_transaction && count < waiting - at;
+      if (!whole) return false;
+      for (std::size_t i = 1; i <= count; ++i) {
+        if (answered[at + i].kind == CommandKind::order_drive) return false;  // drives are no behavior's to order
+      }
+    }
+    return true;
+  }
+
+  void send_on(CommandSender& sender, std::int64_t time_ns) const noexcept {
+    for (std::size_t at = 0; at < answered.size(); at += answered[at].count + 1) {
+      sender.begin(time_ns);
+      for (std::size_t i = 1; i <= answered[at].count; ++i) (void)sender.add(answered[at + i]);
+      (void)sender.commit();
+    }
+  }
+
+  // Passes the lines to the log with `time_ns` as their time. With `counts` false only what is said: the tick that the
+  // process was in does not count.
+  [[nodiscard]] bool tell_lines(BehaviorLog& log, std::int64_t time_ns, bool counts = true) {
+    const std::size_t waiting = link.lines.size();
+    if (waiting > link.lines.capacity()) return false;
+    copied.resize(waiting);
+    for (std::size_t i = 0; i < waiting; ++i) copied[i] = link.lines.peek(i);
+    std::atomic_signal_fence(std::memory_order_seq_cst);
+    link.lines.drop(waiting);
+    ByteReader lines(copied);
+    while (lines.left() > 0) {
+      const auto line = lines.take_bytes(lines.take<std::uint32_t>());
+      if (!lines.ok()) return false;
+      if ((counts || is_said(line)) && !tell_line(line, log, time_ns)) return false;
+    }
+    return true;
+  }
+
+  bool tell_line(std::span<const std::byte> line, BehaviorLog& log, std::int64_t time_ns) {
+    ByteReader told(line);
+    if (!take_told(told, time_ns, event)) return false;
+    event.say_to(log);
+    return true;
+  }
+
+  // To `copied`.
+  void copy(std::span<const std::byte> shared) {
+    copied.resize(shared.size());
+    std::memcpy(copied.data(), shared.data(), shared.size());
+    std::atomic_signal_fence(std::memory_order_seq_cst);
+  }
+
+  // Replaces `kept` when it changed; nullopt: the state cannot be kept.
+  [[nodiscard]] bool take_kept(std::optional<std::vector<std::byte>>& kept) {
+    if (once(link.answer.kept_changed) == 0) return true;
+    const std::uint32_t size = once(link.answer.kept.size);
+    if (size == KeptState::none) return kept.reset(), true;
+    if (size > KeptState::bytes_max) return false;
+    const std::uint64_t hash = copy_of(link.answer.kept.hash);
+    copy(std::span(link.answer.kept.bytes).first(size));
+    if (hash_of_kept(copied.data(), size) != hash) return false;
+    if (!kept) kept.emplace();
+    kept->assign(copied.begin(), copied.end());
+    return true;
+  }
+
+  // What plays now, all but what PlayStatus has.
+  void take_plays(PlayReport& plays) noexcept {
+    plays.playing = copy_of(link.answer.plays.playing);
+    plays.count = std::min(once(link.answer.plays.count), std::uint32_t{PlayReport::behaviors_max});
+    for (PlayReport::Playing& one : plays.playing) one.name.back() = one.state.back() = '\0';
+  }
+
+  [[nodiscard]] bool take_decided(std::vector<std::byte>& decided, std::vector<std::byte>& told) {
+    const std::uint32_t size = once(link.answer.decided_size), told_size = once(link.answer.told_size);
+    if (size > BehaviorLink::decided_bytes || told_size > BehaviorLink::told_bytes) return false;
+    copy(std::span(link.answer.decided).first(size));
+    decided.assign(copied.begin(), copied.end());
+    copy(std::span(link.answer.told).first(told_size));
+    told.assign(copied.begin(), copied.end());
+    return true;
+  }
+
+  // The replies by their numbers; there may be some that nobody asked for.
+  [[nodiscard]] bool take_replies(std::map<std::uint32_t, BehaviorReply>& replies) {
+    const std::uint32_t size = once(link.answer.reply_size);
+    if (size > BehaviorLink::reply_bytes) return false;
+    copy(std::span(link.answer.replies).first(size));
+    ByteReader bytes(copied);
+    while (bytes.left() > 0) {
+      const auto number = bytes.take<std::uint32_t>();
+      if (!take_reply(bytes, replies[number])) return false;
+    }
+    return true;
+  }
+
+  void take_status(PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept {
+    const auto store = []<std::size_t count>(const std::array<std::atomic<std::uint32_t>*, count>& to,
+                                             std::array<std::uint32_t, count>& from) {
+      for (std::size_t n = 0; n < count; ++n) to[n]->store(once(from[n]), std::memory_order_relaxed);
+    };
+    store(play_numbers(play), link.answer.play);
+    for (std::size_t i = 0; i < behaviors.size() && i < BehaviorLink::behaviors_max; ++i) {
+      store(behavior_numbers(behaviors[i]), link.answer.status[i]);
+      for (std::size_t r = 0; r < behaviors[i].region_paths.size(); ++r)
+        behaviors[i].regions[r].store(once(link.answer.regions[i][r]), std::memory_order_relaxed);
+    }
+  }
+
   SharedMemory memory{sizeof(BehaviorLink)};
   BehaviorLink& link;
   PartnerProcess process;
   std::int64_t started_wall_ns = WallClock().now_ns();
+  std::vector<std::byte> copied;  // from the memory
+  std::vector<Command> answered;  // transactions, with their headers
+  Event event;
 };
 
 ProcessHost::ProcessHost(Settings settings, BehaviorLog& log)
@@ -246,19 +259,19 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
   const auto refuse = [this](const std::string& why) {
     throw InputError({.message = process_name() + " did not start: " + why});
   };
-  while (!ChildAnswer::is_ready(child_->link)) {
+  while (!child_->is_ready()) {
     const std::int64_t left_ns = child_->started_wall_ns + settings_.start_patience_ns - clock_.now_ns();
     const bool gone = child_->process.bell().wait(std::max<std::int64_t>(left_ns, 0)) == Doorbell::Heard::end;
     if (gone) refuse(child_->process.end());
     if (left_ns <= 0) refuse("it takes too long");
   }
-  const auto names = ChildAnswer::names(child_->link);
+  const auto names = child_->names();
   if (!names) refuse("it tells no names");
-  if (ChildAnswer::fingerprint(child_->link) != fingerprint_) refuse("the robot's files changed meanwhile");
+  if (child_->fingerprint() != fingerprint_) refuse("the robot's files changed meanwhile");
   if (!decides()) play_.declare(catalog.signals);
   for (std::size_t i = 0; i < names->size(); ++i) {
     BehaviorStatus& status = behaviors_.emplace_back();
-    status.region_paths = ChildAnswer::regions(child_->link, i);
+    status.region_paths = child_->regions(i);
     (void)status.declare_numbered(catalog.signals, (*names)[i]);
     reported_.push_back({.name = (*names)[i]});
   }
@@ -363,9 +376,8 @@ void ProcessHost::start_when_due() noexcept {
 
 void ProcessHost::look_if_ready() noexcept {
   for (;;) {
-    if (ChildAnswer::is_ready(child_->link)) {
-      if (ChildAnswer::fingerprint(child_->link) != fingerprint_)
-        return stay_down("the robot's files changed: start the run anew");
+    if (child_->is_ready()) {
+      if (child_->fingerprint() != fingerprint_) return stay_down("the robot's files changed: start the run anew");
       phase_ = Phase::playing;
       return;
     }
@@ -423,7 +435,7 @@ void ProcessHost::wait_for_answer(CommandSender& commands) noexcept {
   const std::int64_t began_ns = clock_.now_ns();
   const std::int64_t over_ns = asked_wall_ns_ + settings_.patience_ns;
   const std::int64_t until_ns = settings_.time_stands ? over_ns : std::min(over_ns, began_ns + settings_.answer_ns);
-  while (!ChildAnswer::answers(child_->link, number_)) {
+  while (!child_->answers(number_)) {
     const std::int64_t left_ns = until_ns - clock_.now_ns();
     if (child_->process.bell().wait(std::max<std::int64_t>(left_ns, 0)) == Doorbell::Heard::end) return bury("", false);
     if (left_ns > 0) continue;
@@ -435,16 +447,15 @@ void ProcessHost::wait_for_answer(CommandSender& commands) noexcept {
 }
 
 bool ProcessHost::take_answer(CommandSender& commands) noexcept {
-  BehaviorLink& link = child_->link;
   answer_cost_.add(clock_.now_ns() - asked_wall_ns_);
-  if (!answer_.tell_lines(link, log_, asked_for_ns_)) return false;
-  if (!answer_.take_commands(link) || !answer_.take_kept(link, kept_)) return false;
+  if (!child_->tell_lines(log_, asked_for_ns_)) return false;
+  if (!child_->take_commands() || !child_->take_kept(kept_)) return false;
   // A late answer whose numbers do not fit any more, since somebody else commanded meanwhile: what it sends counts, if
   // nobody wants behaviors to stop; its motions go by the transaction that has their number.
-  if (commands.last_sequence() == asked_sequence_ || !stopping_) answer_.send_on(commands, asked_for_ns_);
-  ChildAnswer::take_status(link, play_, behaviors_);
-  ChildAnswer::take_plays(link, plays_);
-  if (!answer_.take_decided(link, decided_, told_) || !take_replies()) return false;
+  if (commands.last_sequence() == asked_sequence_ || !stopping_) child_->send_on(commands, asked_for_ns_);
+  child_->take_status(play_, behaviors_);
+  child_->take_plays(plays_);
+  if (!child_->take_decided(decided_, told_) || !take_replies()) return false;
   ++answers_;
   order_deaths_ = 0;
   policy_.answered();
@@ -460,7 +471,7 @@ bool ProcessHost::take_answer(CommandSender& commands) noexcept {
 // What was in the request is done: an order without a reply was carried out.
 bool ProcessHost::take_replies() {
   std::map<std::uint32_t, BehaviorReply> replies;
-  if (!answer_.take_replies(child_->link, replies)) return false;
+  if (!child_->take_replies(replies)) return false;
   const auto settle = [&](Queue& queue) {
     for (; queue.asked > 0; --queue.asked, queue.sent.pop_front()) {
       const Sent& first = queue.sent.front();
@@ -477,7 +488,7 @@ bool ProcessHost::take_replies() {
 void ProcessHost::bury(const std::string& why, bool alive) noexcept {
   std::string how = why;
   if (child_) {
-    (void)answer_.tell_lines(child_->link, log_, now_ns_, false);  // its last words: of a tick that does not count
+    (void)child_->tell_lines(log_, now_ns_, false);  // its last words: of a tick that does not count
     if (alive) child_->process.kill();
     const std::string end = child_->process.end();
     if (!alive) how = end;

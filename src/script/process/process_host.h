@@ -44,48 +44,6 @@
 
 namespace kadans {
 
-// Reads what the behaviors' process wrote into the shared memory. The process may be dying or hostile, and may change
-// anything at any moment. So each number is read once, bounded, and used from the copy. Bytes are copied before they
-// are read. Indices of rings can only point into the rings (Ring masks them). The control engine checks the commands,
-// as it does with those of a thread.
-//
-// Behavior thread. A function that returns false means: the process breaks the rules.
-class ChildAnswer {
- public:
-  ChildAnswer();
-
-  static bool is_ready(BehaviorLink& link) noexcept;
-  static std::uint64_t fingerprint(BehaviorLink& link) noexcept;
-  // nullopt when one of the names is invalid.
-  static std::optional<std::vector<std::string>> names(BehaviorLink& link);
-  // The paths of the behavior's regions, up to the first that is none.
-  static std::vector<std::string> regions(BehaviorLink& link, std::size_t behavior);
-  static bool answers(BehaviorLink& link, std::uint32_t number) noexcept;
-
-  // Takes the answer's transactions out of the link. send_on() sends them with `time_ns` as their time.
-  [[nodiscard]] bool take_commands(BehaviorLink& link);
-  void send_on(CommandSender& commands, std::int64_t time_ns) const noexcept;
-  // Passes the lines to the log with `time_ns` as their time.
-  // With `counts` false only what is said: the tick that the process was in does not count.
-  [[nodiscard]] bool tell_lines(BehaviorLink& link, BehaviorLog& log, std::int64_t time_ns, bool counts = true);
-  // Replaces `kept` when it changed; nullopt: the state cannot be kept.
-  [[nodiscard]] bool take_kept(BehaviorLink& link, std::optional<std::vector<std::byte>>& kept);
-  // The replies by their numbers; there may be some that nobody asked for.
-  [[nodiscard]] bool take_replies(BehaviorLink& link, std::map<std::uint32_t, BehaviorReply>& replies);
-  static void take_status(BehaviorLink& link, PlayStatus& play, std::deque<BehaviorStatus>& behaviors) noexcept;
-  // What plays now, all but what PlayStatus has.
-  static void take_plays(BehaviorLink& link, PlayReport& plays) noexcept;
-  [[nodiscard]] bool take_decided(BehaviorLink& link, std::vector<std::byte>& decided, std::vector<std::byte>& told);
-
- private:
-  bool tell_line(std::span<const std::byte> line, BehaviorLog& log, std::int64_t time_ns);
-  void copy(std::span<const std::byte> shared);  // to bytes_
-
-  std::vector<std::byte> bytes_;
-  std::vector<Command> commands_;
-  Event event_;
-};
-
 // Decides when a process that died is started again: the first time at once, then after growing delays, and no more
 // when it dies too often in a row. A process that has answered enough ticks begins a new row. Times are of the engine's
 // clock.
@@ -214,7 +172,6 @@ class ProcessHost final : public BehaviorHost, public OrderTaker {
   Phase phase_ = Phase::starting;
   std::uint64_t fingerprint_ = 0;
   std::optional<SafePosture> safe_;
-  ChildAnswer answer_;
   std::optional<std::vector<std::byte>> kept_{std::in_place};  // empty: no answer yet; nullopt: cannot be kept
   PlayStatus play_;
   PlayReport plays_, shown_;

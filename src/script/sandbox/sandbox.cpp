@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "handle.h"
 #include "script/check/foreign_words.h"
 #include "script/check/hint.h"
 #include "script/lua/lua_core.h"
@@ -22,11 +23,6 @@ void wrap(lua_State* state, const char* name, lua_CFunction function) {
   lua_getfield(state, -1, name);
   lua_pushcclosure(state, function, 1);
   lua_setfield(state, -2, name);
-}
-
-void set_function(lua_State* state, int table, const char* name, lua_CFunction function) {
-  lua_pushcfunction(state, function);
-  lua_setfield(state, table, name);
 }
 
 int forward(lua_State* state) {
@@ -231,9 +227,9 @@ void open_sandbox(lua_State* state) {
        {"assert", "getmetatable", "ipairs", "rawequal", "rawget", "rawlen", "select", "setmetatable", "tonumber",
         "type", "unpack"});
   lua_pop(state, 1);
-  open_base(state, globals);
-  set_function(state, globals, "pairs", sandbox_pairs);
-  set_function(state, globals, "require", sandbox_require);
+  open_base(state);
+  const luaL_Reg functions[] = {{"pairs", sandbox_pairs}, {"require", sandbox_require}};
+  set_functions(state, functions);
 
   add_library(state, globals, "coroutine", {"create", "resume", "running", "status", "wrap", "yield"},
               [globals](lua_State* lua) { open_protected_calls(lua, globals); });

@@ -23,7 +23,7 @@ void set_filler(lua_State* state);
 int raise_unknown_field(lua_State* state, const char* name, int content, int key);
 
 // The parts of the library:
-void open_base(lua_State* state, int globals);  // [-0 +0] into the table at `globals`
+void open_base(lua_State* state);  // [-0 +0] into the globals at the top
 // [-0 +0] Puts pcall and xpcall into the table at `globals`, and resume and wrap into the coroutine library at the top.
 void open_protected_calls(lua_State* state, int globals);
 void open_math(lua_State* state);     // [-0 +0] into the math table at the top
@@ -61,9 +61,6 @@ void open_kadans_module(lua_State* state);  // [-0 +1]
 // [-0 +0] Replaces the field `name` of the table at the top of the stack by `function`, whose upvalue 1 is the old
 // value.
 void wrap(lua_State* state, const char* name, lua_CFunction function);
-
-// [-0 +0] Sets the field `name` of the table at `table` to `function`.
-void set_function(lua_State* state, int table, const char* name, lua_CFunction function);
 
 // [-all +results] Calls upvalue 1 with the arguments on the stack.
 int forward(lua_State* state);

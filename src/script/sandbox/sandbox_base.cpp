@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "handle.h"
 #include "sandbox.h"
 #include "script/lua/lua_core.h"
 #include "script/lua/lua_state.h"
@@ -192,21 +193,17 @@ return pcall, xpcall, resume, wrap
 
 }  // namespace
 
-void open_base(lua_State* state, int globals) {
-  lua_pushvalue(state, globals);
+void open_base(lua_State* state) {
+  const luaL_Reg functions[] = {
+      {"print", print}, {"tostring", to_string}, {"error", raise}, {"load", load}, {"rawset", raw_set}};
   wrap(state, "tonumber", to_number);
   wrap(state, "unpack", unpack);
-  lua_pop(state, 1);
-  set_function(state, globals, "print", print);
-  set_function(state, globals, "tostring", to_string);
-  set_function(state, globals, "error", raise);
-  set_function(state, globals, "load", load);
-  set_function(state, globals, "rawset", raw_set);
+  set_functions(state, functions);
 }
 
 void open_math(lua_State* state) {
-  set_function(state, lua_gettop(state), "random", random);
-  set_function(state, lua_gettop(state), "fmod", remainder);
+  const luaL_Reg functions[] = {{"random", random}, {"fmod", remainder}};
+  set_functions(state, functions);
 }
 
 void open_protected_calls(lua_State* state, int globals) {

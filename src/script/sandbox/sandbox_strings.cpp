@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "handle.h"
 #include "pattern_matcher.h"
 #include "sandbox.h"
 #include "script/lua/lua_core.h"
@@ -271,11 +272,8 @@ int gsub(lua_State* state) {
 }  // namespace
 
 void open_strings(lua_State* state) {
-  const int strings = lua_gettop(state);
-  set_function(state, strings, "find", find);
-  set_function(state, strings, "match", match);
-  set_function(state, strings, "gmatch", gmatch);
-  set_function(state, strings, "gsub", gsub);
+  const luaL_Reg functions[] = {{"find", find}, {"match", match}, {"gmatch", gmatch}, {"gsub", gsub}};
+  set_functions(state, functions);
   wrap(state, "rep", rep);
   for (const char* name : {"lower", "reverse", "upper"}) wrap(state, name, whole);
   wrap(state, "sub", piece);

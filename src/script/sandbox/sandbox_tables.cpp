@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "handle.h"
 #include "sandbox.h"
 #include "script/lua/lua_core.h"
 
@@ -269,12 +270,10 @@ int sandbox_pairs(lua_State* state) {
 }
 
 void open_tables(lua_State* state) {
-  const int tables = lua_gettop(state);
+  const luaL_Reg functions[] = {{"concat", concat}, {"insert", insert}, {"sort", sort}};
   wrap(state, "remove", remove);
   wrap(state, "maxn", maxn);
-  set_function(state, tables, "concat", concat);
-  set_function(state, tables, "insert", insert);
-  set_function(state, tables, "sort", sort);
+  set_functions(state, functions);
 }
 
 }  // namespace kadans
