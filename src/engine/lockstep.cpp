@@ -5,12 +5,14 @@
 
 namespace kadans {
 
-Lockstep::Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors)
+Lockstep::Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors,
+                   Supervising* supervisor)
     : world_(world), control_period_ns_(settings.control_period_ns()) {
-  add(settings, control, behaviors);
+  add(settings, control, behaviors, supervisor);
 }
 
-void Lockstep::add(const EngineSettings& settings, ControlEngine& control, BehaviorEngine& behaviors) {
+void Lockstep::add(const EngineSettings& settings, ControlEngine& control, BehaviorEngine& behaviors,
+                   Supervising* supervisor) {
   if (settings.control_period_ns() != control_period_ns_) {
     throw std::invalid_argument("the control period must be the same for all robots of a world");
   }
@@ -18,24 +20,14 @@ void Lockstep::add(const EngineSettings& settings, ControlEngine& control, Behav
   if (behavior_period_ns == 0) {
     throw std::invalid_argument("the behavior period must be a whole multiple of the control period");
   }
-  robots_.insert(robots_.begin(), {&control, &behaviors, behavior_period_ns});
+  robots_.insert(robots_.begin(), {&control, &behaviors, supervisor, behavior_period_ns});
 }
 
-void Lockstep::silence_behaviors(const BehaviorEngine& behaviors, bool silent) noexcept {
+void Lockstep::silence(const BehaviorEngine& behaviors, bool themselves, bool supervisor) noexcept {
   for (Engines& robot : robots_) {
-    if (robot.behaviors == &behaviors) robot.behaviors_silent = silent;
-  }
-}
-
-void Lockstep::supervise(const BehaviorEngine& behaviors, Supervising& supervisor) noexcept {
-  for (Engines& robot : robots_) {
-    if (robot.behaviors == &behaviors) robot.supervisor = &supervisor;
-  }
-}
-
-void Lockstep::silence_supervisor(const BehaviorEngine& behaviors, bool silent) noexcept {
-  for (Engines& robot : robots_) {
-    if (robot.behaviors == &behaviors) robot.supervisor_silent = silent;
+    if (robot.behaviors != &behaviors) continue;
+    robot.behaviors_silent = themselves;
+    robot.supervisor_silent = supervisor;
   }
 }
 

@@ -17,27 +17,24 @@ namespace kadans {
 
 class Lockstep {
  public:
-  // The engines of the first robot. Keeps references. Throws std::invalid_argument unless the behavior period is a
-  // whole multiple of the control period.
-  Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors);
+  // The engines of the first robot, and what decides over its behaviors, if anything does. Keeps references. Throws
+  // std::invalid_argument unless the behavior period is a whole multiple of the control period.
+  Lockstep(const EngineSettings& settings, World& world, ControlEngine& control, BehaviorEngine& behaviors,
+           Supervising* supervisor = nullptr);
 
   // Before the first step: the engines of another robot. The first robot's tick last, so that its signals can show
   // those of the others. Keeps references. Throws std::invalid_argument also when its control period is not that of the
   // first.
-  void add(const EngineSettings& settings, ControlEngine& control, BehaviorEngine& behaviors);
-
-  // Before the first step: what decides over these behaviors. Keeps a reference.
-  void supervise(const BehaviorEngine& behaviors, Supervising& supervisor) noexcept;
+  void add(const EngineSettings& settings, ControlEngine& control, BehaviorEngine& behaviors,
+           Supervising* supervisor = nullptr);
 
   // Throws what the world's step throws.
   void step();
 
   // Faults for tests and scenarios. miss: skips this number of control ticks of all robots before the next one.
-  // silence_behaviors: no tick of these behaviors comes until it is called with false.
+  // silence: no tick of these behaviors themselves, or of what decides over them, comes until it is called with false.
   void miss(std::uint32_t control_ticks) noexcept { missed_ = control_ticks; }
-  // silence_supervisor: the same of what decides over them.
-  void silence_behaviors(const BehaviorEngine& behaviors, bool silent) noexcept;
-  void silence_supervisor(const BehaviorEngine& behaviors, bool silent) noexcept;
+  void silence(const BehaviorEngine& behaviors, bool themselves, bool supervisor) noexcept;
 
   std::int64_t time_ns() const noexcept { return clock_.now_ns(); }
   std::int64_t control_period_ns() const noexcept { return control_period_ns_; }
@@ -48,12 +45,10 @@ class Lockstep {
   struct Engines {
     ControlEngine* control;
     BehaviorEngine* behaviors;
+    Supervising* supervisor;  // nullptr: there is none
     std::int64_t behavior_period_ns;
-    std::int64_t behaviors_due_ns = 0;
-    bool behaviors_silent = false;
-    Supervising* supervisor = nullptr;
-    std::int64_t supervisor_due_ns = 0;
-    bool supervisor_silent = false;
+    std::int64_t behaviors_due_ns = 0, supervisor_due_ns = 0;
+    bool behaviors_silent = false, supervisor_silent = false;
   };
 
   void pass_period();

@@ -29,6 +29,15 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text.substr(first, text.find_last_not_of(xml_blanks) + 1 - first);
 }
 
+std::vector<std::string_view> split(std::string_view text, std::size_t most) {
+  std::vector<std::string_view> parts;
+  for (text = trimmed(text); !text.empty() && parts.size() < most; text = trimmed(text)) {
+    parts.push_back(text.substr(0, text.find_first_of(xml_blanks)));
+    text.remove_prefix(parts.back().size());
+  }
+  return parts;
+}
+
 SourceText::SourceText(std::string_view text) : text_(text), lines_{0} {
   for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1)) {
     lines_.push_back(at + 1);

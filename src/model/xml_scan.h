@@ -32,6 +32,8 @@ class SourceText {
 
 inline constexpr std::string_view xml_blanks = " \t\r\n";
 std::string_view trimmed(std::string_view text) noexcept;  // without blanks around it
+// The first parts between blanks, at most so many.
+std::vector<std::string_view> split(std::string_view text, std::size_t most);
 
 // The first byte that is not UTF-8, or a control character other than tab, line feed and carriage return.
 std::optional<TextProblem> find_non_text(std::string_view text);

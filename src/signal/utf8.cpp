@@ -124,4 +124,14 @@ std::string html_text(std::string_view text) {
   return safe;
 }
 
+std::string double_quoted(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_field(const std::string& text) {
+  return text.find_first_of(",\"\r\n") == std::string::npos ? text : double_quoted(text);
+}
+
 }  // namespace kadans

@@ -32,6 +32,10 @@ std::string shown_text(std::string_view text);
 std::string xml_characters(std::string_view text);
 // The same, escaped for use between tags and in attributes.
 std::string html_text(std::string_view text);
+// In double quotes, each of those in it twice: as CSV and SQL have it.
+std::string double_quoted(std::string_view text);
+// In quotes where CSV needs them.
+std::string csv_field(const std::string& text);
 
 // Where something stands in a text from outside.
 struct TextPlace {

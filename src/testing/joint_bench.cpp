@@ -13,7 +13,6 @@
 namespace kadans::testing {
 namespace {
 
-// Finds a name by its last parts: "kp_Nm_per_rad" for "object.joint.kp_Nm_per_rad".
 // The number of the one name that is `wanted` or ends in "." + wanted, and begins with `prefix`. Throws
 // std::invalid_argument when there is none, with the nearest, or more than one.
 std::size_t find_by_ending(std::string_view what, std::string_view wanted, const std::vector<std::string>& names,
@@ -73,10 +72,6 @@ double velocity_delay_s(const JointBenchConfig& config) {
   return config.velocity_cutoff_Hz > 0
              ? VelocityFilter::delay_s({.cutoff_Hz = config.velocity_cutoff_Hz, .dt_s = config.dt_s})
              : 0;
-}
-
-bool finite(const JointActuation& asked) noexcept {
-  return std::isfinite(asked.effort_Nm) && std::isfinite(asked.position_rad) && std::isfinite(asked.velocity_rad_s);
 }
 
 }  // namespace
@@ -229,7 +224,7 @@ void JointBench::tick() {
   plant_.read(sensors_);
   estimate(sensors_);
   JointActuation& asked = computed_.joints[0];
-  if (!finite(asked)) {
+  if (!is_finite(asked)) {
     ++not_finite_ticks_;
     asked = {};
   }

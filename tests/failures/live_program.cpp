@@ -81,7 +81,7 @@ LiveProgram::Range LiveProgram::recorded(const std::string& signal, double from_
     }
     std::vector<double> values(count);
     const double time_s = 1e-9 * static_cast<double>(message.time_ns);
-    if (time_s < from_s || time_s > to_s || !read_cdr(message.payload, values, Precision::full)) continue;
+    if (time_s < from_s || time_s > to_s || read_cdr(message.payload, values) != Precision::full) continue;
     range.min = std::min(range.min, values[at]);
     range.max = std::max(range.max, values[at]);
   }

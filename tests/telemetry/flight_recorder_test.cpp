@@ -59,7 +59,8 @@ Dump read_dump(const std::string& path) {
     const std::string& topic = reader.channels().at(message.channel).topic;
     ++dump.others[topic];
     std::vector<double> knee(1);
-    if (topic == "/joint" && read_cdr(message.payload, knee, Precision::single)) dump.knee[message.sequence] = knee[0];
+    if (topic == "/joint" && read_cdr(message.payload, knee) == Precision::single)
+      dump.knee[message.sequence] = knee[0];
   }
   CHECK(reader.complete());
   return dump;

@@ -57,7 +57,7 @@ std::uint64_t rows_of(const std::string& file) {
   for (McapMessage message; reader.next(message);) {
     if (reader.channels().at(message.channel).topic != "/joint") continue;
     REQUIRE(message.sequence == rows);
-    REQUIRE(read_cdr(message.payload, values, Precision::full));
+    REQUIRE(read_cdr(message.payload, values) == Precision::full);
     REQUIRE(values[0] == static_cast<double>(rows));
     ++rows;
   }

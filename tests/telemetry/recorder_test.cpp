@@ -73,7 +73,7 @@ TEST_CASE("Recorder writes each row under its topics, in schema order, with the 
   CHECK(entries[0].sequence == 1000);
   CHECK(entries[0].time_ns == 1000 * ms);
   std::array<double, 2> knees{};
-  REQUIRE(read_cdr(bytes_of(entries[0].payload), knees, Precision::full));
+  REQUIRE(read_cdr(bytes_of(entries[0].payload), knees) == Precision::full);
   CHECK(knees[0] == 0.25);
   CHECK(knees[1] == 0.75);
   CHECK(entries[1].topic == "/base");
@@ -111,7 +111,7 @@ TEST_CASE("Signals of one topic with different rates go to a topic for each rate
   CHECK(count(entries, "/joint/every_10") == 2);
   CHECK(recorder.rows() == 10);
   std::array<double, 1> knee{};
-  REQUIRE(read_cdr(bytes_of(entries.back().payload), knee, Precision::full));
+  REQUIRE(read_cdr(bytes_of(entries.back().payload), knee) == Precision::full);
   CHECK(knee[0] == -18);
 }
 
@@ -299,7 +299,7 @@ TEST_CASE("Recorder: with a thread that drains, every row arrives whole and in o
     ++arrived;
     REQUIRE(std::int64_t{entry.sequence} > last);
     last = entry.sequence;
-    REQUIRE(read_cdr(bytes_of(entry.payload), values, Precision::full));
+    REQUIRE(read_cdr(bytes_of(entry.payload), values) == Precision::full);
     REQUIRE(values.front() == static_cast<double>(entry.sequence));
     REQUIRE(values.back() == values.front());
   }

@@ -412,13 +412,11 @@ void Assembly::make_behaviors() {
   lockstep_.reset();
   behaviors_ = std::make_unique<BehaviorEngine>(*sets_, *exchange_, host);
   if (!plant_.in_lockstep() || number_ > 0) return;
-  lockstep_ = std::make_unique<Lockstep>(robot_.config.engine, *plant_.world(), *control_, *behaviors_);
+  lockstep_ =
+      std::make_unique<Lockstep>(robot_.config.engine, *plant_.world(), *control_, *behaviors_, supervisor_.get());
   try {
-    for (const auto& other : others_) lockstep_->add(other->robot_.config.engine, *other->control_, *other->behaviors_);
-    if (supervisor_) lockstep_->supervise(*behaviors_, *supervisor_);
-    for (const auto& other : others_) {
-      if (other->supervisor_) lockstep_->supervise(*other->behaviors_, *other->supervisor_);
-    }
+    for (const auto& other : others_)
+      lockstep_->add(other->robot_.config.engine, *other->control_, *other->behaviors_, other->supervisor_.get());
   } catch (const std::invalid_argument& error) {
     refuse(scenario_.file, scenario_.robots.front().plant_place, std::string("robots: ") + error.what());
   }

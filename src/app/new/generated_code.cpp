@@ -7,6 +7,9 @@
 #include <set>
 #include <string_view>
 
+#include <tinyxml2.h>
+
+#include "kadans/signal/input_error.h"
 #include "signal/input_file.h"
 
 namespace kadans {
@@ -19,7 +22,7 @@ constexpr std::size_t code_files_max = 500, code_values_max = 1000;
 struct CodeFile {
   fs::path path;
   std::string text;
-  std::string bare{};  // without comments
+  std::string bare{};  // of C, without comments
 };
 
 std::string without_comments(const std::string& text) {
@@ -38,10 +41,9 @@ std::string without_comments(const std::string& text) {
   return bare;
 }
 
-// Patterns look at lines of C, and at elements of XML: what is longer than any tool writes is refused.
+// Patterns look at lines of C: what is longer than any tool writes is refused.
 void refuse_long_lines(const CodeFile& file) {
   constexpr std::size_t line_max = 8000;
-  if (file.path.extension() == ".xml") return;
   for (std::size_t at = 0; at < file.text.size();) {
     const std::size_t end = std::min(file.text.find('\n', at), file.text.size());
     if (end - at > line_max) refuse(file.path, "has a line of more than " + std::to_string(line_max) + " characters");
@@ -60,8 +62,10 @@ std::vector<CodeFile> code_files(const fs::path& folder) {
       refuse(folder,
              "holds more than " + std::to_string(code_files_max) + " files of C: name the folder of one model's code");
     CodeFile file{.path = entry.path(), .text = read_input_file(entry.path().string())};
-    refuse_long_lines(file);
-    file.bare = without_comments(file.text);
+    if (ending != ".xml") {
+      refuse_long_lines(file);
+      file.bare = without_comments(file.text);
+    }
     files.push_back(std::move(file));
   }
   std::ranges::sort(files, {}, &CodeFile::path);
@@ -267,32 +271,38 @@ GeneratedCode read_simulink(const std::vector<CodeFile>& files, const CodeFile& 
   return code;
 }
 
-// "<name ... >", the first of these; "" without one, or where it is longer than any tool writes.
-std::string element_of(const std::string& xml, const std::string& begin) {
-  const std::size_t at = xml.find(begin), end = xml.find('>', at);
-  return at == std::string::npos || end == std::string::npos || end - at > 8000 ? "" : xml.substr(at, end + 1 - at);
+using tinyxml2::XMLElement;
+
+// "" without it.
+std::string attribute(const XMLElement& element, const char* name) {
+  const char* const value = element.Attribute(name);
+  return value == nullptr ? "" : value;
 }
 
-// The value of an attribute of an element's text; "" without it.
-std::string attribute(const std::string& element, const std::string& name) {
-  const std::smatch found = first_match(element, ("\\s" + name + R"re(\s*=\s*"([^"]*)")re").c_str());
-  return found.empty() ? "" : found[1].str();
+// nullptr where there is no element to begin with, too.
+const XMLElement* child(const XMLElement* element, const char* name) {
+  return element == nullptr ? nullptr : element->FirstChildElement(name);
 }
 
 GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& description) {
   GeneratedCode code{.shape = GeneratedCode::Shape::fmu, .tool = "OpenModelica (FMI 2.0)"};
-  const std::string& xml = description.text;
-  const std::string head = element_of(xml, "<fmiModelDescription"), part = element_of(xml, "<CoSimulation");
-  if (head.empty() || attribute(head, "fmiVersion") != "2.0")
+  tinyxml2::XMLDocument xml;
+  if (xml.Parse(description.text.data(), description.text.size()) != tinyxml2::XML_SUCCESS)
+    throw InputError({.file = description.path.string(),
+                      .line = xml.ErrorLineNum(),
+                      .message = std::string("not well-formed XML: ") + xml.ErrorName()});
+  const XMLElement* const head = xml.FirstChildElement("fmiModelDescription");
+  if (head == nullptr || attribute(*head, "fmiVersion") != "2.0")
     refuse(description.path,
            "looked for fmiVersion=\"2.0\", found " +
-               (head.empty() ? "no fmiModelDescription" : "\"" + attribute(head, "fmiVersion") + "\""));
-  if (part.empty())
+               (head == nullptr ? "no fmiModelDescription" : "\"" + attribute(*head, "fmiVersion") + "\""));
+  const XMLElement* const part = child(head, "CoSimulation");
+  if (part == nullptr)
     refuse(
         description.path,
         "looked for <CoSimulation modelIdentifier=...>, found none: let the FMU be of co-simulation (fmuType=\"cs\")");
-  code.guid = attribute(head, "guid");
-  const std::string identifier = attribute(part, "modelIdentifier");
+  code.guid = attribute(*head, "guid");
+  const std::string identifier = attribute(*part, "modelIdentifier");
   bool source = false;
   for (const CodeFile& file : files) {  // a name that stands in the text, or one that a macro puts the prefix before
     const std::smatch found = first_match(file.bare, R"(\b(\w*)fmi2DoStep\s*[()])");
@@ -307,27 +317,28 @@ GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& descr
   if (!source)
     refuse(description.path, "looked for fmi2DoStep in sources of C beside it, found none in " + list_of(files) +
                                  ": let the FMU of " + identifier + " have its sources");
-  for (std::size_t at = 0; (at = xml.find("<ScalarVariable", at)) != std::string::npos; ++at) {
-    const std::string whole = xml.substr(at, xml.find("</ScalarVariable>", at) - at);
-    const std::string of = element_of(whole, "<ScalarVariable"), real = element_of(whole, "<Real");
-    const std::string causality = attribute(of, "causality"), number = attribute(of, "valueReference");
+  const char* const variable = "ScalarVariable";
+  for (const XMLElement* of = child(child(head, "ModelVariables"), variable); of != nullptr;
+       of = of->NextSiblingElement(variable)) {
+    const XMLElement* const real = child(of, "Real");
+    const std::string causality = attribute(*of, "causality"), number = attribute(*of, "valueReference");
     std::vector<CodeValue>* const values = causality == "input"       ? &code.inputs
                                            : causality == "output"    ? &code.outputs
                                            : causality == "parameter" ? &code.parameters
                                                                       : nullptr;
-    if (values == nullptr || (causality == "parameter" && attribute(of, "variability") == "fixed")) continue;
-    if (real.empty()) {
+    if (values == nullptr || (causality == "parameter" && attribute(*of, "variability") == "fixed")) continue;
+    if (real == nullptr) {
       if (causality == "parameter") continue;
       refuse(description.path,
-             "looked for Real " + causality + "s, found '" + attribute(of, "name") + "' of another type");
+             "looked for Real " + causality + "s, found '" + attribute(*of, "name") + "' of another type");
     }
     if (!std::regex_match(number, std::regex(R"(\d{1,9})")))
-      refuse(description.path, "'" + attribute(of, "name") + "' has no valueReference");
+      refuse(description.path, "'" + attribute(*of, "name") + "' has no valueReference");
     add_value(*values,
-              {.name = attribute(of, "name"),
+              {.name = attribute(*of, "name"),
                .access = number,
-               .unit = attribute(real, "unit"),
-               .doc = attribute(of, "description")},
+               .unit = attribute(*real, "unit"),
+               .doc = attribute(*of, "description")},
               description.path);
   }
   if (code.inputs.empty() || code.outputs.empty())

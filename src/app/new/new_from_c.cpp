@@ -194,7 +194,7 @@ static void no_logger(void *environment, const char *instance, int status, const
 static const Callbacks callbacks = {no_logger, calloc, free, NULL, NULL};
 
 void *@type@_make(void) {
-  return @before@fmi2Instantiate("@type@", 1, "@guid@", "", &callbacks, 0, 0);
+  return @before@fmi2Instantiate("@type@", 1, @guid@, "", &callbacks, 0, 0);
 }
 
 void @type@_free(void *code) {
@@ -316,7 +316,7 @@ int run_new_from_c(const NewControlObjectOptions& options, std::string_view main
       {"@header@", code.header},
       {"@before@", code.before},
       {"@behind@", code.behind},
-      {"@guid@", code.guid},
+      {"@guid@", source_text(code.guid)},
       {"@externs@", outer_arrays(code)},
       {"@read_parameters@", assignments(code.parameters, "parameters", false, "    ")},
       {"@write_parameters_there@", assignments(code.parameters, "parameters", true, "    ")},

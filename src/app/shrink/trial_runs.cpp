@@ -83,8 +83,7 @@ class TrialWatch final : public RunObserver {
   static void end_disturbances(RunParts& robot) {
     if (robot.disturbances == nullptr) return;
     robot.disturbances = nullptr;
-    robot.lockstep.silence_behaviors(robot.behaviors, false);
-    robot.lockstep.silence_supervisor(robot.behaviors, false);
+    robot.lockstep.silence(robot.behaviors, false, false);
   }
   static TrialFailure error(const LogLine& line) {
     return {.what = "error " + without_numbers(line.text),

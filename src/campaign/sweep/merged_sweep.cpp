@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "signal/input_file.h"
+#include "signal/utf8.h"
 
 namespace kadans {
 namespace {
@@ -31,17 +32,6 @@ void add(std::vector<CaseRow>& rows, std::vector<const SweepResults*>& from, Cas
   refuse(part.folder(), "case " + std::to_string(row.index) + " came out different from that in " +
                             from[row.index]->folder().string() + " (state " + row.state_hash + " and " +
                             known.state_hash + "); again: " + row.repeat);
-}
-
-// In quotes, each quote in it twice: as CSV and SQL have it.
-std::string quoted(const std::string& text) {
-  std::string all = "\"";
-  for (const char c : text) all += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return all + '"';
-}
-
-std::string csv_field(const std::string& text) {
-  return text.find_first_of(",\"\r\n") == std::string::npos ? text : quoted(text);
 }
 
 void append_number(std::string& line, double value) {
@@ -193,7 +183,7 @@ std::string cases_table(const MergedSweep& sweep) {
       "TEXT, "
       "simulated_s REAL, state_hash TEXT";
   for (const auto* names : {&sweep.quantities, &sweep.manifest.metrics}) {
-    for (const std::string& name : *names) sql += ", " + quoted(name) + " REAL";
+    for (const std::string& name : *names) sql += ", " + double_quoted(name) + " REAL";
   }
   return sql + ", repeat TEXT)";
 }

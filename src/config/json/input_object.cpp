@@ -76,14 +76,11 @@ void read_input_object(const std::filesystem::path& file, const InputObject::Rea
 }
 
 void read_input_text(std::string_view text, const std::filesystem::path& file, const InputObject::Read& read) {
-  const BasedJson json = parse_based_json(text, file.string());
-  if (!json.bases.empty()) read_input_object(json.bases.front(), read);
-  Problems problems(file.string());
-  read_fields(json.value, problems, [&](Fields& fields) {
+  const auto read_base = [&](const std::filesystem::path& base) { read_input_object(base, read); };
+  read_based_fields(text, file.string(), read_base, [&](Fields& fields) {
     InputObject object(fields);
     read(object);
   });
-  problems.throw_if_any();
 }
 
 }  // namespace kadans

@@ -109,11 +109,7 @@ const char* name(Sampling sampling) noexcept { return sampling_names[static_cast
 SweepPlan read_sweep_plan_text(const std::string& text, const std::string& file) {
   SweepPlan plan;
   plan.file = file;
-  const BasedJson json = parse_based_json(text, file);
-  if (!json.bases.empty()) (void)read_sweep_plan(json.bases.front());
-  Problems problems(file);
-  read_fields(json.value, problems, [&](Fields& f) { plan_fields(f, plan); });
-  problems.throw_if_any();
+  read_based_fields(text, file, read_sweep_plan, [&](Fields& f) { plan_fields(f, plan); });
   return plan;
 }
 
@@ -202,9 +198,7 @@ void plan_fields(Fields& f, TunePlan& plan) {
 TunePlan read_tune_plan_text(const std::string& text, const std::string& file) {
   TunePlan plan;
   plan.file = file;
-  Problems problems(file);
-  read_fields(parse_based_json(text, file).value, problems, [&](Fields& f) { plan_fields(f, plan); });
-  problems.throw_if_any();
+  read_based_fields(text, file, read_tune_plan, [&](Fields& f) { plan_fields(f, plan); });
   return plan;
 }
 

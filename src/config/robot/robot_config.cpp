@@ -140,11 +140,9 @@ RobotConfig read_robot_config_text(const std::string& text, const std::string& f
   RobotConfig config;
   config.plant_types = plant_types(plants);
   config.file = config.record.signals.file = file;
-  const BasedJson json = parse_based_json(text, file);
-  if (!json.bases.empty()) (void)read_robot_config(json.bases.front(), object_types, plants);
-  Problems problems(file);
-  read_fields(json.value, problems, [&](Fields& f) { RobotReader(config, problems, object_types).read(f); });
-  problems.throw_if_any();
+  read_based_fields(
+      text, file, [&](const std::filesystem::path& base) { return read_robot_config(base, object_types, plants); },
+      [&](Fields& f) { RobotReader(config, f.problems(), object_types).read(f); });
   return config;
 }
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "config/json/json_value.h"
+#include "config/json/fields.h"
 
 namespace kadans {
 
@@ -28,6 +28,16 @@ struct BasedJson {
 
 // Throws InputError with the first mistake: invalid JSON, a base that does not exist, or files based on each other.
 BasedJson parse_based_json(std::string_view text, const std::string& file);
+
+// Reads such a file: read(Fields&) lists its fields, after read_base(path) has read the nearest base alone.
+template <typename ReadBase, typename Read>
+void read_based_fields(std::string_view text, const std::string& file, ReadBase&& read_base, Read&& read) {
+  const BasedJson json = parse_based_json(text, file);
+  if (!json.bases.empty()) (void)read_base(json.bases.front());
+  Problems problems(file);
+  read_fields(json.value, problems, read);
+  problems.throw_if_any();
+}
 
 // The file and all files that it is based on. A file that cannot be read has no base.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& file);

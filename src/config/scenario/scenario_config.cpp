@@ -434,11 +434,7 @@ void set_last(ScenarioConfig& scenario, NumberEntry entry) {
 ScenarioConfig read_scenario_config_text(const std::string& text, const std::string& file) {
   ScenarioConfig scenario;
   scenario.file = file;
-  const BasedJson json = parse_based_json(text, file);
-  if (!json.bases.empty()) (void)read_tested_scenario(json.bases.front());
-  Problems problems(file);
-  read_fields(json.value, problems, [&](Fields& f) { scenario_fields(f, scenario); });
-  problems.throw_if_any();
+  read_based_fields(text, file, read_tested_scenario, [&](Fields& f) { scenario_fields(f, scenario); });
   return scenario;
 }
 

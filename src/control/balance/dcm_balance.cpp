@@ -22,7 +22,7 @@ DcmBalance::DcmBalance(const ObjectSetup& setup)
       throw std::invalid_argument("joint " + axis.name +
                                   " has no part in balance: in a leg it is neither the first nor the last that turns "
                                   "about y, nor the first about x; and it is no shoulder that turns about y");
-    parts_.push_back({{.axis = std::move(axis)}, part.part, part.sign});
+    parts_.push_back({.axis = std::move(axis), .in_leg = part});
   }
 }
 
@@ -49,14 +49,7 @@ void DcmBalance::declare(Declaration& d) {
   d.signal({"beyond_x_m", "m", "What of the error forward is beyond reach."}, &s.beyond_x_m);
   d.signal({"beyond_y_m", "m", "What of the error to the side is beyond reach."}, &s.beyond_y_m);
   d.signal({"share", "", "Share of its torques that acts."}, &s.share);
-  for (Part& part : parts_) {
-    d.signal({part.axis.name + ".effort_Nm", "Nm", "Torque asked for."}, &part.effort_Nm);
-  }
-}
-
-void DcmBalance::start(const ControlInput&) noexcept {
-  state_ = {};
-  for (Part& part : parts_) part.effort_Nm = 0;
+  declare_efforts(d);
 }
 
 // False when it does not stand, or something is not measured.
@@ -96,8 +89,8 @@ double DcmBalance::law_Nm(LegPart part) const noexcept {
 void DcmBalance::step(const ControlInput& input, ActuationFrame& actuation) noexcept {
   const bool stands = measure(input);
   state_.share = faded_share(state_.share, config_.share, stands, input.dt_s);
-  for (Part& part : parts_) {
-    part.wanted_Nm = part.sign * law_Nm(part.part);
+  for (BalanceJoint& part : parts_) {
+    part.wanted_Nm = part.in_leg.sign * law_Nm(part.in_leg.part);
     part.give(state_.share, stands, 1, config_.smooth_s, input.dt_s, actuation);
   }
 }

@@ -30,7 +30,14 @@
 
 namespace kadans {
 
-class DcmBalance final : public ControlObject {
+struct DcmBalanceState {
+  double com_x_m = 0, com_y_m = 0, com_z_m = 0;
+  double dcm_x_m = 0, dcm_y_m = 0;
+  double beyond_x_m = 0, beyond_y_m = 0;  // r_x, r_y
+  double share = 0;
+};
+
+class DcmBalance final : public Balancing<DcmBalanceState> {
  public:
   struct Config {
     double share = 1;            // 0..1
@@ -45,38 +52,20 @@ class DcmBalance final : public ControlObject {
     double roll_Nm_per_m = 0;
     double reach_side_m = 0;
   };
-  struct State {
-    double com_x_m = 0, com_y_m = 0, com_z_m = 0;
-    double dcm_x_m = 0, dcm_y_m = 0;
-    double beyond_x_m = 0, beyond_y_m = 0;  // r_x, r_y
-    double share = 0;
-  };
 
   // Throws std::invalid_argument for a passive joint or one without a role here, OptionError for a wrong foot.
   explicit DcmBalance(const ObjectSetup& setup);
 
   void declare(Declaration& declaration) override;
-  void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void pass_state(StateBytes& bytes) noexcept override {
-    for (Part& part : parts_) bytes(part.effort_Nm);
-    bytes(state_);
-  }
-  const State& state() const noexcept { return state_; }
 
  private:
-  struct Part : BalanceJoint {
-    LegPart part = LegPart::none;
-    double sign = 1;
-  };
   bool measure(const ControlInput& input) noexcept;
   double law_Nm(LegPart part) const noexcept;
 
-  std::vector<Part> parts_;
   Standing standing_;
   double weight_N_;
   Config config_;
-  State state_;
 };
 
 std::unique_ptr<ControlObject> make_dcm_balance(const ObjectSetup& setup);

@@ -57,13 +57,12 @@ Stance::Stance(const ObjectSetup& setup)
   const std::vector<JointPart> parts = leg_parts(setup.model, standing_.feet());
   for (JointAxis& axis : joint_axes(setup)) {
     const JointPart& part = parts[axis.joint];
-    const bool arm = part.part == LegPart::swing;
-    if (!arm && !legs_[0].bears(axis.joint) && !legs_[1].bears(axis.joint)) {
+    if (part.part != LegPart::swing && !legs_[0].bears(axis.joint) && !legs_[1].bears(axis.joint)) {
       throw std::invalid_argument("joint " + axis.name +
                                   " has no part in a stance: no foot hangs on it, and it is no shoulder that turns "
                                   "about y");
     }
-    parts_.push_back({{.axis = std::move(axis)}, arm, part.sign});
+    parts_.push_back({.axis = std::move(axis), .in_leg = part});
   }
 }
 
@@ -118,14 +117,7 @@ void Stance::declare_signals(Declaration& d) {
   d.signal({"force_y_N", "N", "Force of the ground that is wanted, to the left."}, &s.force_N[1]);
   d.signal({"force_z_N", "N", "Force of the ground that is wanted, upward."}, &s.force_N[2]);
   d.signal({"share", "", "Share of its torques that acts."}, &s.share);
-  for (Part& part : parts_) {
-    d.signal({part.axis.name + ".effort_Nm", "Nm", "Torque asked for."}, &part.effort_Nm);
-  }
-}
-
-void Stance::start(const ControlInput&) noexcept {
-  state_ = {};
-  for (Part& part : parts_) part.effort_Nm = 0;
+  declare_efforts(d);
 }
 
 // xi follows its law from the measured pressure, and the measurement as far as that is trusted: the velocity in it has
@@ -212,7 +204,7 @@ void Stance::load(std::size_t side, double share) noexcept {
   const Vec3 force{share * s.force_N[0], share * s.force_N[1], share * s.force_N[2]};
   legs_[side].update(standing_.kinematics(), force, {ankle[0] + pressed_m, ankle[1], ankle[2] - config_.sole_m});
   for (const LegLoad::Bearing& bearing : legs_[side].bearings()) {
-    for (Part& part : parts_) {
+    for (BalanceJoint& part : parts_) {
       if (part.axis.joint == bearing.joint) part.wanted_Nm = bearing.effort_Nm;
     }
   }
@@ -231,9 +223,10 @@ void Stance::step(const ControlInput& input, ActuationFrame& actuation) noexcept
   }
   const State& s = state_;
   const double arm_m = config_.arm_from_m;
-  for (Part& part : parts_) {
-    if (part.arm)
-      part.wanted_Nm = part.sign * config_.arm_Nm_per_m * (s.beyond_x_m - std::clamp(s.beyond_x_m, -arm_m, arm_m));
+  for (BalanceJoint& part : parts_) {
+    if (part.in_leg.part == LegPart::swing)
+      part.wanted_Nm =
+          part.in_leg.sign * config_.arm_Nm_per_m * (s.beyond_x_m - std::clamp(s.beyond_x_m, -arm_m, arm_m));
     part.give(s.share, stands, most_effort, config_.smooth_s, input.dt_s, actuation);
   }
 }

@@ -73,7 +73,18 @@ class LegLoad {
   std::vector<Bearing> bearings_;
 };
 
-class Stance final : public ControlObject {
+struct StanceState {
+  bool follows = false;  // xi is known from the tick before
+  double dcm_x_m = 0, dcm_y_m = 0;
+  double cop_x_m = 0, cop_y_m = 0;      // p
+  double beyond_x_m = 0;                // how far beyond the soles p_x would have to be
+  double turn_x_Nm = 0, turn_y_Nm = 0;  // L
+  double left = 0;                      // share of the weight on the left foot
+  Vec3 force_N{};
+  double share = 0;
+};
+
+class Stance final : public Balancing<StanceState> {
  public:
   struct Config {
     double share = 0;                       // 0..1
@@ -93,34 +104,14 @@ class Stance final : public ControlObject {
     double trust_per_s = 1000;  // rate at which xi follows what is measured
     double smooth_s = 0;        // time constant of the torques' low pass
   };
-  struct State {
-    bool follows = false;  // xi is known from the tick before
-    double dcm_x_m = 0, dcm_y_m = 0;
-    double cop_x_m = 0, cop_y_m = 0;      // p
-    double beyond_x_m = 0;                // how far beyond the soles p_x would have to be
-    double turn_x_Nm = 0, turn_y_Nm = 0;  // L
-    double left = 0;                      // share of the weight on the left foot
-    Vec3 force_N{};
-    double share = 0;
-  };
 
   // Throws std::invalid_argument for a passive joint or one without a role here, OptionError for a wrong foot.
   explicit Stance(const ObjectSetup& setup);
 
   void declare(Declaration& declaration) override;
-  void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void pass_state(StateBytes& bytes) noexcept override {
-    for (Part& part : parts_) bytes(part.effort_Nm);
-    bytes(state_);
-  }
-  const State& state() const noexcept { return state_; }
 
  private:
-  struct Part : BalanceJoint {
-    bool arm = false;
-    double sign = 1;  // of an arm: -1 when it turns about -y
-  };
   void declare_pressure(Declaration& declaration);
   void declare_trunk(Declaration& declaration);
   void declare_signals(Declaration& declaration);
@@ -134,12 +125,10 @@ class Stance final : public ControlObject {
   void find_force() noexcept;
   void load(std::size_t side, double share) noexcept;
 
-  std::vector<Part> parts_;
   Standing standing_;
   std::array<LegLoad, 2> legs_;
   double weight_N_;
   Config config_;
-  State state_;
 };
 
 std::unique_ptr<ControlObject> make_stance(const ObjectSetup& setup);

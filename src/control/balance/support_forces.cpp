@@ -147,13 +147,7 @@ void SupportForces::declare_signals(Declaration& d) {
   d.signal({"share", "", "Share of its torques that acts."}, &s.share);
   for (Foot& foot : feet_)
     d.signal({foot.name + ".force_z_N", "N", "Force on the foot that is wanted, upward."}, &foot.force_N[2]);
-  for (BalanceJoint& part : parts_)
-    d.signal({part.axis.name + ".effort_Nm", "Nm", "Torque asked for."}, &part.effort_Nm);
-}
-
-void SupportForces::start(const ControlInput&) noexcept {
-  state_ = {};
-  for (BalanceJoint& part : parts_) part.effort_Nm = 0;
+  declare_efforts(d);
 }
 
 // False when it does not stand, or something is not measured.

@@ -47,7 +47,14 @@ namespace kadans {
 void distribute(std::span<const Vec3> points_m, const Vec3& force_N, const Vec3& moment_Nm, double grip,
                 std::span<Vec3> forces_N) noexcept;
 
-class SupportForces final : public ControlObject {
+struct SupportForcesState {
+  double dcm_x_m = 0, dcm_y_m = 0;
+  double cop_x_m = 0, cop_y_m = 0;  // p
+  Vec3 force_N{}, moment_Nm{};
+  double share = 0;
+};
+
+class SupportForces final : public Balancing<SupportForcesState> {
  public:
   static constexpr std::size_t least_feet = 3;
 
@@ -62,24 +69,12 @@ class SupportForces final : public ControlObject {
     double grip = 0.45;
     double smooth_s = 0;  // time constant of the torques' low pass
   };
-  struct State {
-    double dcm_x_m = 0, dcm_y_m = 0;
-    double cop_x_m = 0, cop_y_m = 0;  // p
-    Vec3 force_N{}, moment_Nm{};
-    double share = 0;
-  };
 
   // Throws std::invalid_argument for a passive joint or one on which no foot hangs, OptionError for wrong feet.
   explicit SupportForces(const ObjectSetup& setup);
 
   void declare(Declaration& declaration) override;
-  void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void pass_state(StateBytes& bytes) noexcept override {
-    for (BalanceJoint& part : parts_) bytes(part.effort_Nm);
-    bytes(state_);
-  }
-  const State& state() const noexcept { return state_; }
 
  private:
   struct Foot {
@@ -97,12 +92,10 @@ class SupportForces final : public ControlObject {
 
   MovingBody body_;
   std::vector<Foot> feet_;
-  std::vector<BalanceJoint> parts_;
   double weight_N_;
   Vec3 com_m_{}, velocity_m_s_{};  // from the feet's middle
   std::array<Vec3, max_feet> points_m_{}, forces_N_{};
   Config config_;
-  State state_;
 };
 
 std::unique_ptr<ControlObject> make_support_forces(const ObjectSetup& setup);

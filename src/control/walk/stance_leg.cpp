@@ -47,13 +47,7 @@ void StanceLeg::declare_signals(Declaration& d) {
   d.signal({"force_y_N", "N", "Force of the ground that is wanted, to the left."}, &s.force_N[1]);
   d.signal({"force_z_N", "N", "Force of the ground that is wanted, upward."}, &s.force_N[2]);
   d.signal({"share", "", "Share of its torques that acts."}, &s.share);
-  for (BalanceJoint& part : parts_)
-    d.signal({part.axis.name + ".effort_Nm", "Nm", "Torque asked for."}, &part.effort_Nm);
-}
-
-void StanceLeg::start(const ControlInput&) noexcept {
-  state_ = {};
-  for (BalanceJoint& part : parts_) part.effort_Nm = 0;
+  declare_efforts(d);
 }
 
 bool StanceLeg::measure(const ControlInput& input) noexcept {

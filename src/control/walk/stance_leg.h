@@ -34,7 +34,14 @@
 
 namespace kadans {
 
-class StanceLeg final : public ControlObject {
+struct StanceLegState {
+  Vec3 com_m{};  // c
+  double turn_x_Nm = 0, turn_y_Nm = 0;
+  Vec3 force_N{};
+  double share = 0;
+};
+
+class StanceLeg final : public Balancing<StanceLegState> {
  public:
   struct Config {
     double rise_s = 0.03;
@@ -43,24 +50,12 @@ class StanceLeg final : public ControlObject {
     double grip = 0.45;
     double sole_m = 0.06;  // how far the sole is below the foot's frame
   };
-  struct State {
-    Vec3 com_m{};  // c
-    double turn_x_Nm = 0, turn_y_Nm = 0;
-    Vec3 force_N{};
-    double share = 0;
-  };
 
   // Throws std::invalid_argument for a passive joint or one that is not of the leg, OptionError for a wrong foot.
   explicit StanceLeg(const ObjectSetup& setup);
 
   void declare(Declaration& declaration) override;
-  void start(const ControlInput& input) noexcept override;
   void step(const ControlInput& input, ActuationFrame& actuation) noexcept override;
-  void pass_state(StateBytes& bytes) noexcept override {
-    for (BalanceJoint& part : parts_) bytes(part.effort_Nm);
-    bytes(state_);
-  }
-  const State& state() const noexcept { return state_; }
 
  private:
   void declare_signals(Declaration& declaration);
@@ -71,10 +66,8 @@ class StanceLeg final : public ControlObject {
   std::size_t foot_;       // link
   Kinematics kinematics_;  // the base's origin at 0
   LegLoad leg_;
-  std::vector<BalanceJoint> parts_;
   double weight_N_;
   Config config_;
-  State state_;
 };
 
 std::unique_ptr<ControlObject> make_stance_leg(const ObjectSetup& setup);

@@ -109,16 +109,9 @@ std::vector<double> MjcfElement::numbers(const char* attribute, std::size_t leas
     return otherwise;
   };
   std::vector<double> values;
-  std::string_view rest = found->text;
-  while (true) {
-    const std::size_t start = rest.find_first_not_of(xml_blanks);
-    if (start == std::string_view::npos) break;
-    rest.remove_prefix(start);
-    const std::string_view part = rest.substr(0, rest.find_first_of(xml_blanks));
-    rest.remove_prefix(part.size());
+  for (const std::string_view part : split(found->text, most + 1)) {
     if (const auto defect = read_value(UrdfValue::number, part, &values.emplace_back()))
       return refuse("has a part '" + shown(part) + "' that " + *defect);
-    if (values.size() > most) break;
   }
   if (values.size() < least || values.size() > most)
     return refuse(

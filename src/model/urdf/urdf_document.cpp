@@ -20,19 +20,9 @@ namespace {
 
 constexpr double largest = 1e9;
 constexpr std::size_t longest_name = 128, longest_number = 64;
+constexpr std::size_t enough = 16;  // parts of a value: nothing in URDF has more than four
 using Defect = std::optional<std::string>;
 using tinyxml2::XMLElement;
-
-std::vector<std::string_view> pieces(std::string_view text) {
-  constexpr std::size_t enough = 16;  // nothing in URDF has more than four
-  std::vector<std::string_view> result;
-  for (text = trimmed(text); !text.empty() && result.size() < enough; text = trimmed(text)) {
-    const std::size_t end = std::min(text.find_first_of(xml_blanks), text.size());
-    result.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return result;
-}
 
 // std::from_chars: no locale, no hexadecimal; a leading '+' is what it leaves out.
 std::errc parse(std::string_view text, double& value) {
@@ -75,13 +65,13 @@ std::string spaces_meant(std::string_view text, std::size_t count) {
   std::string spaced(text), better;
   std::replace_if(
       spaced.begin(), spaced.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-  for (const std::string_view piece : pieces(spaced)) better += (better.empty() ? "" : " ") + std::string(piece);
+  for (const std::string_view piece : split(spaced, enough)) better += (better.empty() ? "" : " ") + std::string(piece);
   std::vector<double> values(count);
   return read_numbers(better, values) ? "" : ", did you mean '" + better + "'?";
 }
 
 Defect read_numbers(std::string_view text, std::span<double> values) {
-  const std::vector<std::string_view> parts = pieces(text);
+  const std::vector<std::string_view> parts = split(text, enough);
   const auto or_spaces = [&](const std::string& defect) {
     const std::string hint = spaces_meant(text, values.size());
     return hint.empty() ? defect : "is not separated by spaces" + hint;

@@ -53,13 +53,13 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
   }
   first_viewer_ = channels_.size();
   for (const ViewerChannel& channel : viewers_.channels()) add(channel);
-  log_ = add_json("/log", "foxglove.Log", log_schema, true);
-  transitions_ = add_json("/transitions", "kadans.Transition", transition_schema, true);
-  active_ = add_json("/active", "kadans.Active", active_schema, true);
-  faults_ = add_json("/faults", "kadans.Fault", fault_schema, true);
-  timing_ = add_json("/timing", "kadans.Timing", timing_schema, false);
-  drives_ = add_json("/drives", "kadans.Drives", drives_schema, false);
-  described_ = add_json("/description", "kadans.Description", description_schema, false);
+  log_ = add(log_channel, true);
+  transitions_ = add(transitions_channel, true);
+  active_ = add(active_channel, true);
+  faults_ = add(faults_channel, true);
+  timing_ = add(timing_channel);
+  drives_ = add(json_channel("/drives", "kadans.Drives", drives_schema));
+  described_ = add(description_channel);
   put_json(described_, 0, texts.description);
   write_robot_description(texts.urdf, message_);
   channels_[add(robot_description_channel(""))].put(0, message_.bytes());
@@ -72,12 +72,6 @@ LiveChannels::LiveChannels(const Instance& instance, const RobotTexts& texts)
 std::size_t LiveChannels::add(ViewerChannel channel, bool events) {
   channels_.push_back({std::move(channel), events});
   return channels_.size() - 1;
-}
-
-std::size_t LiveChannels::add_json(const std::string& topic, const std::string& schema, const char* text, bool events) {
-  return add(
-      {.topic = topic, .encoding = "json", .schema_name = schema, .schema_encoding = "jsonschema", .schema = text},
-      events);
 }
 
 void LiveChannels::put_json(std::size_t channel, std::int64_t time_ns, const std::string& json) {

@@ -60,7 +60,6 @@ class LiveChannels {
 
  private:
   std::size_t add(ViewerChannel channel, bool events = false);
-  std::size_t add_json(const std::string& topic, const std::string& schema, const char* text, bool events);
   void put_json(std::size_t channel, std::int64_t time_ns, const std::string& json);
 
   std::vector<SignalTopic> topics_;  // the first channels

@@ -20,19 +20,28 @@ constexpr std::size_t definitions_bytes = std::size_t{64} << 10U;
 
 }  // namespace
 
-void McapWriter::ZstdDelete::operator()(ZSTD_CCtx_s* context) const noexcept { ZSTD_freeCCtx(context); }
+void Packer::ZstdDelete::operator()(ZSTD_CCtx_s* context) const noexcept { ZSTD_freeCCtx(context); }
 
-McapWriter::McapWriter(McapSettings settings) : settings_(settings) {
-  if (settings_.compression_level == 0) return;
-  zstd_.reset(ZSTD_createCCtx());
+Packer::Packer(int level, std::size_t largest) : zstd_(ZSTD_createCCtx()), packed_(ZSTD_compressBound(largest)) {
   if (zstd_ == nullptr) return;
   const auto set = [this](ZSTD_cParameter parameter, int value) {
     (void)ZSTD_CCtx_setParameter(zstd_.get(), parameter, value);
   };
-  set(ZSTD_c_compressionLevel, settings_.compression_level);
-  if (settings_.compression_level > 0) return;
+  set(ZSTD_c_compressionLevel, level);
+  if (level > 0) return;
   set(ZSTD_c_minMatch, 7);  // numbers of eight bytes: shorter matches cost time and save little
   set(ZSTD_c_hashLog, 12);  // the last rows alone, in the nearest cache
+}
+
+std::span<const std::byte> Packer::pack(std::span<const std::byte> bytes) {
+  if (zstd_ == nullptr) return {};
+  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(bytes.size())));
+  const std::size_t size = ZSTD_compress2(zstd_.get(), packed_.data(), packed_.size(), bytes.data(), bytes.size());
+  return std::span(packed_).first(ZSTD_isError(size) != 0 ? 0 : size);
+}
+
+McapWriter::McapWriter(McapSettings settings) : settings_(settings) {
+  if (settings_.compression_level != 0) packer_.emplace(settings_.compression_level);
 }
 
 McapWriter::~McapWriter() { (void)close(); }
@@ -132,44 +141,25 @@ bool McapWriter::write(std::uint16_t channel, std::uint32_t sequence, std::int64
   return true;
 }
 
-// Appends the chunk's records to the block, compressed. False: nothing was appended.
-bool McapWriter::pack() {
-  if (zstd_ == nullptr) return false;
-  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(records_.size())));
-  const std::size_t size =
-      ZSTD_compress2(zstd_.get(), packed_.data(), packed_.size(), records_.bytes().data(), records_.size());
-  if (ZSTD_isError(size) != 0) return false;  // out of memory
-  block_.put(std::span(packed_).first(size));
-  return true;
-}
-
 void McapWriter::put_chunk(Chunk& chunk) {
   chunk.start_ns = chunk_start_ns_;
   chunk.end_ns = chunk_end_ns_;
   chunk.offset = file_.size();
   chunk.unpacked = records_.size();
+  std::span<const std::byte> packed;
+  if (packer_) packed = packer_->pack(records_.bytes());
+  if (!packed.empty()) chunk.compression = "zstd";
+  if (packed.empty()) packed = records_.bytes();
+  chunk.packed = packed.size();
   {
     const McapRecord record(block_, McapOpcode::chunk);
     block_.put(chunk.start_ns);
     block_.put(chunk.end_ns);
     block_.put(chunk.unpacked);
     block_.put(crc32(records_.bytes()));
-    const std::size_t at = block_.size();
-    chunk.compression = "zstd";
     block_.put_string(chunk.compression);
-    block_.put(std::uint64_t{0});
-    const std::size_t start = block_.size();
-    if (pack()) {
-      chunk.packed = block_.size() - start;
-      block_.set(start - sizeof(std::uint64_t), chunk.packed);
-    } else {
-      chunk.compression = "";
-      chunk.packed = chunk.unpacked;
-      block_.shrink(at);
-      block_.put_string(chunk.compression);
-      block_.put(chunk.packed);
-      block_.put(records_.bytes());
-    }
+    block_.put(chunk.packed);
+    block_.put(packed);
   }
   chunk.length = block_.size();
 }

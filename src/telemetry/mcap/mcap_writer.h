@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -58,10 +59,26 @@ class RecordFile {
   std::string error_;
 };
 
+// Compresses with zstd, in memory that it keeps from one use to the next.
+class Packer {
+ public:
+  // `level`: of zstd, -7..19, less is faster. `largest`: bytes for whose packing there is room from the start.
+  explicit Packer(int level, std::size_t largest = 0);
+  // Valid until the next call. Empty: out of memory.
+  std::span<const std::byte> pack(std::span<const std::byte> bytes);
+
+ private:
+  struct ZstdDelete {
+    void operator()(ZSTD_CCtx_s* context) const noexcept;
+  };
+  std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
+  std::vector<std::byte> packed_;
+};
+
 struct McapSettings {
   std::int64_t chunk_period_ns = 500'000'000;  // of log time
   std::size_t chunk_bytes = 1U << 19U;         // before compression
-  int compression_level = -4;                  // of zstd, -7..19, less is faster; 0: not compressed
+  int compression_level = -4;                  // as of a Packer; 0: not compressed
 };
 
 class McapWriter {
@@ -112,13 +129,9 @@ class McapWriter {
     std::string_view compression;
     std::vector<std::pair<std::uint16_t, std::uint64_t>> indexes;  // channel, offset in the file
   };
-  struct ZstdDelete {
-    void operator()(ZSTD_CCtx_s* context) const noexcept;
-  };
 
   bool chunk_is_due(std::uint64_t time_ns, std::size_t more) const noexcept;
   void put_once(Definition& definition, const ByteWriter& among);
-  bool pack();
   void put_chunk(Chunk& chunk);
   void put_message_indexes(Chunk& chunk);
   void keep_chunk_index(const Chunk& chunk);
@@ -130,11 +143,10 @@ class McapWriter {
   RecordFile file_;
   std::vector<Definition> schemas_;
   std::vector<Channel> channels_;
-  std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
+  std::optional<Packer> packer_;  // none: chunks are not compressed
 
-  ByteWriter records_;             // of the open chunk
-  std::vector<std::byte> packed_;  // room for the open chunk, compressed
-  ByteWriter block_;               // the bytes that go to the file in one piece
+  ByteWriter records_;  // of the open chunk
+  ByteWriter block_;    // the bytes that go to the file in one piece
   std::uint64_t chunk_start_ns_ = 0, chunk_end_ns_ = 0;
 
   std::uint64_t messages_ = 0, start_ns_ = 0, end_ns_ = 0;

@@ -8,21 +8,15 @@
 #include <utility>
 
 #include "kadans/signal/input_error.h"
+#include "kadans/signal/nearest_name.h"
+#include "record_rows.h"
 #include "signal/number_text.h"
-#include "telemetry/record/signal_topics.h"
 
 namespace kadans {
 namespace {
 
 constexpr std::size_t rows_max = 20'000;  // that wait for the inputs of their ticks
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<std::string> names_in(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line.substr(0, line.find('\t')));
-  return lines;
-}
 
 }  // namespace
 
@@ -100,8 +94,10 @@ bool TickReader::learn() {
   if (found == files_.reader().metadata().end()) return stop("it holds no inputs of its ticks");
   const std::vector<std::string> before = std::move(names_);
   layout_ = InputLayout::of(found->second);
-  names_ = names_in(fact_in(found->second, "names"));
-  for (std::uint32_t i = 0; i < names_.size(); ++i) numbers_[names_[i]] = i;
+  names_.clear();
+  std::istringstream names(fact_in(found->second, "names"));
+  for (std::string name; std::getline(names, name); names_.push_back(name))
+    numbers_[name] = static_cast<std::uint32_t>(names_.size());
   if (!before.empty() && before != names_) return stop("it is no part of the same run");
   if (!layout_) return stop("its inputs are of another version of kadans");
   decoder_ = std::make_unique<InputDecoder>(*layout_);
@@ -112,17 +108,14 @@ void TickReader::take_row(const McapMessage& message) {
   const auto [known, added] = topics_.try_emplace(message.channel);
   std::vector<std::uint32_t>& numbers = known->second;
   if (added) {
-    const TextMap& facts = files_.reader().channels().at(message.channel).metadata;
-    for (const std::string& name : names_in(fact_in(facts, "signals"))) {
+    for (const std::string& name : names_of(topic_of(files_.reader(), message.channel).signals)) {
       const auto number = numbers_.find(name);
       numbers.push_back(number == numbers_.end() ? std::numeric_limits<std::uint32_t>::max() : number->second);
     }
   }
   if (numbers.empty()) return;
   values_.resize(numbers.size());
-  if (!read_cdr(message.payload, values_, Precision::full) && !read_cdr(message.payload, values_, Precision::single))
-    return;
-  if (!reach(message.sequence)) return;
+  if (!read_cdr(message.payload, values_) || !reach(message.sequence)) return;
   for (std::size_t row = message.sequence - first_; row < rows_.size(); ++row) {
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (numbers[i] < names_.size()) rows_[row][numbers[i]] = values_[i];

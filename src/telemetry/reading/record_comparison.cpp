@@ -5,9 +5,9 @@
 #include <cmath>
 #include <iterator>
 #include <set>
-#include <sstream>
 #include <unordered_map>
 
+#include "kadans/signal/nearest_name.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -43,10 +43,7 @@ RecordComparison::Topic& RecordComparison::topic_of(std::uint16_t channel) {
   const auto [known, added] = topics_.try_emplace(channel);
   Topic& topic = known->second;
   if (!added) return topic;
-  const McapChannel& info = record_.channels().at(channel);
-  std::istringstream lines(fact_in(info.metadata, "signals"));
-  for (std::string line; std::getline(lines, line);) {
-    const std::string name = line.substr(0, line.find('\t'));
+  for (const std::string& name : names_of(kadans::topic_of(record_, channel).signals)) {
     const auto signal = table_.find(name);
     if (!signal && !is_upkeep(name)) gone_.push_back(name);
     const bool compared = signal && !is_upkeep(name);
@@ -54,8 +51,9 @@ RecordComparison::Topic& RecordComparison::topic_of(std::uint16_t channel) {
     if (compared) ++compared_;
   }
   topic.values.resize(topic.signals.size());
-  topic.every_ticks = std::max(1U, number_in(info.metadata, "every_ticks"));
-  topic.standstill_ticks = number_in(info.metadata, "standstill_ticks");
+  const TextMap& facts = record_.channels().at(channel).metadata;
+  topic.every_ticks = std::max(1U, number_in(facts, "every_ticks"));
+  topic.standstill_ticks = number_in(facts, "standstill_ticks");
   return topic;
 }
 
@@ -82,8 +80,9 @@ void RecordComparison::compare(std::uint64_t tick, std::int64_t time_ns, std::sp
 
 bool RecordComparison::compare_message(std::span<const double> row, std::int64_t time_ns) {
   Topic& topic = topic_of(message_.channel);
-  topic.single = !read_cdr(message_.payload, topic.values, Precision::full);
-  if (topic.single && !read_cdr(message_.payload, topic.values, Precision::single)) return false;
+  const std::optional<Precision> precision = read_cdr(message_.payload, topic.values);
+  topic.single = precision != Precision::full;
+  if (!precision) return false;
   topic.read = true;
   topic.sequence = message_.sequence;
   if (message_.time_ns != time_ns) {

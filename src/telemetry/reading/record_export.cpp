@@ -16,14 +16,13 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/nearest_name.h"
 #include "signal/number_text.h"
+#include "signal/utf8.h"
 #include "telemetry/mcap/mcap_writer.h"
 
 namespace kadans {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string csv_quoted(const std::string& text) { return json_text(text); }
 
 void append_json_number(std::string& text, double value) {
   if (std::isfinite(value))
@@ -36,7 +35,7 @@ void append_json_number(std::string& text, double value) {
 void append_fields(std::string& line, std::string_view text) {
   std::optional<Json> json = read_foreign_json(text);
   if (!json || !json->is_object()) {
-    line += ",\"message\":" + csv_quoted(std::string(text));
+    line += ",\"message\":" + json_text(std::string(text));
     return;
   }
   json->erase("timestamp");
@@ -105,7 +104,7 @@ bool JsonLines::next(std::string& line) {
 const std::vector<std::string>& JsonLines::keys() {
   const auto [known, added] = keys_.try_emplace(rows_.channel());
   if (!added) return known->second;
-  for (const Signal& signal : rows_.topic().signals) known->second.push_back("," + csv_quoted(signal.name) + ":");
+  for (const Signal& signal : rows_.topic().signals) known->second.push_back("," + json_text(signal.name) + ":");
   return known->second;
 }
 
@@ -113,7 +112,7 @@ void JsonLines::write(std::string& line) {
   const RecordTopic& topic = rows_.topic();
   line += "{\"time_s\":";
   append_seconds(line, rows_.time_ns());
-  line += ",\"topic\":" + csv_quoted(topic.name);
+  line += ",\"topic\":" + json_text(topic.name);
   if (!rows_.values().empty()) {
     line += ",\"tick\":" + std::to_string(rows_.tick());
     const std::vector<std::string>& names = keys();
@@ -124,7 +123,7 @@ void JsonLines::write(std::string& line) {
   } else if (topic.is_json()) {
     append_fields(line, rows_.text());
   } else if (const std::optional<std::string> text = string_in(rows_)) {
-    line += ",\"data\":" + csv_quoted(*text);
+    line += ",\"data\":" + json_text(*text);
   } else {
     line += ",\"bytes\":" + std::to_string(rows_.payload().size());
   }
@@ -140,17 +139,6 @@ std::vector<std::string> JsonLines::unknown_topics() const {
   }
   return unknown;
 }
-
-namespace {
-
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
-}  // namespace
 
 CsvLines::CsvLines(const std::string& path, std::vector<ChosenSignal> signals, TimeSpan span,
                    std::optional<std::int64_t> every_ns)
@@ -209,7 +197,7 @@ bool CsvLines::next(std::string& line) {
 void CsvLines::write_head(std::string& line) const {
   line = "time_s";
   for (const ChosenSignal& signal : signals_)
-    line += "," + cell(signal.info.name + (signal.info.unit.empty() ? "" : " [" + signal.info.unit + "]"));
+    line += "," + csv_field(signal.info.name + (signal.info.unit.empty() ? "" : " [" + signal.info.unit + "]"));
 }
 
 // A row that comes late, with an earlier time, repeats what holds.

@@ -15,6 +15,7 @@
 #include "record_rows.h"
 #include "signal/number_text.h"
 #include "signal/sine_cosine.h"
+#include "telemetry/record/record_folder.h"
 
 namespace kadans {
 namespace {
@@ -223,21 +224,12 @@ class SequenceReader {
   std::vector<std::string> head_;
 };
 
-bool is_record(std::istream& file) {
-  char begins[5] = {};
-  file.read(begins, sizeof begins);
-  const bool is = file.gcount() == sizeof begins && std::string_view(begins, sizeof begins) == "\x89MCAP";
-  file.clear();
-  file.seekg(0);
-  return is;
-}
-
 }  // namespace
 
 std::vector<RecordedObservation> read_observations(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError({.file = file, .message = "cannot be read"});
-  if (!is_record(stream)) return SequenceReader(file).read(stream);
+  if (!is_record(file)) return SequenceReader(file).read(stream);
   ObservationReader reader(file);
   std::vector<RecordedObservation> all = reader.read();
   if (!reader.has_entries())

@@ -69,11 +69,9 @@ bool RecordRows::next() {
                : &topics_.emplace(message_.channel, topic_of(reader_, message_.channel)).first->second;
   if (topic_->signals.empty()) return true;
   values_.resize(topic_->signals.size());
-  for (const Precision precision : {Precision::full, Precision::single}) {
-    precision_ = precision;
-    if (read_cdr(message_.payload, values_, precision)) return true;
-  }
-  values_.clear();
+  const std::optional<Precision> precision = read_cdr(message_.payload, values_);
+  precision_ = precision.value_or(Precision::single);
+  if (!precision) values_.clear();
   return true;
 }
 

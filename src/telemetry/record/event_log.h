@@ -19,18 +19,12 @@
 
 namespace kadans {
 
-// The JSON that viewers read, and its JSON schemas: foxglove.Log, kadans.Transition, kadans.Active and
-// kadans.Fault.
+// The JSON that viewers read, as the schemas of its channels say (viewer_messages.h).
 std::string json_of(const Event& event);
 std::string json_of(const ToldFault& fault);
 // The JSON that reports and ctl tell: {code, tick, text, joint, value, limit, words, key}; no joint and no words where
 // there are none, and the key is of the robot's configuration.
 nlohmann::ordered_json fault_json(const Fault& fault, const ToldFault& what);
-extern const char* const log_schema;
-extern const char* const emitted_schema;  // kadans.Event
-extern const char* const transition_schema;
-extern const char* const active_schema;
-extern const char* const fault_schema;
 
 class EventLog final : public LineSink {
  public:

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <numeric>
 #include <utility>
 
@@ -57,17 +56,13 @@ std::size_t input_bytes(const FlightSettings& settings) {
 
 }  // namespace
 
-void FlightMemory::ZstdDelete::operator()(ZSTD_CCtx_s* context) const noexcept { ZSTD_freeCCtx(context); }
-
 FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
     : signals_(signals),
       kept_ns_(std::llround(settings.kept_s * 1e9)),
-      zstd_(ZSTD_createCCtx()),
       store_(settings.bytes - input_bytes(settings)),
       planes_(block_rows * row_bytes(signals)),
-      packed_(ZSTD_compressBound(planes_.size())),
+      packer_(compression_level, planes_.size()),
       held_(signals) {
-  if (zstd_ == nullptr) throw std::bad_alloc();
   for (SignalId id = 0; id < signals; ++id)
     rates_[settings.every_ticks.empty() ? 1 : settings.every_ticks[id]].push_back(id);
   if (settings.inputs) encoder_ = std::make_unique<InputEncoder>(*settings.inputs, std::vector<bool>{});
@@ -75,8 +70,6 @@ FlightMemory::FlightMemory(std::size_t signals, const FlightSettings& settings)
   times_.reserve(block_rows);
   values_.reserve(block_rows * signals);
 }
-
-FlightMemory::~FlightMemory() = default;
 
 void FlightMemory::add(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row,
                        std::span<const std::uint64_t> inputs) {
@@ -141,13 +134,11 @@ void FlightMemory::seal() {
 // The first bytes of planes_, in the place of what is older. False: out of memory, or too large.
 bool FlightMemory::pack(std::size_t bytes, Part& part) {
   if (bytes == 0) return true;
-  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(bytes)));
-  const std::size_t packed =
-      ZSTD_compressCCtx(zstd_.get(), packed_.data(), packed_.size(), planes_.data(), bytes, compression_level);
-  if (ZSTD_isError(packed) != 0 || packed > store_.bytes()) return false;
-  while (!store_.has_room(packed) && !blocks_.empty()) drop_oldest();
-  if (!store_.has_room(packed)) return false;
-  part = store_.put(std::span(packed_).first(packed));
+  const std::span<const std::byte> packed = packer_.pack(std::span(planes_).first(bytes));
+  if (packed.empty() || packed.size() > store_.bytes()) return false;
+  while (!store_.has_room(packed.size()) && !blocks_.empty()) drop_oldest();
+  if (!store_.has_room(packed.size())) return false;
+  part = store_.put(packed);
   return true;
 }
 

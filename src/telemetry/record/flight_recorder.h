@@ -16,8 +16,6 @@
 #include "input_stream.h"
 #include "record_writer.h"
 
-struct ZSTD_CCtx_s;
-
 namespace kadans {
 
 // The memory of a flight recorder: the newest rows of a run, compressed, in a fixed number of bytes.
@@ -55,7 +53,6 @@ class FlightMemory {
 
   // Allocates its memory in the constructor.
   FlightMemory(std::size_t signals, const FlightSettings& settings);
-  ~FlightMemory();
   FlightMemory(const FlightMemory&) = delete;
   FlightMemory& operator=(const FlightMemory&) = delete;
 
@@ -109,9 +106,6 @@ class FlightMemory {
     std::uint32_t first_free_ = 0;
     std::size_t free_ = 0;
   };
-  struct ZstdDelete {
-    void operator()(ZSTD_CCtx_s* context) const noexcept;
-  };
 
   bool pack(std::size_t bytes, Part& part);
   void drop_oldest() noexcept;
@@ -120,9 +114,9 @@ class FlightMemory {
   std::size_t signals_;
   std::map<std::uint32_t, std::vector<SignalId>> rates_;  // the signals by the ticks between their values
   std::int64_t kept_ns_;
-  std::unique_ptr<ZSTD_CCtx_s, ZstdDelete> zstd_;
   Store store_;
-  std::vector<std::byte> planes_, packed_;
+  std::vector<std::byte> planes_;
+  Packer packer_;
   std::size_t signal_bytes_ = 0;  // of all that is stored
   std::int64_t last_ns_ = 0;
   std::deque<Block> blocks_;

@@ -13,32 +13,7 @@ namespace {
 
 constexpr std::uint64_t parameters_every_ticks = 10;
 
-constexpr const char* parameters_schema = R"({
-  "title": "kadans.Parameters", "type": "object",
-  "description": "All parameters at the start, then those that changed",
-  "properties": { "timestamp": { "type": "object", "title": "time",
-      "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } },
-    "parameters": { "type": "array", "items": { "type": "object",
-      "properties": { "name": { "type": "string" }, "value": { "type": "number" } } } } }
-})";
-
 }  // namespace
-
-const char* const description_schema = R"({
-  "title": "kadans.Description",
-  "description": "Robot, control sets, parameters, world and charts of a run",
-  "type": "object",
-  "properties": {
-    "robot": { "type": "object" },
-    "sets": { "type": "array" },
-    "objects": { "type": "array" },
-    "parameters": { "type": "array" },
-    "world": { "type": "array" },
-    "ground": { "type": "object" },
-    "payloads": { "type": "array" },
-    "behaviors": { "type": "array" }
-  }
-})";
 
 RecordWriter::RecordWriter(const SignalTable& signals, const RecorderSettings& settings)
     : signals_(signals), settings_(settings), viewers_(signals, settings.subjects), file_(settings.file) {
@@ -49,8 +24,9 @@ RecordWriter::RecordWriter(const SignalTable& signals, const RecorderSettings& s
   if (!viewers_.channels().empty()) stride_ = std::gcd(stride_, std::uint64_t{settings_.viewer_every_ticks});
 }
 
-std::uint16_t RecordWriter::add_json(const char* topic, const char* schema, const char* text) {
-  return file_.add_channel(topic, "json", file_.add_schema(schema, "jsonschema", text));
+std::uint16_t RecordWriter::add(const ViewerChannel& channel) {
+  const std::uint16_t schema = file_.add_schema(channel.schema_name, channel.schema_encoding, channel.schema);
+  return file_.add_channel(channel.topic, channel.encoding, schema);
 }
 
 bool RecordWriter::open(const std::string& path) {
@@ -62,17 +38,14 @@ bool RecordWriter::open(const std::string& path) {
                                        {"every_ticks", std::to_string(topic.signals.every_ticks)},
                                        {"standstill_ticks", std::to_string(settings_.standstill_ticks)}});
   }
-  for (const ViewerChannel& viewer : viewers_.channels()) {
-    const std::uint16_t schema = file_.add_schema(viewer.schema_name, viewer.schema_encoding, viewer.schema);
-    viewer_channels_.push_back(file_.add_channel(viewer.topic, viewer.encoding, schema));
-  }
-  log_ = add_json("/log", "foxglove.Log", log_schema);
-  transitions_ = add_json("/transitions", "kadans.Transition", transition_schema);
-  active_ = add_json("/active", "kadans.Active", active_schema);
-  emitted_ = add_json("/events", "kadans.Event", emitted_schema);
-  faults_ = add_json("/faults", "kadans.Fault", fault_schema);
-  timing_ = add_json("/timing", "kadans.Timing", timing_schema);
-  parameters_channel_ = add_json("/parameters", "kadans.Parameters", parameters_schema);
+  for (const ViewerChannel& viewer : viewers_.channels()) viewer_channels_.push_back(add(viewer));
+  log_ = add(log_channel);
+  transitions_ = add(transitions_channel);
+  active_ = add(active_channel);
+  emitted_ = add(events_channel);
+  faults_ = add(faults_channel);
+  timing_ = add(timing_channel);
+  parameters_channel_ = add(parameters_channel);
   return true;
 }
 
@@ -81,15 +54,12 @@ bool RecordWriter::describe_robot(const std::string& name, const std::string& ur
 }
 
 bool RecordWriter::describe_other(const std::string& robot, const std::string& urdf, std::int64_t time_ns) {
-  const ViewerChannel viewer = robot_description_channel(robot);
-  const std::uint16_t schema = file_.add_schema(viewer.schema_name, viewer.schema_encoding, viewer.schema);
   write_robot_description(urdf, message_);
-  return file_.write(file_.add_channel(viewer.topic, viewer.encoding, schema), 0, time_ns, message_.bytes());
+  return file_.write(add(robot_description_channel(robot)), 0, time_ns, message_.bytes());
 }
 
 bool RecordWriter::describe_parts(const std::string& description, std::int64_t time_ns) {
-  return file_.write(add_json("/description", "kadans.Description", description_schema), 0, time_ns,
-                     bytes_of(description));
+  return file_.write(add(description_channel), 0, time_ns, bytes_of(description));
 }
 
 bool RecordWriter::row(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row) {

@@ -35,9 +35,6 @@ struct RecorderSettings {
   const ParameterTable* parameters = nullptr;  // must outlive the record; null: not recorded
 };
 
-// The JSON Schema of /description.
-extern const char* const description_schema;
-
 class RecordWriter {
  public:
   RecordWriter(const SignalTable& signals, const RecorderSettings& settings);
@@ -89,7 +86,7 @@ class RecordWriter {
   bool put_last(const Topic& topic, std::uint64_t tick, std::int64_t time_ns);
   bool put_viewers(std::uint64_t tick, std::int64_t time_ns, std::span<const double> row);
   bool put_parameters(std::int64_t time_ns);
-  std::uint16_t add_json(const char* topic, const char* schema, const char* text);
+  std::uint16_t add(const ViewerChannel& channel);
 
   const SignalTable& signals_;
   RecorderSettings settings_;

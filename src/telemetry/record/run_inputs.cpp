@@ -24,11 +24,9 @@ constexpr int text_compression_level = 6;  // also while a robot runs, when its 
 }
 
 std::vector<std::byte> packed(const std::string& text) {
-  std::vector<std::byte> bytes(ZSTD_compressBound(text.size()));
-  const std::size_t size = ZSTD_compress(bytes.data(), bytes.size(), text.data(), text.size(), text_compression_level);
-  bytes.resize(ZSTD_isError(size) != 0 ? 0 : size);
-  bytes.shrink_to_fit();
-  return bytes;
+  Packer packer(text_compression_level);
+  const std::span<const std::byte> bytes = packer.pack(bytes_of(text));
+  return {bytes.begin(), bytes.end()};
 }
 
 std::string unpacked(const McapAttachment& attachment, std::size_t max_bytes, const std::string& record) {

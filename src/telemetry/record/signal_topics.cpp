@@ -229,13 +229,14 @@ void write_cdr(std::span<std::byte> payload, std::span<const double> values, Pre
   (void)write_numbers(std::ranges::copy(cdr_beginning, payload.data()).out, values, precision);
 }
 
-bool read_cdr(std::span<const std::byte> payload, std::span<double> values, Precision precision) noexcept {
-  if (payload.size() != cdr_bytes(values.size(), precision)) return false;
-  if (!std::ranges::equal(payload.first(cdr_head_bytes), cdr_beginning)) return false;
+std::optional<Precision> read_cdr(std::span<const std::byte> payload, std::span<double> values) noexcept {
+  const bool full = payload.size() == cdr_bytes(values.size(), Precision::full);
+  if (!full && payload.size() != cdr_bytes(values.size(), Precision::single)) return std::nullopt;
+  if (!std::ranges::equal(payload.first(cdr_head_bytes), cdr_beginning)) return std::nullopt;
   const std::byte* from = payload.data() + cdr_head_bytes;
-  if (precision == Precision::full) {
+  if (full) {
     std::memcpy(values.data(), from, values.size_bytes());
-    return true;
+    return Precision::full;
   }
   for (double& value : values) {
     float single = 0;
@@ -243,7 +244,7 @@ bool read_cdr(std::span<const std::byte> payload, std::span<double> values, Prec
     value = static_cast<double>(single);
     from += sizeof single;
   }
-  return true;
+  return Precision::single;
 }
 
 }  // namespace kadans

@@ -16,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,7 +61,8 @@ void write_cdr(std::span<std::byte> payload, const SignalTopic& topic, std::span
                           Precision precision) noexcept;
 // payload.size() == cdr_bytes(values.size(), precision)
 void write_cdr(std::span<std::byte> payload, std::span<const double> values, Precision precision) noexcept;
-// False when the payload is not what write_cdr makes of values.size() values; then nothing is read.
-[[nodiscard]] bool read_cdr(std::span<const std::byte> payload, std::span<double> values, Precision precision) noexcept;
+// Returns the precision that it has. nullopt when the payload is not what write_cdr makes of values.size() values; then
+// nothing is read.
+[[nodiscard]] std::optional<Precision> read_cdr(std::span<const std::byte> payload, std::span<double> values) noexcept;
 
 }  // namespace kadans

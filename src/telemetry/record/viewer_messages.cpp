@@ -122,7 +122,80 @@ ViewerChannel of_ros(const std::string& topic, const char* type, const std::stri
 // "/left" for the robot "left", "" for the first.
 std::string topics_of(const std::string& robot) { return robot.empty() ? "" : "/" + robot; }
 
+constexpr const char* time_schema = R"(
+    "timestamp": { "type": "object", "title": "time", "description": "Time of the run", "properties": {
+      "sec": { "type": "integer", "minimum": 0 },
+      "nsec": { "type": "integer", "minimum": 0, "maximum": 999999999 } } },)";
+
+// Of messages that tell their time, and these properties.
+ViewerChannel told_channel(const std::string& topic, const std::string& name, const std::string& doc,
+                           const std::string& properties) {
+  const std::string head =
+      "{\n  \"title\": \"" + name + "\", \"type\": \"object\",\n  \"description\": \"" + doc + "\",\n";
+  return json_channel(topic, name, head + "  \"properties\": {" + time_schema + properties + "\n  }\n}");
+}
+
 }  // namespace
+
+ViewerChannel json_channel(const std::string& topic, const std::string& schema_name, const std::string& schema) {
+  return {.topic = topic,
+          .encoding = "json",
+          .schema_name = schema_name,
+          .schema_encoding = "jsonschema",
+          .schema = schema};
+}
+
+const ViewerChannel log_channel = told_channel("/log", "foxglove.Log", "A line of text for people", R"(
+    "level": { "title": "foxglove.LogLevel", "description": "How much it matters", "oneOf": [
+      { "title": "UNKNOWN", "const": 0 }, { "title": "DEBUG", "const": 1 }, { "title": "INFO", "const": 2 },
+      { "title": "WARNING", "const": 3 }, { "title": "ERROR", "const": 4 }, { "title": "FATAL", "const": 5 } ] },
+    "message": { "type": "string", "description": "What is said" },
+    "name": { "type": "string", "description": "The behavior, or the part of the runtime, that says it" },
+    "file": { "type": "string", "description": "File it came from, or empty" },
+    "line": { "type": "integer", "minimum": 0, "description": "Line in that file" })");
+
+const ViewerChannel transitions_channel =
+    told_channel("/transitions", "kadans.Transition", "A change of state of a behavior", R"(
+    "behavior": { "type": "string" },
+    "from": { "type": "string", "description": "Path of the state that was left, empty on entry" },
+    "to": { "type": "string", "description": "Path of the state that was entered" },
+    "why": { "type": "string" })");
+
+const ViewerChannel active_channel =
+    told_channel("/active", "kadans.Active", "All innermost active states of a behavior, told when they change", R"(
+    "behavior": { "type": "string" },
+    "states": { "type": "array", "items": { "type": "string" },
+      "description": "Their paths, in document order; none: the behavior is over" })");
+
+const ViewerChannel events_channel =
+    told_channel("/events", "kadans.Event", "An event from outside that behaviors got", R"(
+    "tick": { "type": "integer", "description": "Tick of the control engine" },
+    "event": { "type": "string" }, "data": { "type": "object" },
+    "who": { "type": "string", "description": "Who sent it" },
+    "ordered": { "type": "boolean", "description": "Given while the run went on: a replay takes it from here" })");
+
+const ViewerChannel faults_channel = told_channel("/faults", "kadans.Fault", "A fault that the safety layer found", R"(
+    "name": { "type": "string" }, "joint": { "type": "string" },
+    "words": { "type": "string", "description": "In place of value and limit" },
+    "value": { "type": "number" }, "limit": { "type": "number" })");
+
+const ViewerChannel parameters_channel =
+    told_channel("/parameters", "kadans.Parameters", "All parameters at the start, then those that changed", R"(
+    "parameters": { "type": "array", "items": { "type": "object",
+      "properties": { "name": { "type": "string" }, "value": { "type": "number" } } } })");
+
+const ViewerChannel timing_channel =
+    json_channel("/timing", "kadans.Timing", R"({"title": "kadans.Timing", "type": "object"})");
+
+const ViewerChannel description_channel = json_channel("/description", "kadans.Description", R"({
+  "title": "kadans.Description", "type": "object",
+  "description": "Robot, control sets, parameters, world and charts of a run",
+  "properties": {
+    "robot": { "type": "object" }, "sets": { "type": "array" }, "objects": { "type": "array" },
+    "parameters": { "type": "array" }, "world": { "type": "array" }, "ground": { "type": "object" },
+    "payloads": { "type": "array" }, "behaviors": { "type": "array" }
+  }
+})");
 
 ToldFault told(const Fault& fault, const ViewerSubjects& subjects, std::int64_t time_ns) {
   const ViewerSubjects& of = fault.robot == 0 ? subjects : subjects.others.at(fault.robot - 1U);
@@ -150,13 +223,7 @@ void ViewerMessages::add(const SignalTable& signals, const ViewerSubjects& subje
   };
   offer({Content::Kind::joint_states, number}, of_ros(topics + "/joint_states", "sensor_msgs/msg/JointState",
                                                       joint_state_definition + std::string(header_definition)));
-  if (number == 0) {
-    offer({Content::Kind::bases}, {.topic = "/tf",
-                                   .encoding = "json",
-                                   .schema_name = "foxglove.FrameTransforms",
-                                   .schema_encoding = "jsonschema",
-                                   .schema = transforms_schema});
-  }
+  if (number == 0) offer({Content::Kind::bases}, json_channel("/tf", "foxglove.FrameTransforms", transforms_schema));
   for (const std::string& joint : subjects.joints) {
     const std::string of = "joint." + joint;
     robot.joints.push_back({find(of + ".position_rad"), find(of + ".velocity_rad_s"), find(of + ".effort_Nm")});

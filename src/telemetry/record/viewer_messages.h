@@ -36,6 +36,10 @@ ToldFault told(const Fault& fault, const ViewerSubjects& subjects, std::int64_t 
 struct ViewerChannel {
   std::string topic, encoding, schema_name, schema_encoding, schema;
 };
+ViewerChannel json_channel(const std::string& topic, const std::string& schema_name, const std::string& schema);
+// Of what is told in JSON, on the topic of this name.
+extern const ViewerChannel log_channel, transitions_channel, active_channel, events_channel, faults_channel,
+    parameters_channel, timing_channel, description_channel;
 
 class ViewerMessages {
  public:
@@ -96,6 +100,5 @@ struct TimingSource {
 // microseconds. `within` counts the durations up to each of `limits`, which never change. So the difference between two
 // messages is the histogram of the time between them. Any thread.
 std::string timing_json(const std::vector<TimingSource>& sources);
-inline constexpr const char* timing_schema = R"({"title": "kadans.Timing", "type": "object"})";
 
 }  // namespace kadans

@@ -83,6 +83,22 @@ TEST_CASE("Sources of an FMU have names, units and sentences from modelDescripti
   CHECK(has(calls, "Servo_fmi2DoStep(code, time_s, step_s, 1);"));
 }
 
+TEST_CASE("Texts of modelDescription.xml are decoded, and what stands in its comments is no variable") {
+  const auto folder = fresh_folder("from_fmu_texts");
+  std::filesystem::copy(examples / "openmodelica", folder / "code", std::filesystem::copy_options::recursive);
+  const auto description = folder / "code/modelDescription.xml";
+  REQUIRE(edit(description, "<Real unit=\"Nm\"/></ScalarVariable>",
+               "<Real unit=\"&#176;\"/></ScalarVariable>\n<!-- <ScalarVariable name=\"old\" valueReference=\"9\" "
+               "causality=\"output\"><Real/></ScalarVariable> -->"));
+  REQUIRE(edit(description, "Torque per error.", "Torque &quot;per&quot; error."));
+  const Outcome made = wrap(folder / "code", folder);
+  CHECK_MESSAGE(made.exit_code == 0, made.err);
+  CHECK(has(made.err, "2 inputs, 1 outputs, 2 parameters"));
+  const std::string source = read(folder / "made/made.cpp");
+  CHECK(has(source, "{\"torque\", \"\u00b0\", -1e6, 1e6, \"Output torque.\"}"));
+  CHECK(has(source, "\"Torque \\\"per\\\" error.\"}"));
+}
+
 TEST_CASE("Code that fits no shape is refused with the file, what was looked for and what was found") {
   const OddCode table[] = {
       {"none", "", "law.c", "", "double law(double e) { return 2 * e; }\n",
@@ -103,8 +119,11 @@ TEST_CASE("Code that fits no shape is refused with the file, what was looked for
        "declares jiwiy_pid_U of the type ExtU_jiwiy_pid_T: looked for its struct, found none in"},
       {"version", "openmodelica", "modelDescription.xml", "fmiVersion=\"2.0\"", "fmiVersion=\"1.0\"",
        "modelDescription.xml: looked for fmiVersion=\"2.0\", found \"1.0\""},
-      {"exchange", "openmodelica", "modelDescription.xml", "<CoSimulation", "<ModelExchange",
-       "looked for <CoSimulation modelIdentifier=...>, found none"},
+      {"torn", "openmodelica", "modelDescription.xml", "<ModelStructure/>", "<ModelStructure>", "not well-formed XML"},
+      {"exchange", "openmodelica", "modelDescription.xml",
+       "<CoSimulation modelIdentifier=\"Servo\" canHandleVariableCommunicationStepSize=\"true\">\n"
+       "    <SourceFiles><File name=\"Servo_FMU.c\"/></SourceFiles>\n  </CoSimulation>",
+       "<ModelExchange modelIdentifier=\"Servo\"/>", "looked for <CoSimulation modelIdentifier=...>, found none"},
       {"binary", "openmodelica", "sources/Servo_FMU.c", "NAMED(fmi2DoStep)", "NAMED(step)",
        "looked for fmi2DoStep in sources of C beside it, found none in modelDescription.xml, Servo_FMU.c"},
       {"flag", "openmodelica", "modelDescription.xml", "<Real unit=\"Nm\"/>", "<Boolean/>",

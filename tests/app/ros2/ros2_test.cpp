@@ -81,7 +81,7 @@ Rows rows_of(const fs::path& record, const std::set<std::int64_t>& wanted) {
     const auto description = metadata.find("signals");
     if (description == metadata.end() || !wanted.contains(message.time_ns)) continue;
     values.resize((message.payload.size() - cdr_head_bytes) / sizeof(double));
-    REQUIRE(read_cdr(message.payload, values, Precision::full));
+    REQUIRE(read_cdr(message.payload, values) == Precision::full);
     std::istringstream lines(description->second);
     auto value = values.begin();
     for (std::string line; std::getline(lines, line);)

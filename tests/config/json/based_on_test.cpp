@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include "config/plan/experiment_plans.h"
 #include "config/robot/robot_config.h"
 
 namespace kadans::based_on_test {
@@ -81,6 +82,23 @@ TEST_CASE("A base that is not there, and files based on each other, are refused 
   project.write("one.json", R"({ "based_on": "config/two.json" })");
   const std::string two = R"({ "based_on": "config/one.json" })";
   CHECK(message_of(two, project.write("two.json", two)).find("based on itself") != std::string::npos);
+}
+
+TEST_CASE("A mistake in the base of a tuning is told at its place in the base") {
+  const Project project;
+  project.write("base.json", R"({ "name": "base", "program": ["true"], "score": "score", "failed_score": 1,
+    "tune": { "gain": { "min": 0, "max": 1, "start": 0.5 } },
+    "population": 1 })");
+  const std::string text = R"({ "based_on": "config/base.json", "population": 8 })";
+  const std::string file = project.write("file.json", text);
+  std::string told;
+  try {
+    (void)read_tune_plan_text(text, file);
+  } catch (const InputError& error) {
+    told = error.what();
+  }
+  CAPTURE(told);
+  CHECK(told.find("base.json:3:19: population is 1") != std::string::npos);
 }
 
 TEST_CASE("TULip with its soft springs is TULip but for the springs and their loop") {
