@@ -12,28 +12,21 @@
 
 namespace kadans {
 
-KeepAwake::KeepAwake(int cpu) : cpu_(cpu) {
-  latency_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+KeepAwake::KeepAwake(int cpu) : cpu_(cpu), latency_(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC)) {
   const std::int32_t wanted_us = 0;
-  if (latency_ >= 0 && write(latency_, &wanted_us, sizeof wanted_us) != sizeof wanted_us) {
-    close(latency_);
-    latency_ = -1;
-  }
+  if (latency_ && write(latency_.number(), &wanted_us, sizeof wanted_us) != sizeof wanted_us) latency_ = {};
   const SignalsBlocked blocked;
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, std::size_t{64} * 1024);  // all of it may be locked
   const int error = pthread_create(&thread_, &attributes, spin, this);
   pthread_attr_destroy(&attributes);
-  if (error == 0) return;
-  if (latency_ >= 0) close(latency_);
-  throw std::system_error(error, std::generic_category(), "no thread to keep the CPU awake");
+  if (error != 0) throw std::system_error(error, std::generic_category(), "no thread to keep the CPU awake");
 }
 
 KeepAwake::~KeepAwake() {
   stop_.store(true, std::memory_order_relaxed);
   pthread_join(thread_, nullptr);
-  if (latency_ >= 0) close(latency_);
 }
 
 void* KeepAwake::spin(void* self) {

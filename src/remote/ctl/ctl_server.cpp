@@ -36,14 +36,9 @@ CtlServer::CtlServer(Instance& instance, const CtlSockets& sockets, const Settin
       requests_(instance, port_, counts_),
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
 
-CtlServer::~CtlServer() {
-  stop();
-  if (wake_ >= 0) close(wake_);
-}
-
 void CtlServer::start() {
   if (running_) return;
-  if (wake_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+  if (!wake_) throw std::system_error(errno, std::generic_category(), "eventfd");
   const SignalsBlocked blocked;
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
@@ -57,7 +52,7 @@ void CtlServer::start() {
 void CtlServer::stop() noexcept {
   if (!running_) return;
   stop_.store(true, std::memory_order_relaxed);
-  (void)eventfd_write(wake_, 1);
+  (void)eventfd_write(wake_.number(), 1);
   pthread_join(thread_, nullptr);
   running_ = false;
   guests_.clear();
@@ -92,7 +87,7 @@ int CtlServer::patience_ms() const noexcept {
 
 // Until somebody connects, says something, can be told something or leaves; or for a while.
 void CtlServer::wait() {
-  std::vector<pollfd> watched{{.fd = wake_, .events = POLLIN, .revents = 0}};
+  std::vector<pollfd> watched{{.fd = wake_.number(), .events = POLLIN, .revents = 0}};
   const bool deaf = clock_.now_ns() < deaf_until_ns_;
   for (const Role role : roles) watched.push_back({deaf ? -1 : sockets_.listener(role), POLLIN, 0});
   for (const Guest& guest : guests_) {
