@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "engine/clock.h"
-#include "realtime/signals_blocked.h"
+#include "signal/quiet_thread.h"
 
 namespace kadans {
 namespace {

@@ -26,7 +26,7 @@ class KeepAwake {
   bool holds_latency() const noexcept { return static_cast<bool>(latency_); }
 
  private:
-  static void* spin(void* self);
+  void spin() const noexcept;
 
   int cpu_;
   OwnedDescriptor latency_;  // closing it lets go

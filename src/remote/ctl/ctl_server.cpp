@@ -10,8 +10,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "realtime/signals_blocked.h"
 #include "remote/order/order_json.h"
+#include "signal/quiet_thread.h"
 
 namespace kadans {
 namespace {
@@ -39,12 +39,7 @@ CtlServer::CtlServer(Instance& instance, const CtlSockets& sockets, const Settin
 void CtlServer::start() {
   if (running_) return;
   if (!wake_) throw std::system_error(errno, std::generic_category(), "eventfd");
-  const SignalsBlocked blocked;
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, stack_bytes);
-  const int failed = pthread_create(&thread_, &attributes, enter, this);
-  pthread_attr_destroy(&attributes);
+  const int failed = start_quiet_thread<&CtlServer::run>(thread_, {"ctl", stack_bytes}, this);
   if (failed != 0) throw std::system_error(failed, std::generic_category(), "the thread that serves ctl");
   running_ = true;
 }
@@ -56,12 +51,6 @@ void CtlServer::stop() noexcept {
   pthread_join(thread_, nullptr);
   running_ = false;
   guests_.clear();
-}
-
-void* CtlServer::enter(void* self) {
-  pthread_setname_np(pthread_self(), "ctl");
-  static_cast<CtlServer*>(self)->run();
-  return nullptr;
 }
 
 void CtlServer::run() {

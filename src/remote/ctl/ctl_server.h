@@ -54,7 +54,6 @@ class CtlServer {
     bool gone = false;
   };
 
-  static void* enter(void* self);
   void run();
   void wait();
   void accept_all(Role role);
