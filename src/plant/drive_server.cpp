@@ -54,8 +54,7 @@ void DriveServer::serve(const std::stop_token& stop) noexcept {
   std::vector<pollfd> wanted = polled(descriptors());
   std::int64_t wake_ns = 0;
   while (!stop.stop_requested()) {
-    const std::int64_t left_ns = std::max<std::int64_t>(0, wake_ns - monotonic_ns());
-    const timespec wait{.tv_sec = 0, .tv_nsec = left_ns};  // look_ns at most
+    const timespec wait = timespec_of(std::max<std::int64_t>(0, wake_ns - monotonic_ns()));  // look_ns at most
     const bool came = ppoll(wanted.data(), wanted.size(), &wait, nullptr) > 0;
     std::unique_lock lock(mutex_);
     if (!look_true_) {  // what came waits until the drives know where they stand

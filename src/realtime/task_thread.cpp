@@ -112,10 +112,7 @@ void TaskThread::join() noexcept {
 
 bool TaskThread::join_until(std::int64_t monotonic_ns) noexcept {
   if (!joinable_) return true;
-  constexpr std::int64_t second_ns = 1'000'000'000;
-  timespec end{};
-  end.tv_sec = static_cast<std::time_t>(monotonic_ns / second_ns);
-  end.tv_nsec = static_cast<long>(monotonic_ns % second_ns);
+  const timespec end = timespec_of(monotonic_ns);
   if (pthread_clockjoin_np(thread_, nullptr, CLOCK_MONOTONIC, &end) != 0) return false;
   joinable_ = false;
   return true;

@@ -48,7 +48,7 @@ struct DynamixelPlant::Port {
       const std::int64_t now_ns = serial.now_ns();
       due_ns += period_ns;
       if (due_ns < now_ns) due_ns += (now_ns - due_ns + period_ns - 1) / period_ns * period_ns;  // on the grid again
-      const timespec until{.tv_sec = static_cast<time_t>(due_ns / ns_per_s), .tv_nsec = due_ns % ns_per_s};
+      const timespec until = timespec_of(due_ns);
       clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
     }
   }

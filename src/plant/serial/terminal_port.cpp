@@ -104,11 +104,11 @@ std::size_t TerminalPort::receive(std::span<std::uint8_t> into, std::int64_t unt
     const std::int64_t left_ns = until_ns - now_ns();
     if (left_ns <= 0 || into.empty()) return 0;
     pollfd wanted{descriptor_.number(), POLLIN, 0};
-    const timespec wait{.tv_sec = static_cast<time_t>(left_ns / 1'000'000'000), .tv_nsec = left_ns % 1'000'000'000};
+    const timespec wait = timespec_of(left_ns);
     const int ready = ppoll(&wanted, 1, &wait, nullptr);
     if (ready < 0 && errno != EINTR) return 0;
     if (ready > 0 && (wanted.revents & POLLIN) == 0) {  // unplugged: it would be ready at once, forever
-      const timespec rest{.tv_sec = 0, .tv_nsec = std::min<std::int64_t>(left_ns, 1'000'000)};
+      const timespec rest = timespec_of(std::min<std::int64_t>(left_ns, 1'000'000));
       clock_nanosleep(CLOCK_MONOTONIC, 0, &rest, nullptr);
     }
   }

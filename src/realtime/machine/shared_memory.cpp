@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cerrno>
-#include <ctime>
 #include <system_error>
 
 #include <fcntl.h>
@@ -12,6 +11,8 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "signal/monotonic_clock.h"
 
 namespace kadans {
 namespace {
@@ -55,9 +56,8 @@ void Doorbell::ring() const noexcept {
 }
 
 Doorbell::Heard Doorbell::wait(std::int64_t timeout_ns) noexcept {
-  constexpr std::int64_t second_ns = 1'000'000'000;
   pollfd waited{descriptor(), POLLIN, 0};
-  const timespec timeout{static_cast<std::time_t>(timeout_ns / second_ns), static_cast<long>(timeout_ns % second_ns)};
+  const timespec timeout = timespec_of(timeout_ns);
   if (ppoll(&waited, 1, timeout_ns < 0 ? nullptr : &timeout, nullptr) <= 0) return Heard::nothing;
   std::array<char, 256> rings{};
   const ssize_t got = recv(descriptor(), rings.data(), rings.size(), MSG_DONTWAIT);

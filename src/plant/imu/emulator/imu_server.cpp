@@ -44,7 +44,7 @@ void ImuServer::serve(const std::stop_token& stop) noexcept {
       if (count > 0) terminal_.write({bytes.data(), count});
       wake_ns = std::min(wake_ns, device_.due_ns());
     }
-    const timespec wait{.tv_sec = 0, .tv_nsec = std::max<std::int64_t>(0, wake_ns - monotonic_ns())};
+    const timespec wait = timespec_of(std::max<std::int64_t>(0, wake_ns - monotonic_ns()));
     (void)ppoll(&wanted, 1, &wait, nullptr);
   }
 }
