@@ -5,7 +5,6 @@
 
 #include "datagram_port.h"
 #include "kadans/signal/input_error.h"
-#include "network_check.h"
 #include "plant/socket_address.h"
 
 namespace kadans::hostmot2 {
