@@ -12,52 +12,39 @@ namespace {
 
 using kadans::InputError;
 
+using Names = std::vector<std::string>;
+
+// "left_hip_yaw_joint": each of the joints of each limb.
+void add_joints(Names& all, const Names& limbs, const Names& joints) {
+  for (const std::string& limb : limbs) {
+    for (const std::string& joint : joints) all.push_back(limb + joint + "_joint");
+  }
+}
+
+Names four_legs() {
+  Names all;
+  add_joints(all, {"FR_", "FL_", "RR_", "RL_"}, {"hip", "thigh", "calf"});
+  return all;
+}
+
+Names humanoid(const Names& leg, const Names& trunk) {
+  Names all;
+  add_joints(all, {"left_", "right_"}, leg);
+  add_joints(all, {""}, trunk);
+  add_joints(all, {"left_", "right_"},
+             {"shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow", "wrist_roll", "wrist_pitch", "wrist_yaw"});
+  return all;
+}
+
 const std::vector<RobotKind>& kinds() {
-  static const std::vector<std::string_view> legs_of_four{
-      "FR_hip_joint", "FR_thigh_joint", "FR_calf_joint", "FL_hip_joint", "FL_thigh_joint", "FL_calf_joint",
-      "RR_hip_joint", "RR_thigh_joint", "RR_calf_joint", "RL_hip_joint", "RL_thigh_joint", "RL_calf_joint"};
   static const std::vector<RobotKind> all{
-      {"go2", Family::go, legs_of_four},
-      {"b2", Family::go, legs_of_four},
-      {"g1", Family::hg, {"left_hip_pitch_joint",      "left_hip_roll_joint",        "left_hip_yaw_joint",
-                          "left_knee_joint",           "left_ankle_pitch_joint",     "left_ankle_roll_joint",
-                          "right_hip_pitch_joint",     "right_hip_roll_joint",       "right_hip_yaw_joint",
-                          "right_knee_joint",          "right_ankle_pitch_joint",    "right_ankle_roll_joint",
-                          "waist_yaw_joint",           "waist_roll_joint",           "waist_pitch_joint",
-                          "left_shoulder_pitch_joint", "left_shoulder_roll_joint",   "left_shoulder_yaw_joint",
-                          "left_elbow_joint",          "left_wrist_roll_joint",      "left_wrist_pitch_joint",
-                          "left_wrist_yaw_joint",      "right_shoulder_pitch_joint", "right_shoulder_roll_joint",
-                          "right_shoulder_yaw_joint",  "right_elbow_joint",          "right_wrist_roll_joint",
-                          "right_wrist_pitch_joint",   "right_wrist_yaw_joint"}},
-      {"h1_2",
-       Family::hg,
-       {"left_hip_yaw_joint",
-        "left_hip_pitch_joint",
-        "left_hip_roll_joint",
-        "left_knee_joint",
-        "left_ankle_pitch_joint",
-        "left_ankle_roll_joint",
-        "right_hip_yaw_joint",
-        "right_hip_pitch_joint",
-        "right_hip_roll_joint",
-        "right_knee_joint",
-        "right_ankle_pitch_joint",
-        "right_ankle_roll_joint",
-        "torso_joint",
-        "left_shoulder_pitch_joint",
-        "left_shoulder_roll_joint",
-        "left_shoulder_yaw_joint",
-        "left_elbow_joint",
-        "left_wrist_roll_joint",
-        "left_wrist_pitch_joint",
-        "left_wrist_yaw_joint",
-        "right_shoulder_pitch_joint",
-        "right_shoulder_roll_joint",
-        "right_shoulder_yaw_joint",
-        "right_elbow_joint",
-        "right_wrist_roll_joint",
-        "right_wrist_pitch_joint",
-        "right_wrist_yaw_joint"}},
+      {"go2", Family::go, four_legs()},
+      {"b2", Family::go, four_legs()},
+      {"g1", Family::hg,
+       humanoid({"hip_pitch", "hip_roll", "hip_yaw", "knee", "ankle_pitch", "ankle_roll"},
+                {"waist_yaw", "waist_roll", "waist_pitch"})},
+      {"h1_2", Family::hg,
+       humanoid({"hip_yaw", "hip_pitch", "hip_roll", "knee", "ankle_pitch", "ankle_roll"}, {"torso"})},
   };
   return all;
 }
@@ -162,8 +149,8 @@ std::vector<MotorSettings> motors_of(const Settings& settings, const kadans::Pla
       motor.number = static_cast<std::uint32_t>(std::ranges::find(kind.joints, drive) - kind.joints.begin());
     const bool named = given != settings.motors.end() && given->number != motors_max;
     if (!named && motor.number == kind.joints.size())
-      fail("drive '" + drive + "' is no motor of a " + std::string(kind.name) + ", such as " +
-           std::string(kind.joints[0]) + ": say its number in plant.unitree.motors");
+      fail("drive '" + drive + "' is no motor of a " + std::string(kind.name) + ", such as " + kind.joints[0] +
+           ": say its number in plant.unitree.motors");
     if (motor.number >= motors_of(kind.family))
       fail("plant.unitree.motors." + drive + ": a " + std::string(kind.name) + " has motors 0.." +
            std::to_string(motors_of(kind.family) - 1));

@@ -15,7 +15,7 @@ namespace unitree {
 struct RobotKind {
   std::string_view name;
   Family family;
-  std::vector<std::string_view> joints;
+  std::vector<std::string> joints;
 };
 // nullptr: there is none of this name.
 const RobotKind* find_kind(std::string_view name);

@@ -51,10 +51,9 @@ int run_doctor(const DoctorOptions& options) {
     require_kind(options.robot, JsonKind::robot);
     const Robot robot = read_robot(options.robot);
     const PlantSite site = plant_site(robot.config, "");
-    std::vector<PlantType::Finding> all = imu::examine(robot.config.serial_imu);
-    for (const auto& type : robot.config.plant_types) std::ranges::move(type->examine(site), std::back_inserter(all));
-    for (const PlantType::Finding& f : all)
-      findings.push_back({.topic = f.topic, .good = f.good, .is = f.is, .should = f.should, .how = f.how});
+    std::ranges::move(imu::examine(robot.config.serial_imu), std::back_inserter(findings));
+    for (const auto& type : robot.config.plant_types)
+      std::ranges::move(type->examine(site), std::back_inserter(findings));
   }
   const bool good = std::ranges::all_of(findings, &MachineFinding::good);
   if (options.json) {

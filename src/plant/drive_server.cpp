@@ -35,7 +35,7 @@ void DriveServer::look(World& world) {
 }
 
 bool DriveServer::await(int milliseconds) noexcept {
-  if (!thread_.joinable()) thread_ = std::thread([this] { serve(); });
+  if (!thread_.joinable()) thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
   std::unique_lock lock(mutex_);
   if (!changed_.wait_for(lock, std::chrono::milliseconds(milliseconds), [this] { return spoken_to_; })) return false;
   session_ = {};
@@ -47,15 +47,14 @@ bool DriveServer::await(int milliseconds) noexcept {
 }
 
 // Who speaks first finds an answer at once: programs that ask once, as mesaflash does, wait for some milliseconds.
-void DriveServer::serve() noexcept {
+void DriveServer::serve(const std::stop_token& stop) noexcept {
   sched_param parameter{};
   parameter.sched_priority = bus_priority;
   (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);  // without the right it is a usual thread
   std::vector<pollfd> wanted = polled(descriptors());
   std::int64_t wake_ns = 0;
-  while (!stop_.load(std::memory_order_relaxed)) {
-    const std::int64_t left_ns = std::max<std::int64_t>(0, wake_ns - monotonic_ns());
-    const timespec wait{.tv_sec = 0, .tv_nsec = left_ns};  // look_ns at most
+  while (!stop.stop_requested()) {
+    const timespec wait = timespec_of(std::max<std::int64_t>(0, wake_ns - monotonic_ns()));  // look_ns at most
     const bool came = ppoll(wanted.data(), wanted.size(), &wait, nullptr) > 0;
     std::unique_lock lock(mutex_);
     if (!look_true_) {  // what came waits until the drives know where they stand
@@ -78,7 +77,7 @@ bool DriveServer::end_session() noexcept {
 }
 
 void DriveServer::end() noexcept {
-  stop_.store(true, std::memory_order_relaxed);
+  thread_.request_stop();
   changed_.notify_all();
   if (thread_.joinable()) thread_.join();
 }

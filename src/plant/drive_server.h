@@ -15,10 +15,10 @@
 // What a type brings is called by one of them at a time. link_counts by any.
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -54,7 +54,7 @@ class DriveServer : public PlantEmulator {
   static constexpr std::int64_t in_step_timeout_ns = 60'000'000'000;
   static constexpr std::uint64_t in_step_ahead_max = 10;  // cycles in a beat; beyond that they are lost
 
-  void serve() noexcept;
+  void serve(const std::stop_token& stop) noexcept;
   bool end_session() noexcept;  // false
   std::uint32_t due(std::uint32_t periods) noexcept;
 
@@ -69,8 +69,7 @@ class DriveServer : public PlantEmulator {
   bool spoken_to_ = false;    // since the last session was over
   std::condition_variable changed_;
   bool in_session_ = false;
-  std::thread thread_;
-  std::atomic<bool> stop_{false};
+  std::jthread thread_;
   Session session_;
   std::uint64_t heard_ = 0;
   std::int64_t silent_ns_ = 0;

@@ -25,14 +25,14 @@ void WiredWorld::step(std::int64_t dt_ns) {
   faults_.happen(drives(), time_ns_);
   begin_step();
   drives().drive(inner());
-  model_->step(dt_ns);
+  world_.step(dt_ns);
   drives().pass(dt_ns);
   time_ns_ += dt_ns;
   end_step();
 }
 
 void WiredWorld::hash(StateHash& hash) const noexcept {
-  model_->hash(hash);
+  WorldAround::hash(hash);
   hash.add(passed());
 }
 

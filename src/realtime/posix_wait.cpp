@@ -1,7 +1,6 @@
 #include "posix_wait.h"
 
 #include <cerrno>
-#include <ctime>
 
 #include "wait.h"
 
@@ -25,17 +24,13 @@ void StartLine::open() noexcept {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 // More looks at the clock than the longest spin needs; a clock that stands still must not hold a real-time thread.
 constexpr int looks_max = 10'000'000;
 
 }  // namespace
 
 void PosixWait::until(std::int64_t time_ns) noexcept {
-  const std::int64_t wake_ns = time_ns + origin_ns_ - spin_ns_;
-  timespec wake{};
-  wake.tv_sec = static_cast<std::time_t>(wake_ns / second_ns);
-  wake.tv_nsec = static_cast<long>(wake_ns % second_ns);
+  const timespec wake = timespec_of(time_ns + origin_ns_ - spin_ns_);
   const bool far = now_ns() < time_ns - spin_ns_;
   while (far && clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) == EINTR) {
   }

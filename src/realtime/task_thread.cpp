@@ -14,7 +14,7 @@
 
 #include "realtime/machine/placement.h"
 #include "signal/monotonic_clock.h"
-#include "signals_blocked.h"
+#include "signal/quiet_thread.h"
 
 namespace kadans {
 
@@ -91,7 +91,11 @@ TaskThread::~TaskThread() {
 }
 
 void TaskThread::start() {
-  const SignalsBlocked blocked;
+  const std::string shown = settings_.name.substr(0, 15);
+  // With its priority from the first instruction on: on a busy machine it would wait long to give it to itself.
+  const auto create = [&](int priority) {
+    return start_quiet_thread<&TaskThread::run>(thread_, {shown.c_str(), settings_.stack_bytes, priority}, this);
+  };
   int error = create(settings_.priority);
   if (error != 0 && settings_.priority > 0) {
     refused_priority_.store(error, std::memory_order_relaxed);
@@ -99,25 +103,6 @@ void TaskThread::start() {
   }
   if (error != 0) throw std::system_error(error, std::generic_category(), "no thread for task " + settings_.name);
   joinable_ = true;
-  pthread_setname_np(thread_, settings_.name.substr(0, 15).c_str());
-}
-
-// With its priority from the first instruction on: on a busy machine it would wait long to give it to itself.
-int TaskThread::create(int priority) noexcept {
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, settings_.stack_bytes);
-  sched_param parameter{};
-  parameter.sched_priority = priority;
-  int error = 0;
-  if (priority > 0) {
-    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
-    pthread_attr_setschedpolicy(&attributes, SCHED_FIFO);
-    error = pthread_attr_setschedparam(&attributes, &parameter);
-  }
-  if (error == 0) error = pthread_create(&thread_, &attributes, enter, this);
-  pthread_attr_destroy(&attributes);
-  return error;
 }
 
 void TaskThread::join() noexcept {
@@ -127,18 +112,10 @@ void TaskThread::join() noexcept {
 
 bool TaskThread::join_until(std::int64_t monotonic_ns) noexcept {
   if (!joinable_) return true;
-  constexpr std::int64_t second_ns = 1'000'000'000;
-  timespec end{};
-  end.tv_sec = static_cast<std::time_t>(monotonic_ns / second_ns);
-  end.tv_nsec = static_cast<long>(monotonic_ns % second_ns);
+  const timespec end = timespec_of(monotonic_ns);
   if (pthread_clockjoin_np(thread_, nullptr, CLOCK_MONOTONIC, &end) != 0) return false;
   joinable_ = false;
   return true;
-}
-
-void* TaskThread::enter(void* self) {
-  static_cast<TaskThread*>(self)->run();
-  return nullptr;
 }
 
 void TaskThread::move_to_cpu() noexcept {

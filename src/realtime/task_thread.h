@@ -148,11 +148,9 @@ class TaskThread {
  private:
   static constexpr std::uint64_t warm_up_beats = 100;
 
-  static void* enter(void* self);
   void run() noexcept;
   void loop();
   void prepare_until(std::int64_t due_ns) noexcept;
-  int create(int priority) noexcept;
   void move_to_cpu() noexcept;
   void fail(const char* why) noexcept;
 

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
+#include "owned_descriptor.h"
 
 namespace kadans {
 
@@ -28,25 +29,19 @@ class OpenFile {
     if (stat(file.c_str(), &found) != 0)
       refuse(file, errno == ENOENT || errno == ENOTDIR ? "there is no such file" : "cannot be read: " + reason());
     check(file, found);
-    number_ = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (number_ < 0) refuse(file, "cannot be read: " + reason());
-    if (fstat(number_, &found) != 0 || !S_ISREG(found.st_mode)) {
-      close(number_);
-      refuse(file, "this is no file");
-    }
+    opened_ = OwnedDescriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+    if (!opened_) refuse(file, "cannot be read: " + reason());
+    if (fstat(number(), &found) != 0 || !S_ISREG(found.st_mode)) refuse(file, "this is no file");
   }
-  ~OpenFile() { close(number_); }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
 
-  int number() const noexcept { return number_; }
+  int number() const noexcept { return opened_.number(); }
 
  private:
   static void check(const std::filesystem::path& file, const struct stat& found) {
     if (S_ISDIR(found.st_mode)) refuse(file, "this is a folder, not a file");
     if (!S_ISREG(found.st_mode)) refuse(file, "this is no file but a device, a pipe or a socket");
   }
-  int number_ = -1;
+  OwnedDescriptor opened_;
 };
 
 }  // namespace

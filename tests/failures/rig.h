@@ -19,29 +19,21 @@ namespace kadans::failures {
 inline constexpr std::int64_t period_ns = 1'000'000;
 
 // Keeps what it is told and what its motors say; everything else is another plant's.
-class ListeningPlant final : public OneRobotWorld {
+class ListeningPlant final : public WorldAround {
  public:
-  explicit ListeningPlant(World& world) : world_(world), plant_(world.robot(0)) {}
+  explicit ListeningPlant(World& world) : WorldAround(world) {}
   void read(SensorFrame& sensors) noexcept override {
-    plant_.read(sensors);
+    robot_.read(sensors);
     for (std::size_t i = 0; i < sensors.joint_count; ++i) motor_Nm_[i] = sensors.joints[i].motor_effort_Nm;
   }
   void write(const ActuationFrame& actuation) noexcept override {
     written_ = actuation;
-    plant_.write(actuation);
+    robot_.write(actuation);
   }
-  void step(std::int64_t dt_ns) override { world_.step(dt_ns); }
-  const PlantTruth& truth() const noexcept override { return plant_.truth(); }
-  void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
-    plant_.push(link, force_N, point_in_link_m);
-  }
-  void hash(StateHash& hash) const noexcept override { world_.hash(hash); }
   const ActuationFrame& written() const noexcept { return written_; }
   double motor_Nm(std::size_t joint) const noexcept { return motor_Nm_[joint]; }
 
  private:
-  World& world_;
-  WorldRobot& plant_;
   ActuationFrame written_;
   std::array<double, max_joints> motor_Nm_{};
 };

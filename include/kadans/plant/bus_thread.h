@@ -27,8 +27,6 @@ class BusThread {
   void stop() noexcept;  // asks, and waits for its end
 
  private:
-  static void* enter(void* self);
-
   std::function<void()> serve_;
   pthread_t thread_{};
   bool runs_ = false;

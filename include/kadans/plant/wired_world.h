@@ -29,7 +29,7 @@ class WireHash {
   StateHash hash_;
 };
 
-class WiredWorld : public OneRobotWorld {
+class WiredWorld : public WorldAround {
  public:
   // Finds the drives, as at the start of a run. Throws InputError. Without it the first step does so.
   bool open(bool (*give_up)() noexcept = nullptr) final;
@@ -38,11 +38,7 @@ class WiredWorld : public OneRobotWorld {
   std::vector<PlantCount> link_counts() const final { return plant().link_counts(); }
   void read(SensorFrame& sensors) noexcept final;
   void write(const ActuationFrame& actuation) noexcept final;
-  void push(std::size_t link, const Vec3& force_N, const Vec3& point_m) final { inner().push(link, force_N, point_m); }
-  void carry(double x_m, double y_m, double heading_rad) final { inner().carry(x_m, y_m, heading_rad); }
-  void put(std::size_t object, const Vec3& position_m) final { model_->put(object, position_m); }
   void step(std::int64_t dt_ns) final;
-  const PlantTruth& truth() const noexcept final { return model_->robot(0).truth(); }
   void hash(StateHash& hash) const noexcept final;  // with all that passed on the wire
   // By this world's time. Throws std::invalid_argument.
   void plan_faults(const std::vector<EmulatedFault>& faults) { faults_.add(faults, drives()); }
@@ -50,8 +46,8 @@ class WiredWorld : public OneRobotWorld {
   bool silent = false;  // the driver hangs
 
  protected:
-  explicit WiredWorld(std::unique_ptr<World> model) : model_(std::move(model)) {}
-  WorldRobot& inner() noexcept { return model_->robot(0); }
+  explicit WiredWorld(std::unique_ptr<World> model) : WorldAround(std::move(model)) {}
+  WorldRobot& inner() noexcept { return robot_; }
   std::int64_t time_ns() const noexcept { return time_ns_; }
 
   virtual Plant& plant() const noexcept = 0;  // the driver
@@ -64,7 +60,6 @@ class WiredWorld : public OneRobotWorld {
   virtual std::uint64_t passed() const noexcept = 0;  // a hash of what passed on the wire
 
  private:
-  std::unique_ptr<World> model_;
   FaultPlan faults_;
   std::int64_t time_ns_ = 0;
   bool started_ = false;

@@ -5,7 +5,10 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "kadans/model/robot_model.h"
 #include "kadans/plant/plant.h"
@@ -119,6 +122,33 @@ class OneRobotWorld : public World, public WorldRobot {
  public:
   std::size_t robot_count() const noexcept final { return 1; }
   WorldRobot& robot(std::size_t) noexcept final { return *this; }
+};
+
+// A world of one robot around a robot of another world: what it does not change passes through. It opens and closes
+// nothing.
+class WorldAround : public OneRobotWorld {
+ public:
+  void declare_signals(SignalTable& table) const override { robot_.declare_signals(table); }
+  std::vector<PlantCount> link_counts() const override { return robot_.link_counts(); }
+  void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
+    robot_.push(link, force_N, point_in_link_m);
+  }
+  void carry(double x_m, double y_m, double heading_rad) override { robot_.carry(x_m, y_m, heading_rad); }
+  void put(std::size_t object, const Vec3& position_m) override { world_.put(object, position_m); }
+  void step(std::int64_t dt_ns) override { world_.step(dt_ns); }
+  const PlantTruth& truth() const noexcept override { return robot_.truth(); }
+  void hash(StateHash& hash) const noexcept override { world_.hash(hash); }
+
+ protected:
+  // Keeps a reference.
+  explicit WorldAround(World& world, std::size_t robot = 0) noexcept : world_(world), robot_(world.robot(robot)) {}
+  explicit WorldAround(std::unique_ptr<World> world) noexcept : WorldAround(*world) { owned_ = std::move(world); }
+
+  World& world_;
+  WorldRobot& robot_;
+
+ private:
+  std::unique_ptr<World> owned_;
 };
 
 }  // namespace kadans

@@ -59,7 +59,7 @@ void DriveBench::write(const ActuationFrame& actuation) {
   plant().write(actuation);
   if (world_) world_->step(period_ns_);
   due_ns_ = std::max(due_ns_ + period_ns_, now_ns() - period_ns_);
-  const timespec until{.tv_sec = static_cast<time_t>(due_ns_ / ns_per_s), .tv_nsec = due_ns_ % ns_per_s};
+  const timespec until = timespec_of(due_ns_);
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 

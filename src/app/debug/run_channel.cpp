@@ -55,18 +55,6 @@ bool write_all(int descriptor, std::string_view bytes) noexcept {
   return true;
 }
 
-RunChannel& RunChannel::operator=(RunChannel&& other) noexcept {
-  if (this != &other) {
-    close();
-    socket_ = std::exchange(other.socket_, -1);
-  }
-  return *this;
-}
-
-void RunChannel::close() noexcept {
-  if (socket_ >= 0) ::close(std::exchange(socket_, -1));
-}
-
 std::pair<RunChannel, RunChannel> RunChannel::make_pair() {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
@@ -84,19 +72,20 @@ bool RunChannel::send(const Json& json, const RunChannel* end) const noexcept {
     given->cmsg_level = SOL_SOCKET;
     given->cmsg_type = SCM_RIGHTS;
     given->cmsg_len = CMSG_LEN(sizeof(int));
-    std::memcpy(CMSG_DATA(given), &end->socket_, sizeof(int));
+    const int its = end->socket();
+    std::memcpy(CMSG_DATA(given), &its, sizeof its);
   }
   ssize_t sent = 0;
-  do sent = sendmsg(socket_, &head.message, MSG_NOSIGNAL);
+  do sent = sendmsg(socket(), &head.message, MSG_NOSIGNAL);
   while (sent < 0 && errno == EINTR);
-  return sent == static_cast<ssize_t>(sizeof head.length) && write_all(socket_, text);
+  return sent == static_cast<ssize_t>(sizeof head.length) && write_all(socket(), text);
 }
 
 std::optional<Json> RunChannel::receive(RunChannel* end) const {
   Head head;
   head.make_room();
   ssize_t got = 0;
-  do got = recvmsg(socket_, &head.message, MSG_CMSG_CLOEXEC);
+  do got = recvmsg(socket(), &head.message, MSG_CMSG_CLOEXEC);
   while (got < 0 && errno == EINTR);
   if (got <= 0) return std::nullopt;
   if (const cmsghdr* given = CMSG_FIRSTHDR(&head.message); given != nullptr && given->cmsg_type == SCM_RIGHTS) {
@@ -106,15 +95,15 @@ std::optional<Json> RunChannel::receive(RunChannel* end) const {
     if (end != nullptr) *end = std::move(taken);
   }
   const auto rest = static_cast<std::size_t>(got);
-  if (!receive_all(socket_, reinterpret_cast<char*>(&head.length) + rest, sizeof head.length - rest))
+  if (!receive_all(socket(), reinterpret_cast<char*>(&head.length) + rest, sizeof head.length - rest))
     return std::nullopt;
   std::string text(head.length, '\0');
-  if (!receive_all(socket_, text.data(), text.size())) return std::nullopt;
+  if (!receive_all(socket(), text.data(), text.size())) return std::nullopt;
   return read_foreign_json(text);
 }
 
 bool RunChannel::waiting() const noexcept {
-  pollfd one{socket_, POLLIN, 0};
+  pollfd one{socket(), POLLIN, 0};
   return poll(&one, 1, 0) > 0;
 }
 

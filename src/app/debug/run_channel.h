@@ -11,6 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "signal/owned_descriptor.h"
+
 namespace kadans {
 
 using Json = nlohmann::ordered_json;
@@ -56,9 +58,6 @@ class RunChannel {
  public:
   RunChannel() = default;
   explicit RunChannel(int socket) noexcept : socket_(socket) {}
-  ~RunChannel() { close(); }
-  RunChannel(RunChannel&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
-  RunChannel& operator=(RunChannel&& other) noexcept;
 
   static std::pair<RunChannel, RunChannel> make_pair();  // throws std::system_error
 
@@ -67,12 +66,12 @@ class RunChannel {
   // Waits. nullopt: the other side is gone.
   std::optional<Json> receive(RunChannel* end = nullptr) const;
   bool waiting() const noexcept;  // something, or the end of the other side
-  bool open() const noexcept { return socket_ >= 0; }
-  int socket() const noexcept { return socket_; }
-  void close() noexcept;
+  bool open() const noexcept { return static_cast<bool>(socket_); }
+  int socket() const noexcept { return socket_.number(); }
+  void close() noexcept { socket_ = {}; }
 
  private:
-  int socket_ = -1;
+  OwnedDescriptor socket_;
 };
 
 }  // namespace kadans

@@ -76,14 +76,9 @@ class Collection {
 };
 
 void sync_folder(const fs::path& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) fail_there(folder, "cannot be opened");
-  const bool done = fsync(descriptor) == 0;
-  if (!done) {
-    close(descriptor);
-    fail_there(folder, "cannot be forced to the disk");
-  }
-  close(descriptor);
+  const OwnedDescriptor descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!descriptor) fail_there(folder, "cannot be opened");
+  if (fsync(descriptor.number()) != 0) fail_there(folder, "cannot be forced to the disk");
 }
 
 // The hashes of all files in a folder, by path.
@@ -164,18 +159,15 @@ DeliveryFolder::DeliveryFolder(const fs::path& folder) : folder_(fs::absolute(fo
   fs::create_directories(folder_.parent_path(), error);
   if (error) refuse(folder_.parent_path(), "cannot be made: " + error.message());
   const fs::path lock = beside(".lock");
-  lock_ = open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-  if (lock_ < 0) fail_there(lock, "cannot be opened");
-  if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
-  close(lock_);
-  refuse(folder_, "another push is under way");
+  lock_ = OwnedDescriptor(open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
+  if (!lock_) fail_there(lock, "cannot be opened");
+  if (flock(lock_.number(), LOCK_EX | LOCK_NB) != 0) refuse(folder_, "another push is under way");
 }
 
 DeliveryFolder::~DeliveryFolder() {
   std::error_code ignored;
   fs::remove(incoming(), ignored);
   fs::remove_all(next(), ignored);
-  close(lock_);
 }
 
 void DeliveryFolder::lay_out(const Delivery& delivery) {

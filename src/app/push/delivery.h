@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "signal/owned_descriptor.h"
 #include "telemetry/record/run_inputs.h"
 
 namespace kadans {
@@ -69,7 +70,7 @@ class DeliveryFolder {
   void trade(const std::filesystem::path& other) const;
 
   std::filesystem::path folder_;
-  int lock_ = -1;
+  OwnedDescriptor lock_;
 };
 
 }  // namespace kadans

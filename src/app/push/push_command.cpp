@@ -27,6 +27,7 @@
 #include "remote/ctl/ctl_folder.h"
 #include "remote_host.h"
 #include "signal/input_file.h"
+#include "signal/owned_descriptor.h"
 #include "tested_contents.h"
 
 namespace kadans {
@@ -115,29 +116,24 @@ namespace {
 
 // Copies what comes in on stdin. Throws InputError when it is too much, and when the disk does not take it.
 void take_in(const fs::path& file) {
-  const int to = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (to < 0) refuse(file, std::generic_category().message(errno));
-  const auto fail = [&](const std::string& why) {
-    close(to);
-    refuse(file, why);
-  };
+  const OwnedDescriptor to(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!to) refuse(file, std::generic_category().message(errno));
   std::vector<char> part(std::size_t{1} << 16U);
   std::uint64_t all = 0;
   for (;;) {
     const ssize_t got = read(STDIN_FILENO, part.data(), part.size());
     if (got < 0 && errno == EINTR && !interrupted()) continue;
-    if (got < 0) fail("the push was cut off");
+    if (got < 0) refuse(file, "the push was cut off");
     if (got == 0) break;
     all += static_cast<std::uint64_t>(got);
-    if (all > incoming_max_bytes) fail("more came in than a push may have");
+    if (all > incoming_max_bytes) refuse(file, "more came in than a push may have");
     for (ssize_t done = 0; done < got;) {
-      const ssize_t written = write(to, part.data() + done, static_cast<std::size_t>(got - done));
+      const ssize_t written = write(to.number(), part.data() + done, static_cast<std::size_t>(got - done));
       if (written < 0 && errno == EINTR && !interrupted()) continue;
-      if (written < 0) fail(std::generic_category().message(errno));
+      if (written < 0) refuse(file, std::generic_category().message(errno));
       done += written;
     }
   }
-  close(to);
 }
 
 // The run that drives this robot, if there is one, and orders for it.

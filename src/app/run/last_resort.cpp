@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "engine/clock.h"
-#include "realtime/signals_blocked.h"
+#include "signal/quiet_thread.h"
 
 namespace kadans {
 namespace {
@@ -22,12 +22,10 @@ void say(const char* text) noexcept { (void)!write(STDERR_FILENO, text, std::str
 
 LastResort::LastResort(int priority, int exit_code)
     : exit_code_(exit_code), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (wake_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
+  if (!wake_) throw std::system_error(errno, std::generic_category(), "eventfd");
   const SignalsBlocked blocked;
-  if (const int failed = pthread_create(&thread_, nullptr, enter, this); failed != 0) {
-    close(wake_);
+  if (const int failed = pthread_create(&thread_, nullptr, enter, this); failed != 0)
     throw std::system_error(failed, std::generic_category(), "the thread that ends what hangs");
-  }
   sched_param parameter{};
   parameter.sched_priority = priority;
   if (priority > 0) (void)pthread_setschedparam(thread_, SCHED_FIFO, &parameter);
@@ -35,15 +33,14 @@ LastResort::LastResort(int priority, int exit_code)
 
 LastResort::~LastResort() {
   over_.store(true);
-  (void)eventfd_write(wake_, 1);
+  (void)eventfd_write(wake_.number(), 1);
   pthread_join(thread_, nullptr);
-  close(wake_);
 }
 
 void LastResort::expect(const char* what, std::int64_t within_ns) noexcept {
   what_.store(what);
   deadline_ns_.store(WallClock().now_ns() + within_ns);
-  (void)eventfd_write(wake_, 1);
+  (void)eventfd_write(wake_.number(), 1);
 }
 
 void* LastResort::enter(void* self) {
@@ -62,10 +59,10 @@ void LastResort::watch() noexcept {
       say(" hangs; the run ends without it\n");
       _exit(exit_code_);
     }
-    pollfd watched{.fd = wake_, .events = POLLIN, .revents = 0};
+    pollfd watched{.fd = wake_.number(), .events = POLLIN, .revents = 0};
     if (poll(&watched, 1, static_cast<int>(std::min(left_ns / 1'000'000 + 1, longest_ms))) <= 0) continue;
     eventfd_t ignored = 0;
-    (void)eventfd_read(wake_, &ignored);
+    (void)eventfd_read(wake_.number(), &ignored);
   }
 }
 

@@ -10,6 +10,8 @@
 
 #include <pthread.h>
 
+#include "signal/owned_descriptor.h"
+
 namespace kadans {
 
 class LastResort {
@@ -28,7 +30,7 @@ class LastResort {
   void watch() noexcept;
 
   int exit_code_;
-  int wake_;
+  OwnedDescriptor wake_;
   std::atomic<const char*> what_{nullptr};
   std::atomic<std::int64_t> deadline_ns_{INT64_MAX};
   std::atomic<bool> over_{false};

@@ -48,7 +48,7 @@ struct DynamixelPlant::Port {
       const std::int64_t now_ns = serial.now_ns();
       due_ns += period_ns;
       if (due_ns < now_ns) due_ns += (now_ns - due_ns + period_ns - 1) / period_ns * period_ns;  // on the grid again
-      const timespec until{.tv_sec = static_cast<time_t>(due_ns / ns_per_s), .tv_nsec = due_ns % ns_per_s};
+      const timespec until = timespec_of(due_ns);
       clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
     }
   }
@@ -126,15 +126,8 @@ void DynamixelPlant::read(SensorFrame& sensors) noexcept {
     cycle_ms_ = std::max(cycle_ms_, sample->cycle_ms);
     for (std::size_t i = 0; i < port->joints.size() && i < sample->count; ++i) {
       const ServoReading& is = sample->servos[i];
-      sensors.joints[port->joints[i]] = {.position_rad = is.position_rad,
-                                         .motor_position_rad = is.position_rad,
-                                         .motor_effort_Nm = is.effort_Nm,
-                                         .sequence = is.sequence,
-                                         .code = is.code,
-                                         .time_ns = is.time_ns,
-                                         .temperature_C = is.temperature_C,
-                                         .drive = is.drive};
-      age_ms_ = std::max(age_ms_, 1e3 * seconds_between(is.time_ns, sensors.time_ns));
+      sensors.joints[port->joints[i]] = is.joint;
+      age_ms_ = std::max(age_ms_, 1e3 * seconds_between(is.joint.time_ns, sensors.time_ns));
       if (!(sensors.supply_V <= is.supply_V)) sensors.supply_V = is.supply_V;  // the lowest
     }
   }

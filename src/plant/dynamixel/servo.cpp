@@ -108,7 +108,7 @@ Servo::SetUp Servo::set_up(ServoBus& bus) noexcept {
     tries_ = 0;
     if (step_++ < 11) return SetUp::goes_on;
     stage_ = Stage::working;
-    reading_.code = 0;
+    reading_.joint.code = 0;
     return SetUp::done;
   }
   if (++tries_ < tries_max) return SetUp::goes_on;
@@ -120,9 +120,9 @@ void Servo::carry_out(DriveOrder order) noexcept {
   if (order == DriveOrder::enable) disabled_ = false;
   if (order == DriveOrder::disable) disabled_ = true;
   if (order != DriveOrder::reset) return;
-  if (reading_.code == 0) return;
+  if (reading_.joint.code == 0) return;
   disabled_ = true;
-  if (stage_ == Stage::working && reading_.code < code_silent) {
+  if (stage_ == Stage::working && reading_.joint.code < code_silent) {
     wants_reboot_ = true;
   } else {
     start_set_up();
@@ -158,7 +158,7 @@ void Servo::plan(const JointActuation& asked, const DriveRequest& order, std::in
   wants_mode_ = OperatingMode::unknown;
   goals_ = {.pwm = static_cast<std::int16_t>(pwm_most_), .position = raw_position_};
   const OperatingMode wanted = mode_for(asked.mode);
-  const bool acts = stage_ == Stage::working && !disabled_ && reading_.code == 0 && placed_ &&
+  const bool acts = stage_ == Stage::working && !disabled_ && reading_.joint.code == 0 && placed_ &&
                     wanted != OperatingMode::unknown && is_finite(asked);
   if (acts && wanted == mode_) {
     if (read_in_mode_) aim(asked);
@@ -176,7 +176,7 @@ T Servo::limit(double value, double most) noexcept {
 
 double Servo::effort_of(const JointActuation& asked) const noexcept {
   if (asked.mode == ActuationMode::effort) return asked.effort_Nm;
-  return asked.stiffness_Nm_per_rad * (asked.position_rad - reading_.position_rad) +
+  return asked.stiffness_Nm_per_rad * (asked.position_rad - reading_.joint.position_rad) +
          asked.damping_Nms_per_rad * (asked.velocity_rad_s - reading_.velocity_rad_s) + asked.effort_Nm;
 }
 
@@ -195,7 +195,7 @@ void Servo::aim(const JointActuation& asked) noexcept {
       goals_.velocity = limit<std::int32_t>(sign_ * asked.velocity_rad_s / rad_s_per_unit, velocity_most_);
       break;
     default: {
-      const double way = sign_ * (asked.position_rad - reading_.position_rad) / rad_per_pulse;
+      const double way = sign_ * (asked.position_rad - reading_.joint.position_rad) / rad_per_pulse;
       goals_.position = limit<std::int32_t>(raw_position_ + way, position_reach);
       goals_.current = static_cast<std::int16_t>(current_most_);
       break;
@@ -214,7 +214,7 @@ bool Servo::take(Octets data, std::int64_t time_ns) noexcept {
   const std::uint8_t torque = data[at(torque_enable)];
   // After a reboot the indirect addresses are gone, and what they show is 0.
   if (torque > 1 || (has_voltage ? voltage == 0 : celsius == 0)) {
-    if (++strange_ >= strange_max) reading_.code = code_forgot;
+    if (++strange_ >= strange_max) reading_.joint.code = code_forgot;
     return false;
   }
   strange_ = 0;
@@ -224,42 +224,42 @@ bool Servo::take(Octets data, std::int64_t time_ns) noexcept {
       placed_ ? turned_ + wrapped(raw - raw_position_) : wrapped(raw - static_cast<std::int32_t>(settings_.zero_pulse));
   raw_position_ = raw;
   placed_ = read_in_mode_ = true;
-  const double before_rad = reading_.position_rad;
-  const std::int64_t before_ns = reading_.time_ns;
-  reading_.position_rad = sign_ * turned_ * rad_per_pulse;
+  const double before_rad = reading_.joint.position_rad;
+  const std::int64_t before_ns = reading_.joint.time_ns;
+  reading_.joint.position_rad = reading_.joint.motor_position_rad = sign_ * turned_ * rad_per_pulse;
   if (at(present_velocity) != IndirectLayout::nowhere) {
     const auto units = static_cast<std::int32_t>(u32_at(data, at(present_velocity)));
     reading_.velocity_rad_s = sign_ * units * rad_s_per_unit;
-  } else if (time_ns > before_ns && reading_.sequence > 0) {
-    reading_.velocity_rad_s = (reading_.position_rad - before_rad) / seconds_between(before_ns, time_ns);
+  } else if (time_ns > before_ns && reading_.joint.sequence > 0) {
+    reading_.velocity_rad_s = (reading_.joint.position_rad - before_rad) / seconds_between(before_ns, time_ns);
   }
   const auto current = static_cast<std::int16_t>(u16_at(data, at(present_current)));
-  reading_.effort_Nm = sign_ * current * Nm_per_unit_;
-  reading_.temperature_C = celsius;
+  reading_.joint.motor_effort_Nm = sign_ * current * Nm_per_unit_;
+  reading_.joint.temperature_C = celsius;
   if (has_voltage) reading_.supply_V = voltage * volt_per_unit;
-  reading_.time_ns = time_ns;
-  ++reading_.sequence;
+  reading_.joint.time_ns = time_ns;
+  ++reading_.joint.sequence;
   const std::uint8_t error = data[at(hardware_error)];
-  if (error != 0) reading_.code = error;
+  if (error != 0) reading_.joint.code = error;
   wrong_torque_ = has_torque_ == goals_.torque || !goals_.torque ? 0 : wrong_torque_ + 1;
-  if (wrong_torque_ >= wrong_torque_max && reading_.code == 0) reading_.code = code_forgot;
+  if (wrong_torque_ >= wrong_torque_max && reading_.joint.code == 0) reading_.joint.code = code_forgot;
   tell_state();
   return true;
 }
 
 void Servo::give_up(std::uint32_t code) noexcept {
   stage_ = Stage::silent;
-  reading_.code = code;
+  reading_.joint.code = code;
   goals_ = {};
   tell_state();
 }
 
 void Servo::tell_state() noexcept {
-  reading_.drive = reading_.code != 0             ? DriveState::fault
-                   : disabled_                    ? DriveState::off
-                   : stage_ != Stage::working     ? DriveState::off
-                   : has_torque_ && goals_.torque ? DriveState::enabled
-                                                  : DriveState::ready;
+  reading_.joint.drive = reading_.joint.code != 0       ? DriveState::fault
+                         : disabled_                    ? DriveState::off
+                         : stage_ != Stage::working     ? DriveState::off
+                         : has_torque_ && goals_.torque ? DriveState::enabled
+                                                        : DriveState::ready;
 }
 
 }  // namespace kadans::dynamixel

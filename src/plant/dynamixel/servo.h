@@ -21,13 +21,9 @@ inline constexpr std::uint32_t code_silent = 0x100, code_forgot = 0x200, code_re
 std::string_view drive_code_words(std::uint32_t code) noexcept;
 
 struct ServoReading {
-  double position_rad = 0, velocity_rad_s = 0, effort_Nm = 0;  // in the drive's coordinate
+  JointSample joint{.drive = DriveState::off};  // in the drive's coordinate
+  double velocity_rad_s = 0;
   double supply_V = std::numeric_limits<double>::quiet_NaN();
-  std::int64_t time_ns = 0;
-  std::uint32_t sequence = 0;
-  std::uint32_t code = 0;
-  float temperature_C = std::numeric_limits<float>::quiet_NaN();
-  DriveState drive = DriveState::off;
 };
 
 // Registers that a servo follows, beside its operating mode.

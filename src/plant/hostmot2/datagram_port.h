@@ -9,6 +9,7 @@
 
 #include "settings.h"
 #include "signal/monotonic_clock.h"
+#include "signal/owned_descriptor.h"
 
 namespace kadans::hostmot2 {
 
@@ -36,7 +37,6 @@ class DatagramPort {
 class UdpPort final : public DatagramPort {
  public:
   explicit UdpPort(BoardSettings board);  // throws InputError at the board's place
-  ~UdpPort() override;
   bool send(Octets datagram) noexcept override;
   std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
   void await(std::int64_t until_ns) noexcept override;
@@ -45,7 +45,7 @@ class UdpPort final : public DatagramPort {
 
  private:
   BoardSettings board_;
-  int descriptor_ = -1;
+  OwnedDescriptor descriptor_;
 };
 
 }  // namespace kadans::hostmot2

@@ -9,24 +9,22 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "kadans/signal/input_error.h"
+#include "signal/owned_descriptor.h"
 
 namespace kadans::hostmot2 {
 
 MappedLink::MappedLink(const std::string& path) {
-  const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_SYNC);
+  const OwnedDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_SYNC));
   const auto fail = [&](const std::string& why) {
-    if (file >= 0) ::close(file);
     throw InputError({.message = "the board's registers " + path + ": " + why});
   };
-  if (file < 0) fail(std::system_category().message(errno) + "; root may open a PCI resource, and who it lets");
+  if (!file) fail(std::system_category().message(errno) + "; root may open a PCI resource, and who it lets");
   struct stat is {};
-  if (fstat(file, &is) != 0 || is.st_size < static_cast<off_t>(bytes)) fail("has no 64 KiB of registers");
-  void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (fstat(file.number(), &is) != 0 || is.st_size < static_cast<off_t>(bytes)) fail("has no 64 KiB of registers");
+  void* const memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file.number(), 0);
   if (memory == MAP_FAILED) fail(std::system_category().message(errno));
-  ::close(file);
   registers_ = static_cast<volatile std::uint32_t*>(memory);
 }
 

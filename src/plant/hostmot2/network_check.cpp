@@ -1,5 +1,3 @@
-#include "network_check.h"
-
 #include <array>
 #include <memory>
 
@@ -8,6 +6,8 @@
 #include <net/if.h>
 #include <netinet/in.h>
 #include <unistd.h>
+
+#include "settings.h"
 
 namespace kadans::hostmot2 {
 namespace {

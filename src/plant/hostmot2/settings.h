@@ -99,4 +99,9 @@ inline constexpr std::uint16_t lbp_udp_port = 27181;
 // "192.168.1.121" as "192.168.1.121:27181". Throws InputError where it is none.
 std::string board_place(const std::string& address);
 
+// Whether this machine has a network card in the network of a board on Ethernet, and what else helps or hinders boards
+// (network_check.cpp). Nothing is sent.
+PlantType::Finding examine_card(const BoardSettings& board);
+std::vector<PlantType::Finding> examine_boards(const HostMot2Settings& settings, std::int64_t control_period_ns);
+
 }  // namespace kadans::hostmot2

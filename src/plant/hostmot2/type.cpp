@@ -6,7 +6,6 @@
 #include "hostmot2_plant.h"
 #include "lbp_link.h"
 #include "mapped_link.h"
-#include "network_check.h"
 
 namespace kadans {
 namespace {

@@ -9,7 +9,6 @@
 #include <fcntl.h>
 #include <linux/input.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
 
 #include "kadans/signal/input_error.h"
 
@@ -39,7 +38,9 @@ std::string why_not(int error) {
   return std::string("cannot be opened: ") + std::strerror(error);  // NOLINT(concurrency-mt-unsafe): before the loop
 }
 
-int open_device(const std::string& path) noexcept { return open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); }
+OwnedDescriptor open_device(const std::string& path) noexcept {
+  return OwnedDescriptor(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+}
 
 // False: it is no input device.
 bool read_ranges(int descriptor, StickRanges& ranges) noexcept {
@@ -53,15 +54,15 @@ bool read_ranges(int descriptor, StickRanges& ranges) noexcept {
   return true;
 }
 
-Stick open_stick(const JoystickSettings& settings, int& descriptor) {
+Stick open_stick(const JoystickSettings& settings, OwnedDescriptor& descriptor) {
   descriptor = open_device(settings.device);
-  if (descriptor < 0) throw InputError({.file = settings.device, .message = why_not(errno)});
+  if (!descriptor) throw InputError({.file = settings.device, .message = why_not(errno)});
   try {
     StickRanges ranges{};
-    if (!read_ranges(descriptor, ranges)) throw std::invalid_argument("is no event device of Linux" + joysticks_here());
+    if (!read_ranges(descriptor.number(), ranges))
+      throw std::invalid_argument("is no event device of Linux" + joysticks_here());
     return {settings, ranges};
   } catch (const std::exception& error) {
-    close(descriptor);
     throw InputError({.file = settings.device, .message = error.what()});
   }
 }
@@ -79,21 +80,17 @@ JoystickDevice::JoystickDevice(const JoystickSettings& settings, int descriptor,
   stick_.plug();
 }
 
-JoystickDevice::~JoystickDevice() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
-
 // The ranges stay those of the first one: who plugs in another kind begins anew.
 const JoystickState& JoystickDevice::at(std::int64_t time_ns) noexcept {
-  if (descriptor_ < 0 && time_ns >= look_again_ns_ && !settings_.device.empty()) {
+  if (!descriptor_ && time_ns >= look_again_ns_ && !settings_.device.empty()) {
     look_again_ns_ = time_ns + look_again_ns;
     descriptor_ = open_device(settings_.device);
-    if (descriptor_ >= 0) {
+    if (descriptor_) {
       stick_.plug();
       read_whole();
     }
   }
-  if (descriptor_ >= 0) read_all();
+  if (descriptor_) read_all();
   return stick_.state();
 }
 
@@ -101,7 +98,7 @@ void JoystickDevice::read_all() noexcept {
   std::array<input_event, batch> raw;  // NOLINT(cppcoreguidelines-pro-type-member-init): read into
   std::array<StickEvent, batch> events;
   for (std::size_t i = 0; i < batches_max; ++i) {
-    const ssize_t bytes = read(descriptor_, raw.data(), sizeof raw);
+    const ssize_t bytes = read(descriptor_.number(), raw.data(), sizeof raw);
     if (bytes < 0 && (errno == EAGAIN || errno == EINTR)) return;
     if (bytes <= 0) return lose();
     const auto got = std::as_bytes(std::span(raw)).first(static_cast<std::size_t>(bytes));
@@ -115,10 +112,10 @@ void JoystickDevice::read_all() noexcept {
 void JoystickDevice::read_whole() noexcept {
   for (const JoystickAxis& axis : settings_.axes) {
     input_absinfo info{};
-    if (ioctl(descriptor_, EVIOCGABS(axis.code), &info) >= 0) stick_.take({0, EV_ABS, axis.code, info.value});
+    if (ioctl(descriptor_.number(), EVIOCGABS(axis.code), &info) >= 0) stick_.take({0, EV_ABS, axis.code, info.value});
   }
   std::array<unsigned char, key_bytes> keys{};
-  if (ioctl(descriptor_, EVIOCGKEY(key_bytes), keys.data()) >= 0) {
+  if (ioctl(descriptor_.number(), EVIOCGKEY(key_bytes), keys.data()) >= 0) {
     const auto held = [&keys](std::size_t key) { return (keys[key / 8] >> (key % 8) & 1) != 0; };
     for (std::size_t i = 0; i < joystick_buttons; ++i) {
       const bool any = held(BTN_JOYSTICK + i) || held(BTN_GAMEPAD + i);
@@ -129,8 +126,7 @@ void JoystickDevice::read_whole() noexcept {
 }
 
 void JoystickDevice::lose() noexcept {
-  close(descriptor_);
-  descriptor_ = -1;
+  descriptor_ = {};
   stick_.unplug();
 }
 

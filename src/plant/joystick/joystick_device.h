@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "signal/owned_descriptor.h"
 #include "stick.h"
 
 namespace kadans {
@@ -19,9 +20,6 @@ class JoystickDevice final : public JoystickSource {
   explicit JoystickDevice(const JoystickSettings& settings);
   // For tests, where there is no device: reads a descriptor, which it takes over, as a device with these ranges.
   JoystickDevice(const JoystickSettings& settings, int descriptor, const StickRanges& ranges);
-  ~JoystickDevice() override;
-  JoystickDevice(const JoystickDevice&) = delete;
-  JoystickDevice& operator=(const JoystickDevice&) = delete;
 
   const JoystickState& at(std::int64_t time_ns) noexcept override;
 
@@ -31,7 +29,7 @@ class JoystickDevice final : public JoystickSource {
   void lose() noexcept;
 
   JoystickSettings settings_;
-  int descriptor_ = -1;
+  OwnedDescriptor descriptor_;
   Stick stick_;
   std::int64_t look_again_ns_ = 0;
 };

@@ -9,6 +9,8 @@
 #include <span>
 #include <string>
 
+#include "signal/owned_descriptor.h"
+
 namespace kadans {
 
 class PseudoTerminal {
@@ -16,20 +18,17 @@ class PseudoTerminal {
   // Makes a link to the terminal at `link`. Throws InputError for `option`, from which the link is.
   PseudoTerminal(const std::string& link, const char* option);
   ~PseudoTerminal();
-  PseudoTerminal(PseudoTerminal&& other) noexcept;
-  PseudoTerminal& operator=(PseudoTerminal&&) = delete;
+  PseudoTerminal(PseudoTerminal&&) noexcept = default;
 
-  int descriptor() const noexcept { return master_; }  // readable when somebody sent something
+  int descriptor() const noexcept { return master_.number(); }  // readable when somebody sent something
   std::size_t read(std::span<std::uint8_t> into) const noexcept;
   void write(std::span<const std::uint8_t> bytes) const noexcept;
   std::uint32_t baud() const noexcept;
 
  private:
-  void open_terminal(const char* option);
-
   std::string link_;
-  int master_ = -1;
-  int slave_ = -1;  // of our own: it keeps the terminal alive while nobody else has it open
+  OwnedDescriptor master_;
+  OwnedDescriptor slave_;  // of our own: it keeps the terminal alive while nobody else has it open
 };
 
 }  // namespace kadans

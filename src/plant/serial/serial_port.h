@@ -12,6 +12,7 @@
 
 #include "kadans/plant/plant_type.h"
 #include "signal/monotonic_clock.h"
+#include "signal/owned_descriptor.h"
 
 namespace kadans {
 
@@ -36,7 +37,6 @@ class TerminalPort final : public SerialPort {
   // Throws InputError that says what is wrong with the device: not there, no right to open it, somebody else's, no
   // serial port, a baud rate that it cannot have.
   TerminalPort(const std::string& device, std::uint32_t baud);
-  ~TerminalPort() override;
 
   bool send(std::span<const std::uint8_t> bytes) noexcept override;
   std::size_t receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept override;
@@ -46,7 +46,7 @@ class TerminalPort final : public SerialPort {
 
  private:
   std::string device_;
-  int descriptor_ = -1;
+  OwnedDescriptor descriptor_;
 };
 
 // The port of this device. Throws InputError at `place`, where the device is named.

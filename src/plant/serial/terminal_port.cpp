@@ -46,23 +46,18 @@ int latency_timer_ms(const std::string& device) {
 
 }  // namespace
 
-TerminalPort::TerminalPort(const std::string& device, std::uint32_t baud) : device_(device) {
-  descriptor_ = open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor_ < 0 && errno == ENOENT)
+TerminalPort::TerminalPort(const std::string& device, std::uint32_t baud)
+    : device_(device), descriptor_(open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+  if (!descriptor_ && errno == ENOENT)
     refuse_device(device, "is not there: is the adapter plugged in? `ls -l /dev/serial/by-id` shows those that are");
-  if (descriptor_ < 0 && errno == EACCES)
+  if (!descriptor_ && errno == EACCES)
     refuse_device(device, "this user may not open it: add them to its group (`ls -l " + device +
                               "` names it, often dialout) with `sudo usermod -aG dialout $USER`, and log in again");
-  if (descriptor_ < 0) refuse_device(device, words_of(errno));
-  try {
-    if (isatty(descriptor_) == 0) refuse_device(device, "is no serial port");
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) refuse_device(device, "another program has it");
-    set_baud(baud);
-  } catch (...) {
-    close(descriptor_);
-    throw;
-  }
-  ask_for_low_latency(descriptor_);
+  if (!descriptor_) refuse_device(device, words_of(errno));
+  if (isatty(descriptor_.number()) == 0) refuse_device(device, "is no serial port");
+  if (flock(descriptor_.number(), LOCK_EX | LOCK_NB) != 0) refuse_device(device, "another program has it");
+  set_baud(baud);
+  ask_for_low_latency(descriptor_.number());
 }
 
 std::unique_ptr<SerialPort> open_port(const std::string& device, std::uint32_t baud, const InputProblem& place) {
@@ -73,11 +68,9 @@ std::unique_ptr<SerialPort> open_port(const std::string& device, std::uint32_t b
   }
 }
 
-TerminalPort::~TerminalPort() { close(descriptor_); }
-
 void TerminalPort::set_baud(std::uint32_t baud) {
   termios2 terms{};
-  if (ioctl(descriptor_, TCGETS2, &terms) != 0) refuse_device(device_, "is no serial port");
+  if (ioctl(descriptor_.number(), TCGETS2, &terms) != 0) refuse_device(device_, "is no serial port");
   terms.c_iflag = 0;
   terms.c_oflag = 0;
   terms.c_lflag = 0;
@@ -86,7 +79,7 @@ void TerminalPort::set_baud(std::uint32_t baud) {
   terms.c_cc[VMIN] = 0;
   terms.c_cc[VTIME] = 0;
   termios2 is{};
-  if (ioctl(descriptor_, TCSETS2, &terms) != 0 || ioctl(descriptor_, TCGETS2, &is) != 0)
+  if (ioctl(descriptor_.number(), TCSETS2, &terms) != 0 || ioctl(descriptor_.number(), TCGETS2, &is) != 0)
     refuse_device(device_, words_of(errno));
   // Three percent: more, and a byte's last bit is read wrong.
   if (is.c_ospeed < baud - baud / 33 || is.c_ospeed > baud + baud / 33)
@@ -96,7 +89,7 @@ void TerminalPort::set_baud(std::uint32_t baud) {
 
 bool TerminalPort::send(std::span<const std::uint8_t> bytes) noexcept {
   while (!bytes.empty()) {
-    const ssize_t sent = ::write(descriptor_, bytes.data(), bytes.size());
+    const ssize_t sent = ::write(descriptor_.number(), bytes.data(), bytes.size());
     if (sent < 0 && errno == EINTR) continue;
     if (sent <= 0) return false;
     bytes = bytes.subspan(static_cast<std::size_t>(sent));
@@ -106,22 +99,22 @@ bool TerminalPort::send(std::span<const std::uint8_t> bytes) noexcept {
 
 std::size_t TerminalPort::receive(std::span<std::uint8_t> into, std::int64_t until_ns) noexcept {
   for (;;) {
-    const ssize_t got = ::read(descriptor_, into.data(), into.size());
+    const ssize_t got = ::read(descriptor_.number(), into.data(), into.size());
     if (got > 0) return static_cast<std::size_t>(got);
     const std::int64_t left_ns = until_ns - now_ns();
     if (left_ns <= 0 || into.empty()) return 0;
-    pollfd wanted{descriptor_, POLLIN, 0};
-    const timespec wait{.tv_sec = static_cast<time_t>(left_ns / 1'000'000'000), .tv_nsec = left_ns % 1'000'000'000};
+    pollfd wanted{descriptor_.number(), POLLIN, 0};
+    const timespec wait = timespec_of(left_ns);
     const int ready = ppoll(&wanted, 1, &wait, nullptr);
     if (ready < 0 && errno != EINTR) return 0;
     if (ready > 0 && (wanted.revents & POLLIN) == 0) {  // unplugged: it would be ready at once, forever
-      const timespec rest{.tv_sec = 0, .tv_nsec = std::min<std::int64_t>(left_ns, 1'000'000)};
+      const timespec rest = timespec_of(std::min<std::int64_t>(left_ns, 1'000'000));
       clock_nanosleep(CLOCK_MONOTONIC, 0, &rest, nullptr);
     }
   }
 }
 
-void TerminalPort::discard() noexcept { (void)ioctl(descriptor_, TCFLSH, TCIFLUSH); }
+void TerminalPort::discard() noexcept { (void)ioctl(descriptor_.number(), TCFLSH, TCIFLUSH); }
 
 void examine_serial_port(const std::string& name, const std::string& device,
                          std::vector<PlantType::Finding>& findings) {

@@ -2,38 +2,20 @@
 
 #include <cerrno>
 #include <chrono>
-#include <utility>
 
 #include <poll.h>
-#include <unistd.h>
 
 namespace kadans {
-
-struct DatagramSocket::Batch {
-  std::array<std::array<std::byte, wire_bytes_max + 1>, batch_max> bytes;  // one more: what is too long shows
-  std::array<PeerAddress, batch_max> from;
-  std::array<iovec, batch_max> parts{};
-  std::array<mmsghdr, batch_max> messages{};
-};
-
-DatagramSocket::DatagramSocket(int descriptor) : descriptor_(descriptor), batch_(std::make_unique<Batch>()) {}
-
-DatagramSocket::DatagramSocket(DatagramSocket&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), batch_(std::move(other.batch_)) {}
-
-DatagramSocket::~DatagramSocket() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
 
 void DatagramSocket::wait(int milliseconds) const noexcept {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point end = Clock::now() + std::chrono::milliseconds(milliseconds);
   for (int left = milliseconds; left >= 0;) {
-    pollfd wanted{descriptor_, POLLIN, 0};
+    pollfd wanted{descriptor_.number(), POLLIN, 0};
     if (poll(&wanted, 1, left) <= 0 || (wanted.revents & POLLIN) != 0) return;
     int error = 0;  // that nobody listens there is no reason to wait less: somebody may soon
     socklen_t size = sizeof error;
-    if (getsockopt(descriptor_, SOL_SOCKET, SO_ERROR, &error, &size) != 0 || error == 0) return;
+    if (getsockopt(descriptor_.number(), SOL_SOCKET, SO_ERROR, &error, &size) != 0 || error == 0) return;
     left = static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count());
   }
 }
@@ -48,10 +30,10 @@ std::size_t DatagramSocket::receive() noexcept {
     head.msg_iov = &batch_->parts[i];
     head.msg_iovlen = 1;
   }
-  int count = recvmmsg(descriptor_, batch_->messages.data(), batch_max, MSG_DONTWAIT, nullptr);
+  int count = recvmmsg(descriptor_.number(), batch_->messages.data(), batch_max, MSG_DONTWAIT, nullptr);
   // The answer to something sent before (nobody listens there) is told once and stands before what came.
   if (count < 0 && errno == ECONNREFUSED)
-    count = recvmmsg(descriptor_, batch_->messages.data(), batch_max, MSG_DONTWAIT, nullptr);
+    count = recvmmsg(descriptor_.number(), batch_->messages.data(), batch_max, MSG_DONTWAIT, nullptr);
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     batch_->from[at].size = batch_->messages[at].msg_hdr.msg_namelen;
@@ -72,7 +54,7 @@ bool DatagramSocket::send(Bytes datagram) const noexcept { return send(datagram,
 bool DatagramSocket::send(Bytes datagram, const PeerAddress& to) const noexcept {
   const auto* const address = to.size == 0 ? nullptr : reinterpret_cast<const sockaddr*>(&to.address);
   const ssize_t sent =
-      sendto(descriptor_, datagram.data(), datagram.size(), MSG_DONTWAIT | MSG_NOSIGNAL, address, to.size);
+      sendto(descriptor_.number(), datagram.data(), datagram.size(), MSG_DONTWAIT | MSG_NOSIGNAL, address, to.size);
   return sent == static_cast<ssize_t>(datagram.size());
 }
 

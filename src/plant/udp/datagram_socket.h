@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "plant/socket_address.h"
+#include "signal/owned_descriptor.h"
 #include "wire.h"
 
 namespace kadans {
@@ -18,10 +19,7 @@ class DatagramSocket {
  public:
   static constexpr std::size_t batch_max = 16;
 
-  explicit DatagramSocket(int descriptor);  // takes it over
-  ~DatagramSocket();
-  DatagramSocket(DatagramSocket&& other) noexcept;
-  DatagramSocket& operator=(DatagramSocket&&) = delete;
+  explicit DatagramSocket(int descriptor) : descriptor_(descriptor) {}  // takes it over
 
   // Sleeps until a datagram has come, at most this long. Before the loop only.
   void wait(int milliseconds) const noexcept;
@@ -35,9 +33,14 @@ class DatagramSocket {
   bool send(Bytes datagram, const PeerAddress& to) const noexcept;
 
  private:
-  struct Batch;
-  int descriptor_ = -1;
-  std::unique_ptr<Batch> batch_;
+  struct Batch {
+    std::array<std::array<std::byte, wire_bytes_max + 1>, batch_max> bytes;  // one more: what is too long shows
+    std::array<PeerAddress, batch_max> from;
+    std::array<iovec, batch_max> parts{};
+    std::array<mmsghdr, batch_max> messages{};
+  };
+  OwnedDescriptor descriptor_;
+  std::unique_ptr<Batch> batch_ = std::make_unique<Batch>();
 };
 
 }  // namespace kadans

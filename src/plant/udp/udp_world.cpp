@@ -21,12 +21,12 @@ UdpWorld::UdpWorld(std::unique_ptr<World> model, const UdpSettings& settings, co
     : UdpWorld(std::move(model), settings, layout, Ends()) {}
 
 UdpWorld::UdpWorld(std::unique_ptr<World> model, UdpSettings settings, const PlantLayout& layout, Ends ends)
-    : model_(std::move(model)),
+    : WorldAround(std::move(model)),
       server_(settings, layout, DatagramSocket(ends.plant)),
       plant_(settings, layout, DatagramSocket(ends.control), 1) {}
 
 bool UdpWorld::open(bool (*)() noexcept) {
-  const bool there = plant_.greet() && server_.await(0) && server_.beat(*model_, 1) && plant_.welcomed();
+  const bool there = plant_.greet() && server_.await(0) && server_.beat(world_, 1) && plant_.welcomed();
   if (!there) throw InputError({.message = "both ends of the plant's socket do not find each other"});
   return true;
 }

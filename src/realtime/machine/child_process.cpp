@@ -53,7 +53,6 @@ class SpawnPlan {
     posix_spawnattr_setflags(&attributes_, flags);
   }
   ~SpawnPlan() {
-    for (const int descriptor : high_) close(descriptor);
     posix_spawnattr_destroy(&attributes_);
     posix_spawn_file_actions_destroy(&files_);
   }
@@ -93,9 +92,9 @@ class SpawnPlan {
       const int file = files[static_cast<std::size_t>(i)];
       if (file == no_file) posix_spawn_file_actions_addopen(&files_, i, "/dev/null", O_RDWR, 0);
       if (file == no_file || (file == i && i <= STDERR_FILENO)) continue;
-      high_.push_back(fcntl(file, F_DUPFD_CLOEXEC, count));  // above all that the program will find
-      if (high_.back() < 0) fail(errno, "no descriptor for a process");
-      posix_spawn_file_actions_adddup2(&files_, high_.back(), i);
+      high_.emplace_back(fcntl(file, F_DUPFD_CLOEXEC, count));  // above all that the program will find
+      if (!high_.back()) fail(errno, "no descriptor for a process");
+      posix_spawn_file_actions_adddup2(&files_, high_.back().number(), i);
     }
     posix_spawn_file_actions_addclosefrom_np(&files_, count);
   }
@@ -112,7 +111,7 @@ class SpawnPlan {
     posix_spawnattr_setsigmask(&attributes_, &signals);
   }
 
-  std::vector<int> high_;
+  std::vector<OwnedDescriptor> high_;
   posix_spawn_file_actions_t files_{};
   posix_spawnattr_t attributes_{};
 };
@@ -130,7 +129,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
       owner_(other.owner_),
       own_group_(other.own_group_),
       running_(std::exchange(other.running_, false)),
-      end_(std::exchange(other.end_, -1)),
+      end_(std::move(other.end_)),
       status_(other.status_) {}
 
 std::optional<ChildProcess> ChildProcess::copy() {
@@ -145,15 +144,15 @@ pid_t ChildProcess::copy_alone() noexcept { return fork(); }
 void ChildProcess::wait_for_one(std::span<const ChildProcess* const> running, int most_ms) {
   std::vector<pollfd> ends;
   for (const ChildProcess* process : running) {
-    ends.push_back({process->end_, POLLIN, 0});
-    if (process->end_ < 0) most_ms = 1;
+    ends.push_back({process->end_.number(), POLLIN, 0});
+    if (!process->end_) most_ms = 1;
   }
   (void)poll(ends.data(), ends.size(), most_ms);
 }
 
 void ChildProcess::forget() noexcept {
   running_ = false;
-  if (const int end = std::exchange(end_, -1); end >= 0) close(end);
+  end_ = {};
 }
 
 bool ChildProcess::reap(bool waits) noexcept {
@@ -213,31 +212,23 @@ int ChildProcess::signal() const noexcept { return status_ && WIFSIGNALED(*statu
 void die_with_parent() noexcept { (void)prctl(PR_SET_PDEATHSIG, SIGKILL); }
 
 MemoryFile::MemoryFile(std::string_view text) : descriptor_(memfd_create("kadans-text", MFD_CLOEXEC)) {
-  if (descriptor_ < 0) fail(errno, "no file in memory");
+  if (!descriptor_) fail(errno, "no file in memory");
   while (!text.empty()) {
-    const ssize_t written = uninterrupted([&] { return write(descriptor_, text.data(), text.size()); });
-    if (written <= 0) {
-      const int error = errno;
-      close(descriptor_);
-      fail(error, "a file in memory");
-    }
+    const ssize_t written = uninterrupted([&] { return write(descriptor(), text.data(), text.size()); });
+    if (written <= 0) fail(errno, "a file in memory");
     text.remove_prefix(static_cast<std::size_t>(written));
   }
-  (void)lseek(descriptor_, 0, SEEK_SET);
-}
-
-MemoryFile::~MemoryFile() {
-  if (descriptor_ >= 0) close(descriptor_);
+  (void)lseek(descriptor(), 0, SEEK_SET);
 }
 
 std::string MemoryFile::text() const {
   struct stat file = {};
-  if (fstat(descriptor_, &file) != 0) return {};
+  if (fstat(descriptor(), &file) != 0) return {};
   std::string text(static_cast<std::size_t>(file.st_size), '\0');
   std::size_t got = 0;
   for (ssize_t more = 1; more > 0; got += static_cast<std::size_t>(std::max<ssize_t>(more, 0)))
     more = uninterrupted(
-        [&] { return pread(descriptor_, text.data() + got, text.size() - got, static_cast<off_t>(got)); });
+        [&] { return pread(descriptor(), text.data() + got, text.size() - got, static_cast<off_t>(got)); });
   text.resize(got);
   return text;
 }

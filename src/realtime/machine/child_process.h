@@ -70,7 +70,7 @@ class ChildProcess {
 
   pid_t pid_, owner_;
   bool own_group_, running_ = true;
-  int end_;  // descriptor that can be read once the process has ended; -1: the system has none
+  OwnedDescriptor end_;  // that can be read once the process has ended; none: the system has none
   std::optional<int> status_;
 };
 
@@ -81,15 +81,12 @@ void die_with_parent() noexcept;
 class MemoryFile {
  public:
   explicit MemoryFile(std::string_view text = {});  // throws std::system_error
-  ~MemoryFile();
-  MemoryFile(MemoryFile&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  MemoryFile& operator=(MemoryFile&&) = delete;
 
-  int descriptor() const noexcept { return descriptor_; }
+  int descriptor() const noexcept { return descriptor_.number(); }
   std::string text() const;  // all that is in it
 
  private:
-  int descriptor_;
+  OwnedDescriptor descriptor_;
 };
 
 struct ProgramOutput {

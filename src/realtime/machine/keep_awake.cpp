@@ -6,50 +6,35 @@
 #include <sched.h>
 #include <unistd.h>
 
-#include "realtime/signals_blocked.h"
 #include "realtime/wait.h"
 #include "signal/monotonic_clock.h"
+#include "signal/quiet_thread.h"
 
 namespace kadans {
 
-KeepAwake::KeepAwake(int cpu) : cpu_(cpu) {
-  latency_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+KeepAwake::KeepAwake(int cpu) : cpu_(cpu), latency_(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC)) {
   const std::int32_t wanted_us = 0;
-  if (latency_ >= 0 && write(latency_, &wanted_us, sizeof wanted_us) != sizeof wanted_us) {
-    close(latency_);
-    latency_ = -1;
-  }
-  const SignalsBlocked blocked;
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, std::size_t{64} * 1024);  // all of it may be locked
-  const int error = pthread_create(&thread_, &attributes, spin, this);
-  pthread_attr_destroy(&attributes);
-  if (error == 0) return;
-  if (latency_ >= 0) close(latency_);
-  throw std::system_error(error, std::generic_category(), "no thread to keep the CPU awake");
+  if (latency_ && write(latency_.number(), &wanted_us, sizeof wanted_us) != sizeof wanted_us) latency_ = {};
+  const int error = start_quiet_thread<&KeepAwake::spin>(
+      thread_, {.name = "keep-awake", .stack_bytes = std::size_t{64} * 1024}, this);
+  if (error != 0) throw std::system_error(error, std::generic_category(), "no thread to keep the CPU awake");
 }
 
 KeepAwake::~KeepAwake() {
   stop_.store(true, std::memory_order_relaxed);
   pthread_join(thread_, nullptr);
-  if (latency_ >= 0) close(latency_);
 }
 
-void* KeepAwake::spin(void* self) {
-  auto& awake = *static_cast<KeepAwake*>(self);
+void KeepAwake::spin() const noexcept {
   const sched_param lowest{};
   cpu_set_t cpus;
   CPU_ZERO(&cpus);
-  CPU_SET(static_cast<std::size_t>(awake.cpu_), &cpus);
+  CPU_SET(static_cast<std::size_t>(cpu_), &cpus);
   // In any other class it would take time from others: then rather not.
   if (pthread_setschedparam(pthread_self(), SCHED_IDLE, &lowest) != 0 ||
-      pthread_setaffinity_np(pthread_self(), sizeof cpus, &cpus) != 0) {
-    return nullptr;
-  }
-  pthread_setname_np(pthread_self(), "keep-awake");
-  while (!awake.stop_.load(std::memory_order_relaxed)) relax();
-  return nullptr;
+      pthread_setaffinity_np(pthread_self(), sizeof cpus, &cpus) != 0)
+    return;
+  while (!stop_.load(std::memory_order_relaxed)) relax();
 }
 
 std::int64_t KeepAwake::cpu_time_ns() const noexcept {

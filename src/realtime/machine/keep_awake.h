@@ -10,6 +10,8 @@
 
 #include <pthread.h>
 
+#include "signal/owned_descriptor.h"
+
 namespace kadans {
 
 class KeepAwake {
@@ -21,13 +23,13 @@ class KeepAwake {
   KeepAwake& operator=(const KeepAwake&) = delete;
 
   std::int64_t cpu_time_ns() const noexcept;
-  bool holds_latency() const noexcept { return latency_ >= 0; }
+  bool holds_latency() const noexcept { return static_cast<bool>(latency_); }
 
  private:
-  static void* spin(void* self);
+  void spin() const noexcept;
 
   int cpu_;
-  int latency_ = -1;  // file descriptor; closing it lets go
+  OwnedDescriptor latency_;  // closing it lets go
   std::atomic<bool> stop_{false};
   pthread_t thread_{};
 };

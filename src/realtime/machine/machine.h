@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "kadans/plant/plant_type.h"
+
 namespace kadans {
 
 struct Rights {
@@ -29,13 +31,7 @@ std::vector<std::string> missing_rights(const Rights& rights, int priority);
 
 // Examines whether a machine can keep a 1 kHz loop: each finding says what is, what it should be and how to change it.
 // Everything is read from /proc and /sys, so that any machine can be examined from a copy of these.
-struct MachineFinding {
-  std::string topic;  // "governor"
-  bool good = false;
-  std::string is;
-  std::string should;
-  std::string how;  // "" when it is good
-};
+using MachineFinding = PlantType::Finding;  // `how` is "" when it is good
 
 // `root` stands for "/"; `folder` is where records would go.
 std::vector<MachineFinding> examine_machine(const std::filesystem::path& root, const std::filesystem::path& folder);

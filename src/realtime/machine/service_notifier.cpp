@@ -5,7 +5,6 @@
 
 #include <sys/socket.h>
 #include <sys/un.h>
-#include <unistd.h>
 
 namespace kadans {
 
@@ -16,18 +15,12 @@ ServiceNotifier::ServiceNotifier(const std::string& socket) {
   std::memcpy(address.sun_path, socket.data(), socket.size());
   if (socket.front() == '@') address.sun_path[0] = '\0';
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + socket.size());
-  file_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (file_ < 0 || connect(file_, reinterpret_cast<const sockaddr*>(&address), size) == 0) return;
-  close(file_);
-  file_ = -1;
-}
-
-ServiceNotifier::~ServiceNotifier() {
-  if (file_ >= 0) close(file_);
+  OwnedDescriptor file(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (file && connect(file.number(), reinterpret_cast<const sockaddr*>(&address), size) == 0) file_ = std::move(file);
 }
 
 void ServiceNotifier::send(std::string_view text) noexcept {
-  if (file_ >= 0) (void)!::send(file_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (file_) (void)!::send(file_.number(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 void ServiceNotifier::ready(std::string_view status) { send("READY=1\nSTATUS=" + std::string(status)); }

@@ -12,17 +12,16 @@
 #include <string>
 #include <string_view>
 
+#include "signal/owned_descriptor.h"
+
 namespace kadans {
 
 class ServiceNotifier {
  public:
   // `socket`: NOTIFY_SOCKET's value, "" for none; "@" begins an abstract name.
   explicit ServiceNotifier(const std::string& socket);
-  ~ServiceNotifier();
-  ServiceNotifier(const ServiceNotifier&) = delete;
-  ServiceNotifier& operator=(const ServiceNotifier&) = delete;
 
-  bool connected() const noexcept { return file_ >= 0; }
+  bool connected() const noexcept { return static_cast<bool>(file_); }
   void ready(std::string_view status);
   void stopping();
   // To be called twice per watchdog period. `tick` is the control engine's.
@@ -31,7 +30,7 @@ class ServiceNotifier {
  private:
   void send(std::string_view text) noexcept;
 
-  int file_ = -1;
+  OwnedDescriptor file_;
   std::uint64_t last_tick_ = 0;
 };
 

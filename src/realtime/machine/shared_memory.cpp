@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cerrno>
-#include <ctime>
 #include <system_error>
 
 #include <fcntl.h>
@@ -12,6 +11,8 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "signal/monotonic_clock.h"
 
 namespace kadans {
 namespace {
@@ -22,42 +23,25 @@ namespace {
 
 SharedMemory::SharedMemory(std::size_t bytes)
     : descriptor_(memfd_create("kadans", MFD_CLOEXEC | MFD_ALLOW_SEALING)), bytes_(bytes) {
-  if (descriptor_ < 0) fail(errno);
   // Sealed: a side that cut it short would make the other one die of SIGBUS.
-  if (ftruncate(descriptor_, static_cast<off_t>(bytes)) != 0 ||
-      fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
-    const int error = errno;
-    close(descriptor_);
-    fail(error);
-  }
+  if (!descriptor_ || ftruncate(descriptor(), static_cast<off_t>(bytes)) != 0 ||
+      fcntl(descriptor(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
+    fail(errno);
   map();
 }
 
 SharedMemory::SharedMemory(int descriptor, std::size_t bytes) : descriptor_(descriptor), bytes_(bytes) {
   struct stat size = {};
-  if (fstat(descriptor_, &size) != 0 || static_cast<std::size_t>(size.st_size) < bytes) {
-    close(descriptor_);
-    fail(EINVAL);
-  }
+  if (fstat(descriptor, &size) != 0 || static_cast<std::size_t>(size.st_size) < bytes) fail(EINVAL);
   map();
 }
 
 void SharedMemory::map() {
-  memory_ = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0);
-  if (memory_ != MAP_FAILED) return;
-  const int error = errno;
-  close(descriptor_);
-  fail(error);
+  memory_ = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor(), 0);
+  if (memory_ == MAP_FAILED) fail(errno);
 }
 
-SharedMemory::~SharedMemory() {
-  munmap(memory_, bytes_);
-  close(descriptor_);
-}
-
-Doorbell::~Doorbell() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
+SharedMemory::~SharedMemory() { munmap(memory_, bytes_); }
 
 std::pair<Doorbell, Doorbell> Doorbell::make_pair() {
   std::array<int, 2> ends{};
@@ -68,16 +52,15 @@ std::pair<Doorbell, Doorbell> Doorbell::make_pair() {
 
 void Doorbell::ring() const noexcept {
   const char ring = 1;
-  (void)!send(descriptor_, &ring, 1, MSG_NOSIGNAL | MSG_DONTWAIT);  // full: there are rings enough
+  (void)!send(descriptor(), &ring, 1, MSG_NOSIGNAL | MSG_DONTWAIT);  // full: there are rings enough
 }
 
 Doorbell::Heard Doorbell::wait(std::int64_t timeout_ns) noexcept {
-  constexpr std::int64_t second_ns = 1'000'000'000;
-  pollfd waited{descriptor_, POLLIN, 0};
-  const timespec timeout{static_cast<std::time_t>(timeout_ns / second_ns), static_cast<long>(timeout_ns % second_ns)};
+  pollfd waited{descriptor(), POLLIN, 0};
+  const timespec timeout = timespec_of(timeout_ns);
   if (ppoll(&waited, 1, timeout_ns < 0 ? nullptr : &timeout, nullptr) <= 0) return Heard::nothing;
   std::array<char, 256> rings{};
-  const ssize_t got = recv(descriptor_, rings.data(), rings.size(), MSG_DONTWAIT);
+  const ssize_t got = recv(descriptor(), rings.data(), rings.size(), MSG_DONTWAIT);
   if (got > 0) return Heard::ring;
   return got < 0 && (errno == EAGAIN || errno == EINTR) ? Heard::nothing : Heard::end;
 }

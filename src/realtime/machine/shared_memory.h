@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "signal/owned_descriptor.h"
+
 namespace kadans {
 
 // Memory that two processes share. It has no name, so that nobody else finds it and nothing of it outlives them.
@@ -19,12 +21,12 @@ class SharedMemory {
   SharedMemory& operator=(const SharedMemory&) = delete;
 
   void* get() const noexcept { return memory_; }
-  int descriptor() const noexcept { return descriptor_; }
+  int descriptor() const noexcept { return descriptor_.number(); }
 
  private:
   void map();
 
-  int descriptor_;
+  OwnedDescriptor descriptor_;
   std::size_t bytes_;
   void* memory_ = nullptr;
 };
@@ -41,9 +43,6 @@ class Doorbell {
 
   // Takes the descriptor over.
   explicit Doorbell(int descriptor) noexcept : descriptor_(descriptor) {}
-  ~Doorbell();
-  Doorbell(Doorbell&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Doorbell& operator=(Doorbell&&) = delete;
 
   // Both ends, closed in programs that are started. Throws std::system_error.
   static std::pair<Doorbell, Doorbell> make_pair();
@@ -54,10 +53,10 @@ class Doorbell {
   // other side cannot keep it here.
   Heard wait(std::int64_t timeout_ns) noexcept;
 
-  int descriptor() const noexcept { return descriptor_; }
+  int descriptor() const noexcept { return descriptor_.number(); }
 
  private:
-  int descriptor_;
+  OwnedDescriptor descriptor_;
 };
 
 }  // namespace kadans

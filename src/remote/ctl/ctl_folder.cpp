@@ -109,25 +109,21 @@ CtlSockets::CtlSockets(const Settings& settings) : folder_(fs::absolute(settings
     listen_as(Role::operate, settings.operators);
     listen_as(Role::develop, settings.developers);
   } catch (...) {
-    close_all();
+    remove_all();
     throw;
   }
 }
 
-CtlSockets::~CtlSockets() { close_all(); }
+CtlSockets::~CtlSockets() { remove_all(); }
 
 void CtlSockets::lock() {
   const fs::path file = folder_ / "lock";
-  // Who may read it may lock it.
-  lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, lock_mode);
-  if (lock_ < 0) fail_as_system(file, "cannot be opened");
-  if (fchmod(lock_, lock_mode) != 0) fail_as_system(file, "cannot be given its mode");
-  if (flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
-  const int why = errno;
-  close(lock_);
-  lock_ = -1;
-  errno = why;
-  if (why != EWOULDBLOCK) fail_as_system(file, "cannot be locked");
+  // Who may read it may lock it. The file stays when all is over: somebody may be about to lock it.
+  lock_ = OwnedDescriptor(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, lock_mode));
+  if (!lock_) fail_as_system(file, "cannot be opened");
+  if (fchmod(lock_.number(), lock_mode) != 0) fail_as_system(file, "cannot be given its mode");
+  if (flock(lock_.number(), LOCK_EX | LOCK_NB) == 0) return;
+  if (errno != EWOULDBLOCK) fail_as_system(file, "cannot be locked");
   fail(folder_, "another instance is reached here already; give this one a folder of its own: --ctl FOLDER");
 }
 
@@ -135,8 +131,9 @@ void CtlSockets::lock() {
 void CtlSockets::listen_as(Role role, const std::string& group) {
   const fs::path path = folder_ / name(role);
   const sockaddr_un address = address_of(path).value();
-  int& socket = listeners_[static_cast<std::size_t>(role)];
-  socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  listeners_[static_cast<std::size_t>(role)] =
+      OwnedDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const int socket = listener(role);
   if (socket < 0) fail_as_system(path, "no socket");
   (void)unlink(path.c_str());  // left by a dead one: the lock is ours
   if (bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
@@ -148,16 +145,10 @@ void CtlSockets::listen_as(Role role, const std::string& group) {
   if (listen(socket, backlog) != 0) fail_as_system(path, "cannot be listened on");
 }
 
-void CtlSockets::close_all() noexcept {
+void CtlSockets::remove_all() noexcept {
   for (std::size_t i = 0; i < listeners_.size(); ++i) {
-    if (listeners_[i] < 0) continue;
-    (void)unlink((folder_ / role_names[i]).c_str());
-    close(listeners_[i]);
-    listeners_[i] = -1;
+    if (listeners_[i]) (void)unlink((folder_ / role_names[i]).c_str());
   }
-  if (lock_ < 0) return;
-  close(lock_);  // the file stays: somebody may be about to lock it
-  lock_ = -1;
 }
 
 namespace {
@@ -205,29 +196,24 @@ CtlLink::CtlLink(const fs::path& where, Role needed) {
                                ". 'kadans run ROBOT.json' starts one; --socket FOLDER names another place"});
 }
 
-CtlLink::~CtlLink() {
-  if (socket_ >= 0) close(socket_);
-}
-
 bool CtlLink::connect_to(const fs::path& path) {
   const std::optional<sockaddr_un> address = address_of(path);
   if (!address) return false;
-  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (socket < 0) throw std::system_error(errno, std::generic_category(), "socket");
-  if (connect(socket, reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0) {
-    socket_ = socket;
+  OwnedDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (!socket) throw std::system_error(errno, std::generic_category(), "socket");
+  if (connect(socket.number(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0) {
+    socket_ = std::move(socket);
     return true;
   }
   if (errno == EACCES && denied_.empty()) denied_ = path.string();
   if (errno == ECONNREFUSED && stale_.empty()) stale_ = path.string();
-  close(socket);
   return false;
 }
 
 void CtlLink::send(const std::string& line) {
   const std::string whole = line + "\n";
   for (std::size_t sent = 0; sent < whole.size();) {
-    const ssize_t count = ::send(socket_, whole.data() + sent, whole.size() - sent, MSG_NOSIGNAL);
+    const ssize_t count = ::send(socket_.number(), whole.data() + sent, whole.size() - sent, MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return;  // why, it may have said
     sent += static_cast<std::size_t>(count);
@@ -241,10 +227,10 @@ std::optional<std::string> CtlLink::receive(int timeout_ms) {
       in_.erase(0, end + 1);
       return line;
     }
-    pollfd watched{.fd = socket_, .events = POLLIN, .revents = 0};
+    pollfd watched{.fd = socket_.number(), .events = POLLIN, .revents = 0};
     if (poll(&watched, 1, timeout_ms) <= 0) return std::nullopt;
     std::array<char, 16384> bytes;
-    const ssize_t count = recv(socket_, bytes.data(), bytes.size(), 0);
+    const ssize_t count = recv(socket_.number(), bytes.data(), bytes.size(), 0);
     if (count < 0 && errno == EINTR) return std::nullopt;
     if (count <= 0) throw InputError({.message = "the instance is gone"});
     in_.append(bytes.data(), static_cast<std::size_t>(count));

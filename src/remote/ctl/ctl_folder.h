@@ -20,6 +20,8 @@
 #include <string>
 #include <vector>
 
+#include "signal/owned_descriptor.h"
+
 namespace kadans {
 
 enum class Role : std::uint8_t { read, operate, develop };
@@ -44,17 +46,17 @@ class CtlSockets {
   CtlSockets(const CtlSockets&) = delete;
   CtlSockets& operator=(const CtlSockets&) = delete;
 
-  int listener(Role role) const noexcept { return listeners_[static_cast<std::size_t>(role)]; }
+  int listener(Role role) const noexcept { return listeners_[static_cast<std::size_t>(role)].number(); }
   const std::filesystem::path& folder() const noexcept { return folder_; }
 
  private:
   void lock();
   void listen_as(Role role, const std::string& group);
-  void close_all() noexcept;
+  void remove_all() noexcept;
 
   std::filesystem::path folder_;
-  int lock_ = -1;
-  std::array<int, 3> listeners_{-1, -1, -1};
+  OwnedDescriptor lock_;
+  std::array<OwnedDescriptor, 3> listeners_;
 };
 
 // The client of ctl_server.h: finds an instance, sends lines and receives lines.
@@ -63,11 +65,8 @@ class CtlLink {
   // `where` is a folder with sockets, or one socket; "": the folders of ctl_folder.h. It connects with the lowest
   // sufficient role that the system grants. Throws InputError that says where it looked and what it found.
   CtlLink(const std::filesystem::path& where, Role needed);
-  ~CtlLink();
-  CtlLink(const CtlLink&) = delete;
-  CtlLink& operator=(const CtlLink&) = delete;
 
-  // Throws InputError when the instance is gone.
+  // An instance that is gone is told by the next receive(), which may have why.
   void send(const std::string& line);
   // Returns a line without its newline; nullopt when no line came within timeout_ms, or when a signal interrupted the
   // wait. Throws InputError when the instance is gone.
@@ -76,7 +75,7 @@ class CtlLink {
  private:
   bool connect_to(const std::filesystem::path& socket);
 
-  int socket_ = -1;
+  OwnedDescriptor socket_;
   std::string in_;
   std::string denied_, stale_;  // sockets that refused: no permission; nobody listens
 };

@@ -10,8 +10,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "realtime/signals_blocked.h"
 #include "remote/order/order_json.h"
+#include "signal/quiet_thread.h"
 
 namespace kadans {
 namespace {
@@ -36,20 +36,10 @@ CtlServer::CtlServer(Instance& instance, const CtlSockets& sockets, const Settin
       requests_(instance, port_, counts_),
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
 
-CtlServer::~CtlServer() {
-  stop();
-  if (wake_ >= 0) close(wake_);
-}
-
 void CtlServer::start() {
   if (running_) return;
-  if (wake_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
-  const SignalsBlocked blocked;
-  pthread_attr_t attributes;
-  pthread_attr_init(&attributes);
-  pthread_attr_setstacksize(&attributes, stack_bytes);
-  const int failed = pthread_create(&thread_, &attributes, enter, this);
-  pthread_attr_destroy(&attributes);
+  if (!wake_) throw std::system_error(errno, std::generic_category(), "eventfd");
+  const int failed = start_quiet_thread<&CtlServer::run>(thread_, {"ctl", stack_bytes}, this);
   if (failed != 0) throw std::system_error(failed, std::generic_category(), "the thread that serves ctl");
   running_ = true;
 }
@@ -57,16 +47,10 @@ void CtlServer::start() {
 void CtlServer::stop() noexcept {
   if (!running_) return;
   stop_.store(true, std::memory_order_relaxed);
-  (void)eventfd_write(wake_, 1);
+  (void)eventfd_write(wake_.number(), 1);
   pthread_join(thread_, nullptr);
   running_ = false;
   guests_.clear();
-}
-
-void* CtlServer::enter(void* self) {
-  pthread_setname_np(pthread_self(), "ctl");
-  static_cast<CtlServer*>(self)->run();
-  return nullptr;
 }
 
 void CtlServer::run() {
@@ -92,7 +76,7 @@ int CtlServer::patience_ms() const noexcept {
 
 // Until somebody connects, says something, can be told something or leaves; or for a while.
 void CtlServer::wait() {
-  std::vector<pollfd> watched{{.fd = wake_, .events = POLLIN, .revents = 0}};
+  std::vector<pollfd> watched{{.fd = wake_.number(), .events = POLLIN, .revents = 0}};
   const bool deaf = clock_.now_ns() < deaf_until_ns_;
   for (const Role role : roles) watched.push_back({deaf ? -1 : sockets_.listener(role), POLLIN, 0});
   for (const Guest& guest : guests_) {

@@ -24,6 +24,7 @@
 #include "ctl_session.h"
 #include "engine/clock.h"
 #include "remote/instance/instance.h"
+#include "signal/owned_descriptor.h"
 
 namespace kadans {
 
@@ -39,7 +40,7 @@ class CtlServer {
 
   // Make it before the loop; it opens a port. `instance` and `sockets` must outlive it.
   CtlServer(Instance& instance, const CtlSockets& sockets, const Settings& settings);
-  ~CtlServer();  // stops
+  ~CtlServer() { stop(); }
   CtlServer(const CtlServer&) = delete;
   CtlServer& operator=(const CtlServer&) = delete;
 
@@ -53,7 +54,6 @@ class CtlServer {
     bool gone = false;
   };
 
-  static void* enter(void* self);
   void run();
   void wait();
   void accept_all(Role role);
@@ -76,7 +76,7 @@ class CtlServer {
   std::vector<Guest> guests_;
   std::uint64_t next_number_ = 1;
   std::int64_t now_ns_ = 0, deaf_until_ns_ = 0;
-  int wake_ = -1;
+  OwnedDescriptor wake_;
   pthread_t thread_{};
   bool running_ = false;
   std::atomic<bool> stop_{false};

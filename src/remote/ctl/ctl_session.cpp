@@ -24,8 +24,6 @@ CtlSession::CtlSession(int socket, Role role, std::uint64_t number, std::int64_t
   who_ = (known ? "uid " + std::to_string(user_) + " (" : std::string("(")) + name(role) + ")";
 }
 
-CtlSession::~CtlSession() { close(socket_); }
-
 void CtlSession::note_half(std::int64_t now_ns) noexcept {
   if (in_.empty() || has_line()) {
     half_ns_ = INT64_MAX;
@@ -36,7 +34,7 @@ void CtlSession::note_half(std::int64_t now_ns) noexcept {
 
 bool CtlSession::receive(std::int64_t now_ns) {
   std::array<char, 16384> bytes;
-  const ssize_t count = recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  const ssize_t count = recv(socket(), bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (count < 0) return errno == EAGAIN || errno == EINTR;
   ended_ = count == 0;
   if (count > 0) heard_ns_ = now_ns;
@@ -46,7 +44,7 @@ bool CtlSession::receive(std::int64_t now_ns) {
 }
 
 bool CtlSession::transmit(std::int64_t now_ns) {
-  const ssize_t count = send(socket_, out_.data(), out_.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  const ssize_t count = send(socket(), out_.data(), out_.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   if (count < 0) return errno == EAGAIN || errno == EINTR;
   if (count > 0) progress_ns_ = now_ns;
   out_.erase(0, static_cast<std::size_t>(count));

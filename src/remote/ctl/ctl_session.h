@@ -14,6 +14,7 @@
 #include "ctl_folder.h"
 #include "kadans/signal/signal.h"
 #include "remote/instance/instance.h"
+#include "signal/owned_descriptor.h"
 
 namespace kadans {
 
@@ -35,11 +36,8 @@ class CtlSession {
   static constexpr std::size_t line_bytes_max = std::size_t{64} * 1024;
 
   CtlSession(int socket, Role role, std::uint64_t number, std::int64_t now_ns);
-  ~CtlSession();
-  CtlSession(const CtlSession&) = delete;
-  CtlSession& operator=(const CtlSession&) = delete;
 
-  int socket() const noexcept { return socket_; }
+  int socket() const noexcept { return socket_.number(); }
   Role role() const noexcept { return role_; }
   std::uint64_t number() const noexcept { return number_; }
   std::uint32_t user() const noexcept { return user_; }         // uid; UINT32_MAX when the system does not tell it
@@ -75,7 +73,7 @@ class CtlSession {
   bool has_line() const noexcept { return in_.find('\n') != std::string::npos; }
   void note_half(std::int64_t now_ns) noexcept;
 
-  int socket_;
+  OwnedDescriptor socket_;
   Role role_;
   std::uint64_t number_;
   std::uint32_t user_ = UINT32_MAX;

@@ -124,7 +124,9 @@ std::string_view media_type(std::string_view path) {
 // The best of those that the client offers; "": none that is known.
 std::string_view chosen_subprotocol(std::string_view offered) {
   for (const std::string_view known : subprotocols) {
-    if (offered.find(known) != std::string_view::npos) return known;
+    for (const beast::string_view one : http::token_list({offered.data(), offered.size()})) {
+      if (view(one) == known) return known;
+    }
   }
   return {};
 }

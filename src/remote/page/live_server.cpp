@@ -20,8 +20,8 @@
 #include "config/json/problems.h"
 #include "kadans/signal/input_error.h"
 #include "live_connection.h"
-#include "realtime/signals_blocked.h"
 #include "signal/number_text.h"
+#include "signal/quiet_thread.h"
 
 namespace kadans {
 

@@ -12,7 +12,7 @@
 
 #include "engine/behavior_log.h"
 #include "kadans/signal/input_error.h"
-#include "realtime/signals_blocked.h"
+#include "signal/quiet_thread.h"
 
 namespace kadans {
 namespace {

@@ -31,18 +31,13 @@
 
 namespace kadans {
 
-// Translates a robot's row of signals into joints, frames and IMU values: positions, velocities and efforts of the
-// joints, the pose of the base in the world, and the pose of each frame of the URDF in its parent frame.
+// A robot's joints, frames and IMU values: positions, velocities and efforts of the joints, the pose of the base in the
+// world, and the pose of each frame of the URDF in its parent frame.
 //
 // The position and heading of the base are the true ones when the plant is a model. Otherwise they are those of the
 // odometry; without feet x and y are 0. Roll, pitch and the rates are always the estimate. The acceleration is the
 // IMU's measurement.
 struct RobotReadings {
-  // Make it when all signals are declared. The catalog must outlive it. Throws InputError on a wrong URDF.
-  RobotReadings(const Catalog& catalog, const std::string& urdf);
-
-  void take(const LatestRow::View& row) noexcept;
-
   std::int64_t time_ns = 0;  // time since the run began
   std::vector<std::string> joints;
   std::vector<double> position_rad, velocity_rad_s, effort_Nm;
@@ -68,6 +63,16 @@ struct RobotReadings {
   // parent.
   std::vector<Frame> moving, fixed;
   const std::string& base() const noexcept { return moving.front().child; }
+};
+
+// Translates a row of signals into readings.
+class RobotReader {
+ public:
+  // Make it when all signals are declared. The catalog must outlive it. Throws InputError on a wrong URDF.
+  RobotReader(const Catalog& catalog, const std::string& urdf);
+
+  void take(const LatestRow::View& row) noexcept;
+  const RobotReadings& readings() const noexcept { return is_; }
 
  private:
   using Signal = std::optional<SignalId>;
@@ -77,6 +82,7 @@ struct RobotReadings {
   void take_odometry(const LatestRow::View& row, double elapsed_s) noexcept;
 
   const RobotModel& model_;
+  RobotReadings is_;
   std::vector<Signal> position_, velocity_, effort_;
   Signal roll_, pitch_, yaw_, x_, y_, height_, heading_;
   std::array<Signal, 3> rate_, acceleration_;
@@ -125,16 +131,17 @@ class Ros2Topics {
   std::vector<Stamped> stamped_;  // scratch: the frames of one message
 };
 
-RobotReadings::RobotReadings(const Catalog& catalog, const std::string& urdf) : model_(*catalog.model) {
+RobotReader::RobotReader(const Catalog& catalog, const std::string& urdf) : model_(*catalog.model) {
   const auto find = [&](const std::string& name) { return catalog.signals.find(name); };
   const auto first = [&](const char* one, const char* other) { return find(one) ? find(one) : find(other); };
   for (const Joint& joint : model_.joints) {
-    joints.push_back(joint.name);
+    is_.joints.push_back(joint.name);
     position_.push_back(find("joint." + joint.name + ".position_rad"));
     velocity_.push_back(find("joint." + joint.name + ".velocity_rad_s"));
     effort_.push_back(find("joint." + joint.name + ".effort_Nm"));
   }
-  for (std::vector<double>* values : {&position_rad, &velocity_rad_s, &effort_Nm}) values->resize(joints.size());
+  for (std::vector<double>* values : {&is_.position_rad, &is_.velocity_rad_s, &is_.effort_Nm})
+    values->resize(is_.joints.size());
   roll_ = find("base.roll_rad"), pitch_ = find("base.pitch_rad"), yaw_ = find("base.yaw_rad");
   reckoned_ = {find("odometry.x_m"), find("odometry.y_m"), find("odometry.heading_rad"), find("odometry.valid"),
                find("base.height_m")};
@@ -143,42 +150,43 @@ RobotReadings::RobotReadings(const Catalog& catalog, const std::string& urdf) : 
   height_ = first("plant.base.height_m", "base.height_m");
   rate_ = {find("base.rate_x_rad_s"), find("base.rate_y_rad_s"), find("base.rate_z_rad_s")};
   acceleration_ = {find("imu.acceleration_x_m_s2"), find("imu.acceleration_y_m_s2"), find("imu.acceleration_z_m_s2")};
-  moving.push_back({"world", model_.links.front().name, {}});
+  is_.moving.push_back({"world", model_.links.front().name, {}});
   for (UrdfFrame& frame : urdf_frames(model_, urdf)) {
-    (frame.joint ? moving : fixed).push_back({frame.parent, frame.child, frame.origin});
+    (frame.joint ? is_.moving : is_.fixed).push_back({frame.parent, frame.child, frame.origin});
     if (frame.joint) driven_.push_back(std::move(frame));
   }
 }
 
-void RobotReadings::take(const LatestRow::View& row) noexcept {
+void RobotReader::take(const LatestRow::View& row) noexcept {
   const auto value = [&](const Signal& signal) { return signal ? row.values[*signal] : 0.0; };
-  take_odometry(row, 1e-9 * static_cast<double>(row.time_ns - time_ns));
-  time_ns = row.time_ns;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    position_rad[i] = value(position_[i]);
-    velocity_rad_s[i] = value(velocity_[i]);
-    effort_Nm[i] = value(effort_[i]);
+  take_odometry(row, 1e-9 * static_cast<double>(row.time_ns - is_.time_ns));
+  is_.time_ns = row.time_ns;
+  for (std::size_t i = 0; i < is_.joints.size(); ++i) {
+    is_.position_rad[i] = value(position_[i]);
+    is_.velocity_rad_s[i] = value(velocity_[i]);
+    is_.effort_Nm[i] = value(effort_[i]);
   }
   for (std::size_t i = 0; i < rate_.size(); ++i) {
-    angular_velocity_rad_s[i] = value(rate_[i]);
-    acceleration_m_s2[i] = value(acceleration_[i]);
+    is_.angular_velocity_rad_s[i] = value(rate_[i]);
+    is_.acceleration_m_s2[i] = value(acceleration_[i]);
   }
-  orientation = from_roll_pitch_yaw(value(roll_), value(pitch_), value(yaw_));
-  moving[0].pose = {{value(x_), value(y_), value(height_)},
-                    from_roll_pitch_yaw(value(roll_), value(pitch_), value(heading_))};
-  for (std::size_t i = 0; i < driven_.size(); ++i) moving[i + 1].pose = frame_pose(driven_[i], model_, position_rad);
+  is_.orientation = from_roll_pitch_yaw(value(roll_), value(pitch_), value(yaw_));
+  is_.moving[0].pose = {{value(x_), value(y_), value(height_)},
+                        from_roll_pitch_yaw(value(roll_), value(pitch_), value(heading_))};
+  for (std::size_t i = 0; i < driven_.size(); ++i)
+    is_.moving[i + 1].pose = frame_pose(driven_[i], model_, is_.position_rad);
 }
 
-void RobotReadings::take_odometry(const LatestRow::View& row, double elapsed_s) noexcept {
+void RobotReader::take_odometry(const LatestRow::View& row, double elapsed_s) noexcept {
   const auto value = [&](const Signal& signal) { return signal ? row.values[*signal] : 0.0; };
-  if (value(reckoned_.valid) == 0) return odometry.reset();
+  if (value(reckoned_.valid) == 0) return is_.odometry.reset();
   const double heading_rad = value(reckoned_.heading), c = std::cos(heading_rad), s = std::sin(heading_rad);
   const Vec3 at_m{value(reckoned_.x), value(reckoned_.y), value(reckoned_.height)};
   const Pose now{at_m, from_roll_pitch_yaw(value(roll_), value(pitch_), heading_rad)};
-  const bool goes_on = odometry && elapsed_s > 0 && !(at_m[0] == 0 && at_m[1] == 0);  // that is a reset
-  const Vec3 from_m = goes_on ? odometry->pose.position_m : at_m;
+  const bool goes_on = is_.odometry && elapsed_s > 0 && !(at_m[0] == 0 && at_m[1] == 0);  // that is a reset
+  const Vec3 from_m = goes_on ? is_.odometry->pose.position_m : at_m;
   const double per_s = goes_on ? 1 / elapsed_s : 0, x_m = at_m[0] - from_m[0], y_m = at_m[1] - from_m[1];
-  odometry = {now, {per_s * (c * x_m + s * y_m), per_s * (c * y_m - s * x_m), per_s * (at_m[2] - from_m[2])}};
+  is_.odometry = {now, {per_s * (c * x_m + s * y_m), per_s * (c * y_m - s * x_m), per_s * (at_m[2] - from_m[2])}};
 }
 
 namespace {
@@ -316,7 +324,7 @@ struct Ros2Bridge::Inside final : Task {
         urdf(parts.texts.urdf),
         every_ticks(static_cast<std::uint32_t>(
             std::max(1.0, std::round(1 / (wanted.rate_hz * parts.instance.facts().control_period_s))))),
-        readings(parts.instance.catalog(), urdf),
+        reader(parts.instance.catalog(), urdf),
         commands({.instance = parts.instance,
                   .port = parts.port,
                   .pace = parts.pace,
@@ -331,7 +339,7 @@ struct Ros2Bridge::Inside final : Task {
     const auto row = port.signals();
     if (!row->values.empty() && row->tick != last_tick) {
       last_tick = row->tick;
-      readings.take(*row);
+      reader.take(*row);
       topics->publish();
     }
     serve();
@@ -342,7 +350,7 @@ struct Ros2Bridge::Inside final : Task {
     try {
       (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);  // of this thread, and those it starts
       if (settings.avoid_cpu >= 0) (void)leave_cpu(settings.avoid_cpu);
-      topics.emplace(settings.domain, readings, urdf);
+      topics.emplace(settings.domain, reader.readings(), urdf);
       joined.set_value();
       return true;
     } catch (...) {
@@ -371,7 +379,7 @@ struct Ros2Bridge::Inside final : Task {
   InstancePort& port;
   std::string urdf;
   std::uint32_t every_ticks;
-  RobotReadings readings;
+  RobotReader reader;
   TextOrders commands;
   std::optional<Ros2Topics> topics;
   std::promise<void> joined;

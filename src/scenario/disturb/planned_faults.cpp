@@ -60,7 +60,7 @@ void tell(const PlannedFault& fault, std::int64_t time_ns, JointSample& sample) 
 
 FaultyPlant::FaultyPlant(World& world, std::uint64_t seed, std::size_t robot,
                          std::span<const Transmission> transmissions)
-    : world_(world), robot_(world.robot(robot)), random_(seed, "sensor faults") {
+    : WorldAround(world, robot), random_(seed, "sensor faults") {
   std::ranges::copy_if(transmissions, std::back_inserter(couplings_), &Transmission::coupled);
 }
 

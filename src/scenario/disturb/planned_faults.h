@@ -58,7 +58,7 @@ struct PlannedFault {
 // changes what is read from the robot and what is written to it. Everything else passes through.
 //
 // Call add() and clear() on the thread that owns the model. read() and write() neither allocate nor throw.
-class FaultyPlant final : public OneRobotWorld {
+class FaultyPlant final : public WorldAround {
  public:
   // Keeps a reference to `world`. `seed` is that of the run, `robot` the number of the robot that has the faults,
   // `transmissions` are that robot's.
@@ -75,17 +75,8 @@ class FaultyPlant final : public OneRobotWorld {
     supply_faults_.clear();
   }
 
-  void declare_signals(SignalTable& table) const override { robot_.declare_signals(table); }
-  std::vector<PlantCount> link_counts() const override { return robot_.link_counts(); }
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override;
-  void step(std::int64_t dt_ns) override { world_.step(dt_ns); }
-  const PlantTruth& truth() const noexcept override { return robot_.truth(); }
-  void push(std::size_t link, const Vec3& force_N, const Vec3& point_in_link_m) override {
-    robot_.push(link, force_N, point_in_link_m);
-  }
-  void carry(double x_m, double y_m, double heading_rad) override { robot_.carry(x_m, y_m, heading_rad); }
-  void put(std::size_t object, const Vec3& position_m) override { world_.put(object, position_m); }
   void hash(StateHash& hash) const noexcept override;
   // Of this robot alone: what its faults hold back, and the actuation that is under way to its late drives. Needed for
   // a further robot, whose faults are not in the hash of the first one's world.
@@ -113,8 +104,6 @@ class FaultyPlant final : public OneRobotWorld {
     return written_[(newest_ + written_.size() - ticks) % written_.size()];
   }
 
-  World& world_;
-  WorldRobot& robot_;
   RandomStream random_;
   std::vector<OfSensor> sensor_faults_;
   std::vector<OfDrive> drive_faults_;

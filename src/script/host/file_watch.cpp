@@ -12,14 +12,12 @@
 namespace kadans {
 
 FileWatch::FileWatch() : fd_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
-  if (fd_ < 0) throw std::runtime_error(std::string("files cannot be watched: ") + std::strerror(errno));
+  if (!fd_) throw std::runtime_error(std::string("files cannot be watched: ") + std::strerror(errno));
 }
-
-FileWatch::~FileWatch() { close(fd_); }
 
 bool FileWatch::add(const std::filesystem::path& folder) {
   if (folders_.contains(folder)) return true;
-  if (inotify_add_watch(fd_, folder.c_str(), IN_CLOSE_WRITE | IN_MOVED_TO) < 0) return false;
+  if (inotify_add_watch(fd_.number(), folder.c_str(), IN_CLOSE_WRITE | IN_MOVED_TO) < 0) return false;
   folders_.insert(folder);
   return true;
 }
@@ -27,7 +25,8 @@ bool FileWatch::add(const std::filesystem::path& folder) {
 bool FileWatch::drain() const noexcept {
   bool any = false;
   alignas(inotify_event) char buffer[4096];
-  for (ssize_t got = ::read(fd_, buffer, sizeof buffer); got > 0; got = ::read(fd_, buffer, sizeof buffer)) {
+  for (ssize_t got = ::read(fd_.number(), buffer, sizeof buffer); got > 0;
+       got = ::read(fd_.number(), buffer, sizeof buffer)) {
     for (ssize_t at = 0; at < got;) {
       const auto* event = reinterpret_cast<const inotify_event*>(buffer + at);
       const std::string_view name = event->len > 0 ? std::string_view(event->name) : std::string_view();

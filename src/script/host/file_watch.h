@@ -6,14 +6,13 @@
 #include <filesystem>
 #include <set>
 
+#include "signal/owned_descriptor.h"
+
 namespace kadans {
 
 class FileWatch {
  public:
   FileWatch();  // throws std::runtime_error when the system has no watches left
-  ~FileWatch();
-  FileWatch(const FileWatch&) = delete;
-  FileWatch& operator=(const FileWatch&) = delete;
 
   // False: the folder cannot be watched. Adding a folder again is cheap.
   bool add(const std::filesystem::path& folder);
@@ -24,7 +23,7 @@ class FileWatch {
  private:
   bool drain() const noexcept;  // true when any event came
 
-  int fd_;
+  OwnedDescriptor fd_;
   std::set<std::filesystem::path> folders_;
   bool pending_ = false;
 };

@@ -6,7 +6,6 @@
 
 #include <sys/socket.h>
 #include <sys/uio.h>
-#include <unistd.h>
 
 #include "plant/socket_address.h"
 
@@ -19,21 +18,16 @@ constexpr std::int64_t waited_max_ns = 1'000'000'000;  // longer ones are from a
 
 Datagrams::Datagrams(const std::string& listen, const std::vector<std::string>& send_to) {
   if (!listen.empty()) {
-    listening_ = listening_socket(listen);
+    listening_ = OwnedDescriptor(listening_socket(listen));
     const int yes = 1;
-    (void)setsockopt(listening_, SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
+    (void)setsockopt(listening_.number(), SOL_SOCKET, SO_TIMESTAMPNS, &yes, sizeof yes);
   }
-  for (const std::string& place : send_to) sending_.push_back(connected_socket(place));
-}
-
-Datagrams::~Datagrams() {
-  if (listening_ >= 0) close(listening_);
-  for (const int descriptor : sending_) close(descriptor);
+  for (const std::string& place : send_to) sending_.emplace_back(connected_socket(place));
 }
 
 // The system tells when a datagram came, by another clock than ours: what counts is how long ago that is.
 bool Datagrams::receive(std::int64_t now_ns, std::string_view& datagram, std::int64_t& came_ns) noexcept {
-  if (listening_ < 0) return false;
+  if (!listening_) return false;
   alignas(cmsghdr) std::array<char, 128> beside{};
   iovec to{.iov_base = bytes_.data(), .iov_len = bytes_.size()};
   msghdr head{};
@@ -41,7 +35,7 @@ bool Datagrams::receive(std::int64_t now_ns, std::string_view& datagram, std::in
   head.msg_iovlen = 1;
   head.msg_control = beside.data();
   head.msg_controllen = beside.size();
-  const ssize_t size = recvmsg(listening_, &head, MSG_DONTWAIT);
+  const ssize_t size = recvmsg(listening_.number(), &head, MSG_DONTWAIT);
   if (size < 0) return false;
   datagram = {bytes_.data(), static_cast<std::size_t>(size)};
   came_ns = now_ns;
@@ -59,8 +53,8 @@ bool Datagrams::receive(std::int64_t now_ns, std::string_view& datagram, std::in
 
 bool Datagrams::send(std::int64_t /*now_ns*/, std::string_view datagram) noexcept {
   bool all = true;
-  for (const int descriptor : sending_) {
-    all = ::send(descriptor, datagram.data(), datagram.size(), MSG_DONTWAIT | MSG_NOSIGNAL) ==
+  for (const OwnedDescriptor& descriptor : sending_) {
+    all = ::send(descriptor.number(), datagram.data(), datagram.size(), MSG_DONTWAIT | MSG_NOSIGNAL) ==
               static_cast<ssize_t>(datagram.size()) &&
           all;
   }

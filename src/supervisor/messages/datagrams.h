@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "message_channel.h"
+#include "signal/owned_descriptor.h"
 
 namespace kadans {
 
@@ -21,16 +22,13 @@ class Datagrams final : public MessageChannel {
   // `listen`: "host:port", ":port" for every address of this machine; "": it only sends. Throws InputError that says
   // what is wrong with a place, or what the system said.
   Datagrams(const std::string& listen, const std::vector<std::string>& send_to);
-  ~Datagrams() override;
-  Datagrams(const Datagrams&) = delete;
-  Datagrams& operator=(const Datagrams&) = delete;
 
   bool receive(std::int64_t now_ns, std::string_view& datagram, std::int64_t& came_ns) noexcept override;
   bool send(std::int64_t now_ns, std::string_view datagram) noexcept override;
 
  private:
-  int listening_ = -1;
-  std::vector<int> sending_;
+  OwnedDescriptor listening_;
+  std::vector<OwnedDescriptor> sending_;
   std::array<char, bytes_max + 1> bytes_{};
 };
 

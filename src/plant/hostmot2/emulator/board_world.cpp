@@ -11,6 +11,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "plant/hostmot2/mapped_link.h"
+#include "signal/owned_descriptor.h"
 
 namespace kadans::hostmot2 {
 namespace {
@@ -52,12 +53,11 @@ bool readable(unsigned address) noexcept {
 }  // namespace
 
 RegisterFile::RegisterFile(EmulatedBoard& board, const std::string& path) : board_(board), shown_(used_bytes / 4) {
-  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  const bool good = file >= 0 && ftruncate(file, file_bytes) == 0;
-  void* const memory = good ? mmap(nullptr, file_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0) : MAP_FAILED;
-  const int error = errno;
-  if (file >= 0) ::close(file);
-  if (memory == MAP_FAILED) throw InputError({.message = path + ": " + std::system_category().message(error)});
+  const OwnedDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  const bool good = file && ftruncate(file.number(), file_bytes) == 0;
+  void* const memory =
+      good ? mmap(nullptr, file_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file.number(), 0) : MAP_FAILED;
+  if (memory == MAP_FAILED) throw InputError({.message = path + ": " + std::system_category().message(errno)});
   registers_ = static_cast<volatile std::uint32_t*>(memory);
   for (std::size_t i = 0; i < shown_.size(); ++i) registers_[i] = 0;
   show();

@@ -24,20 +24,15 @@ ImuServer::ImuServer(std::unique_ptr<PlantEmulator> drives, const SerialImuSetti
       to_base_(to_base),
       terminal_(link, "--imu"),
       device_(device_of(settings), 1),
-      thread_([this] { serve(); }) {}
+      thread_([this](const std::stop_token& stop) { serve(stop); }) {}
 
-ImuServer::~ImuServer() {
-  stop_.store(true, std::memory_order_relaxed);
-  thread_.join();
-}
-
-void ImuServer::serve() noexcept {
+void ImuServer::serve(const std::stop_token& stop) noexcept {
   sched_param parameter{};
   parameter.sched_priority = device_priority;
   (void)pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter);  // without the right it is a usual thread
   pollfd wanted{terminal_.descriptor(), POLLIN, 0};
   std::array<std::uint8_t, 1024> bytes;
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     const std::int64_t now_ns = monotonic_ns();
     std::int64_t wake_ns = now_ns + device_look_ns;
     {
@@ -49,7 +44,7 @@ void ImuServer::serve() noexcept {
       if (count > 0) terminal_.write({bytes.data(), count});
       wake_ns = std::min(wake_ns, device_.due_ns());
     }
-    const timespec wait{.tv_sec = 0, .tv_nsec = std::max<std::int64_t>(0, wake_ns - monotonic_ns())};
+    const timespec wait = timespec_of(std::max<std::int64_t>(0, wake_ns - monotonic_ns()));
     (void)ppoll(&wanted, 1, &wait, nullptr);
   }
 }

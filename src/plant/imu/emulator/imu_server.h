@@ -4,9 +4,9 @@
 // emulator beside.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -22,7 +22,6 @@ class ImuServer final : public PlantEmulator {
   // Makes a link to a terminal at `link`. Throws InputError.
   ImuServer(std::unique_ptr<PlantEmulator> drives, const SerialImuSettings& settings, const Quat& to_base,
             const std::string& link);
-  ~ImuServer() override;
 
   void look(World& world) override { drives_->look(world); }
   bool await(int milliseconds) noexcept override { return drives_->await(milliseconds); }
@@ -35,7 +34,7 @@ class ImuServer final : public PlantEmulator {
   std::vector<PlantCount> link_counts() const override;
 
  private:
-  void serve() noexcept;
+  void serve(const std::stop_token& stop) noexcept;
 
   std::unique_ptr<PlantEmulator> drives_;
   std::vector<EmulatedFault> faults_;
@@ -43,8 +42,7 @@ class ImuServer final : public PlantEmulator {
   PseudoTerminal terminal_;
   mutable std::mutex mutex_;  // of the device
   EmulatedImu device_;
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
+  std::jthread thread_;  // last: it uses all others
 };
 
 }  // namespace kadans::imu

@@ -40,7 +40,7 @@ void ImuLine::fetch() {
 
 class ImuWorld::Beside final : public Plant {
  public:
-  explicit Beside(ImuWorld& world) noexcept : world_(world), drives_(world.robot_->robot(0)) {}
+  explicit Beside(ImuWorld& world) noexcept : world_(world), drives_(world.robot_) {}
   void declare_signals(SignalTable& table) const override { drives_.declare_signals(table); }
   bool open(bool (*)() noexcept) override { return true; }  // it is open already
   void close() noexcept override { drives_.close(); }
@@ -58,7 +58,7 @@ class ImuWorld::Beside final : public Plant {
 
 ImuWorld::ImuWorld(std::unique_ptr<World> robot, const SerialImuSettings& settings, const Quat& to_base,
                    const std::vector<EmulatedFault>& faults, std::uint64_t seed)
-    : robot_(std::move(robot)), faults_(faults), to_base_(to_base), device_(device_of(settings), seed) {
+    : WorldAround(std::move(robot)), faults_(faults), to_base_(to_base), device_(device_of(settings), seed) {
   for (const EmulatedFault& fault : faults) check_imu_fault(fault);
   auto line = std::make_unique<ImuLine>(device_);
   line_ = line.get();
@@ -69,9 +69,9 @@ ImuWorld::ImuWorld(std::unique_ptr<World> robot, const SerialImuSettings& settin
 
 bool ImuWorld::open(bool (*give_up)() noexcept) {
   started_ = true;
-  if (!robot_->robot(0).open(give_up)) return false;
+  if (!robot_.open(give_up)) return false;
   SensorFrame sensors;
-  robot_->robot(0).read(sensors);
+  robot_.read(sensors);
   feel(sensors);
   return plant_->open(give_up);
 }
@@ -90,12 +90,12 @@ void ImuWorld::read(SensorFrame& sensors) noexcept {
 
 void ImuWorld::step(std::int64_t dt_ns) {
   befall(device_, faults_, 1e-9 * static_cast<double>(time_ns_));
-  robot_->step(dt_ns);
+  world_.step(dt_ns);
   time_ns_ += dt_ns;
 }
 
 void ImuWorld::hash(StateHash& hash) const noexcept {
-  robot_->hash(hash);
+  WorldAround::hash(hash);
   hash.add(line_->passed());
 }
 

@@ -36,7 +36,7 @@ class ImuLine final : public SerialPort {
   WireHash passed_;
 };
 
-class ImuWorld : public OneRobotWorld {
+class ImuWorld : public WorldAround {
  public:
   // The device measures what the IMU in `robot`'s frames does; `to_base` turns its axes into the base's. Throws
   // std::invalid_argument for faults that it cannot have; they are by this world's time.
@@ -49,13 +49,7 @@ class ImuWorld : public OneRobotWorld {
   std::vector<PlantCount> link_counts() const override { return plant_->link_counts(); }
   void read(SensorFrame& sensors) noexcept override;
   void write(const ActuationFrame& actuation) noexcept override { plant_->write(actuation); }
-  void push(std::size_t link, const Vec3& force_N, const Vec3& point_m) override {
-    robot_->robot(0).push(link, force_N, point_m);
-  }
-  void carry(double x_m, double y_m, double heading_rad) override { robot_->robot(0).carry(x_m, y_m, heading_rad); }
-  void put(std::size_t object, const Vec3& position_m) override { robot_->put(object, position_m); }
   void step(std::int64_t dt_ns) override;
-  const PlantTruth& truth() const noexcept override { return robot_->robot(0).truth(); }
   void hash(StateHash& hash) const noexcept override;
 
   EmulatedImu& device() noexcept { return device_; }
@@ -66,7 +60,6 @@ class ImuWorld : public OneRobotWorld {
 
   void feel(const SensorFrame& sensors) noexcept;
 
-  std::unique_ptr<World> robot_;
   std::vector<EmulatedFault> faults_;
   Quat to_base_;
   EmulatedImu device_;
