@@ -11,6 +11,7 @@
 #include "kadans/signal/input_error.h"
 #include "option_checks.h"
 #include "plant/dynamixel/servo_bus.h"
+#include "signal/input_file.h"
 #include "terminal.h"
 
 namespace kadans {
@@ -33,12 +34,9 @@ std::string model_text(std::uint16_t number) {
 
 [[noreturn]] void no_answer(const DynamixelOptions& options, Answer answer, std::uint8_t error) {
   const std::string servo = "servo " + std::to_string(options.id) + " on " + options.device;
-  if (answer == Answer::refused)
-    throw InputError({.message = servo + " refuses: " + std::string(status_error_words(error))});
-  if (answer == Answer::garbage)
-    throw InputError({.message = servo + " answers garbage: two servos have this id, or the line is disturbed"});
-  throw InputError(
-      {.message = servo + " does not answer: `kadans dynamixel scan " + options.device + "` finds servos"});
+  if (answer == Answer::refused) refuse(servo + " refuses: " + std::string(status_error_words(error)));
+  if (answer == Answer::garbage) refuse(servo + " answers garbage: two servos have this id, or the line is disturbed");
+  refuse(servo + " does not answer: `kadans dynamixel scan " + options.device + "` finds servos");
 }
 
 class Bench {
@@ -151,8 +149,8 @@ int set_id(const DynamixelOptions& options) {
   Bench bench(options);
   ServoBus::Identity other;
   if (bench.bus().ping(static_cast<std::uint8_t>(options.new_id), other) != Answer::silence)
-    throw InputError({.message = "id " + std::to_string(options.new_id) + " on " + options.device +
-                                 " is another servo's: connect one servo alone, or choose another id"});
+    refuse("id " + std::to_string(options.new_id) + " on " + options.device +
+           " is another servo's: connect one servo alone, or choose another id");
   bench.write(torque_enable, 0);
   bench.write(own_id, options.new_id);
   std::printf("servo %u is %u now\n", options.id, options.new_id);
@@ -161,7 +159,7 @@ int set_id(const DynamixelOptions& options) {
 
 int set_baud(const DynamixelOptions& options) {
   const auto* const code = std::ranges::find(baud_rates, options.new_baud);
-  if (code == baud_rates.end()) throw InputError({.message = unknown_baud(options.new_baud)});
+  if (code == baud_rates.end()) refuse(unknown_baud(options.new_baud));
   Bench bench(options);
   bench.write(torque_enable, 0);
   bench.write(baud_rate, static_cast<std::uint32_t>(code - baud_rates.begin()));

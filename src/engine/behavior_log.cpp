@@ -15,8 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
 #include "signal/byte_order.h"
+#include "signal/input_file.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -304,7 +304,7 @@ class LogFile::Sink final : public spdlog::sinks::sink {
 
 LogFile::LogFile(const std::string& file) try : sink_(std::make_shared<Sink>(file)) {
 } catch (const spdlog::spdlog_ex& error) {
-  throw InputError({.message = error.what()});
+  refuse(error.what());
 }
 TextSink LogFile::sink() const { return sink_; }
 bool LogFile::failed() const noexcept { return sink_->failed(); }

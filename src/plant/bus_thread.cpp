@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -27,7 +27,7 @@ void BusThread::start(const char* name, const char* whom, std::function<void()> 
   runs_ = pthread_create(&thread_, &attributes, enter, this) == 0;
   pthread_attr_destroy(&attributes);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  if (!runs_) throw InputError({.message = std::string("the system gives no thread to ") + whom});
+  if (!runs_) refuse(std::string("the system gives no thread to ") + whom);
   sched_param parameter{};
   parameter.sched_priority = bus_thread_priority;
   (void)pthread_setschedparam(thread_, SCHED_FIFO, &parameter);

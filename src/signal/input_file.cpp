@@ -15,6 +15,7 @@ namespace kadans {
 void refuse(const std::filesystem::path& file, const std::string& why) {
   throw InputError({.file = file.string(), .message = why});
 }
+void refuse(const std::string& why) { throw InputError({.message = why}); }
 
 namespace {
 

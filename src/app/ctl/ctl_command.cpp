@@ -17,10 +17,10 @@
 #include "app/push/remote_host.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
-#include "kadans/signal/input_error.h"
 #include "remote/ctl/ctl_folder.h"
 #include "remote/order/order.h"
 #include "remote/order/order_json.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -236,7 +236,7 @@ constexpr int keys_ms = 100;
 Json ask(CtlLink& link, const char* verb, const std::string& text) {
   link.send(json_text(Json{{"verb", verb}, {"text", text}}));
   const std::optional<std::string> line = link.receive(answer_ms);
-  if (!line) throw InputError({.message = "the instance does not answer"});
+  if (!line) refuse("the instance does not answer");
   return parse_foreign_json(*line);
 }
 
@@ -328,7 +328,7 @@ int talk(const OrderInfo& order, const CtlOptions& options) {
   CtlLink link(options.socket, order.role);
   link.send(json_text(request_of(order, options)));
   const std::optional<std::string> line = link.receive(answer_ms);
-  if (!line) throw InputError({.message = "the instance does not answer"});
+  if (!line) refuse("the instance does not answer");
   const Json answer = parse_foreign_json(*line);
   if (!answer.value("ok", false)) {
     if (options.json) print_text(*line + "\n");

@@ -7,9 +7,9 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "kadans/signal/input_error.h"
 #include "record_pictures.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 #include "telemetry/plot/animated_png.h"
 
 namespace kadans {
@@ -58,7 +58,7 @@ void add_render(CLI::App& app, RenderOptions& options) {
 
 int run_render(const RenderOptions& options) {
   const PictureOptions picture = picture_options(options);
-  if (const std::string missing = pictures_missing(); !missing.empty()) throw InputError({.message = missing});
+  if (const std::string missing = pictures_missing(); !missing.empty()) refuse(missing);
   catch_interrupts();
   const std::string stem = fs::path(options.record).stem().string();
   const fs::path out = !options.out.empty() ? options.out : options.every_s ? stem : stem + ".png";

@@ -42,7 +42,7 @@ void add_view(CLI::App& app, ViewOptions& options) {
 }
 
 int run_view(const ViewOptions& options) {
-  if (page_files().empty()) throw InputError({.message = std::string(page_is_missing)});
+  if (page_files().empty()) refuse(std::string(page_is_missing));
   const std::filesystem::path file = options.record.empty() ? "" : std::filesystem::absolute(options.record);
   if (!file.empty()) check_input_file(file);
   LiveServer server(

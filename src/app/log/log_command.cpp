@@ -9,9 +9,9 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "kadans/signal/input_error.h"
 #include "log_verbs.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "telemetry/plot/signal_plot.h"
 #include "telemetry/reading/record_export.h"
@@ -121,8 +121,8 @@ int log_plot(const LogOptions& options) {
   require_overlap(record, span);
   const std::vector<ChosenSignal> signals = choose_signals(record, options.signals);
   if (signals.size() > signals_max)
-    throw InputError({.message = "these are " + std::to_string(signals.size()) + " signals; a plot of more than " +
-                                 std::to_string(signals_max) + " cannot be read, choose fewer"});
+    refuse("these are " + std::to_string(signals.size()) + " signals; a plot of more than " +
+           std::to_string(signals_max) + " cannot be read, choose fewer");
   SignalPlot plot = plot_of(record, panels_by_unit(signals), span);
   plot.title = title_of(record);
   tell_problem(record);

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include "app/terminal.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/output_file.h"
 #include "kadans/signal/shell_word.h"
 #include "new_files.h"
@@ -36,9 +35,8 @@ void refuse_bad_name(const std::string& name, const std::string& what, const std
       name[0] >= 'a' && name[0] <= 'z' &&
       std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
   if (good) return;
-  throw InputError({.message = "'" + name + "': the name of " + what +
-                               " is words of a-z and 0-9 joined by _, at most " + std::to_string(name_max) +
-                               " letters, for example " + example});
+  refuse("'" + name + "': the name of " + what + " is words of a-z and 0-9 joined by _, at most " +
+         std::to_string(name_max) + " letters, for example " + example);
 }
 
 std::string source_text(std::string_view text) {

@@ -15,6 +15,7 @@
 #include "new_files.h"
 #include "new_subject.h"
 #include "plant_wire.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -496,7 +497,7 @@ int run_new_plant(const NewPlantOptions& options) {
   const NewSubject subject = read_subject({.robot = options.robot});
   const std::string& name = options.name;
   for (const std::string& known : plant_type_names(subject.robot.config.plant_types)) {
-    if (known == name) throw InputError({.message = "'" + name + "': there is such a type of plant already"});
+    if (known == name) refuse("'" + name + "': there is such a type of plant already");
   }
   const std::vector<std::pair<std::string, std::string>> names{{"@name@", name}, {"@Class@", class_name_of(name)}};
   const fs::path folder = fs::path(options.folder) / name;

@@ -515,7 +515,7 @@ int run_new_robot(const NewRobotOptions& options) {
   const RobotModel& model = description.model;
   const std::string name = options.name.empty() ? name_from(model.name) : options.name;
   if (name.empty() || name != name_from(name))
-    throw InputError({.message = "'" + name + "': a robot's name is words of a-z and 0-9 joined by _: --name NAME"});
+    refuse("'" + name + "': a robot's name is words of a-z and 0-9 joined by _: --name NAME");
   const fs::path project = options.folder;
   const fs::path models = project / "models" / name, config = project / "config" / name,
                  behaviors = project / "behaviors" / name,

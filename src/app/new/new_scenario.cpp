@@ -16,7 +16,6 @@
 #include "app/assembly/assembly.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "new_subject.h"
@@ -202,15 +201,14 @@ WrittenScenario played(const NewSubject& subject, Json json, const fs::path& fil
   json["duration_s"] = played_most_s;
   const TriedRun first = try_run(json, file, {}, false, true);
   if (!first.seen->over_s)
-    throw InputError({.message = "'" + list + "' does not end within " +
-                                 std::to_string(static_cast<int>(played_most_s)) +
-                                 " s, so there is no end to check; write its scenario by hand (docs/scenarios.md)"});
+    refuse("'" + list + "' does not end within " + std::to_string(static_cast<int>(played_most_s)) +
+           " s, so there is no end to check; write its scenario by hand (docs/scenarios.md)");
   json["duration_s"] = std::ceil(*first.seen->over_s + 1);
   json["checks"] = checks_json(subject, {}, *first.seen, true);
   const TriedRun whole = try_run(json, file, {}, false, false);
   if (!whole.result.passed)
-    throw InputError({.message = "'" + list + "' does not do what its scenario would check: " + whole.failed_check() +
-                                 "; `kadans run " + subject.robot_file + " --play ... --live` shows it"});
+    refuse("'" + list + "' does not do what its scenario would check: " + whole.failed_check() + "; `kadans run " +
+           subject.robot_file + " --play ... --live` shows it");
   const TriedRun limp = try_run(json, file, {}, true, false);
   return {std::move(json), limp.failed_check()};
 }

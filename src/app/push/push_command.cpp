@@ -89,9 +89,9 @@ MemoryFile packed_files(const Delivery& delivery) {
     write_delivery(delivery, "/proc/self/fd/" + std::to_string(packed.descriptor()));
     return packed;
   } catch (const InputError& error) {
-    throw InputError({.message = "the files cannot be packed: " + error.problems().front().message});
+    refuse("the files cannot be packed: " + error.problems().front().message);
   } catch (const std::system_error& error) {
-    throw InputError({.message = std::string("the files cannot be packed: ") + error.what()});
+    refuse(std::string("the files cannot be packed: ") + error.what());
   }
 }
 
@@ -179,7 +179,7 @@ class RunThere {
   Json ask(const Json& request) {
     link_->send(json_text(request));
     const std::optional<std::string> line = link_->receive(answer_patience_ms);
-    if (!line) throw InputError({.message = "the run here does not answer"});
+    if (!line) refuse("the run here does not answer");
     return parse_foreign_json(*line);
   }
 
@@ -252,7 +252,7 @@ void add_receive(CLI::App& app, ReceiveOptions& options) {
 
 int run_receive(const ReceiveOptions& options) {
   if (options.robot.empty() || options.robot.find('/') != std::string::npos || options.robot.front() == '.')
-    throw InputError({.message = in_quotes(options.robot) + " is no name of a robot"});
+    refuse(in_quotes(options.robot) + " is no name of a robot");
   catch_interrupts();
   DeliveryFolder place(options.folder.empty() ? fs::path(state_folder) / options.robot / delivered_folder
                                               : fs::path(options.folder));

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "app/assembly/assembly.h"
-#include "kadans/signal/input_error.h"
 #include "signal/input_file.h"
 #include "signal/number_text.h"
 
@@ -32,7 +31,7 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::string& file) {
   const bool written = writer.open(file) && write_inputs(writer, checkpoint.inputs) &&
                        writer.add_metadata(metadata_name, facts) &&
                        writer.add_metadata(objects_name, checkpoint.objects);
-  if (!writer.close() || !written) throw InputError({.message = writer.error()});
+  if (!writer.close() || !written) refuse(writer.error());
 }
 
 Checkpoint read_checkpoint(const std::string& file) {

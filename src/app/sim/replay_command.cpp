@@ -318,7 +318,7 @@ class RepetitionRecord final : public RunObserver {
       : recorder_(run.assembly().catalog().signals,
                   {.subjects = viewer_subjects(run.assembly()), .parameters = &run.assembly().catalog().parameters}, {},
                   Recorder::Wait::in_place) {
-    if (!recorder_.open(file)) throw InputError({.message = recorder_.error()});
+    if (!recorder_.open(file)) refuse(recorder_.error());
     describe_robots(recorder_.file(), robot_texts(run.assembly()), 0);
     run.log().add(recorder_.events());
   }
@@ -331,7 +331,7 @@ class RepetitionRecord final : public RunObserver {
   }
   // Throws InputError when the file is not whole.
   void close() {
-    if (!recorder_.close()) throw InputError({.message = recorder_.error()});
+    if (!recorder_.close()) refuse(recorder_.error());
   }
 
  private:

@@ -41,8 +41,7 @@ int go_on(const SimOptions& options) {
 }
 
 void refuse_wrong_mixtures(const SimOptions& options) {
-  if (options.from.empty() && options.scenario.empty())
-    throw InputError({.message = "name a scenario, or a checkpoint with --from"});
+  if (options.from.empty() && options.scenario.empty()) refuse("name a scenario, or a checkpoint with --from");
   if (!options.from.empty() && !options.scenario.empty())
     refuse("--from", "a checkpoint has its own scenario: name one of the two");
   if (options.from.empty()) {

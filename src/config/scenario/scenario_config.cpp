@@ -11,6 +11,7 @@
 #include "config/robot/robot_config.h"
 #include "event_text.h"
 #include "kadans/plant/plant_type.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -449,8 +450,7 @@ ScenarioConfig read_tested_scenario(const std::filesystem::path& file) {
 ScenarioConfig read_scenario_config(const std::filesystem::path& file) {
   ScenarioConfig scenario = read_tested_scenario(file);
   if (!scenario.record.empty())
-    throw InputError({.file = file.string(),
-                      .message = "repeats a record, so it cannot be simulated: kadans test and kadans sim repeat it"});
+    refuse(file, "repeats a record, so it cannot be simulated: kadans test and kadans sim repeat it");
   return scenario;
 }
 

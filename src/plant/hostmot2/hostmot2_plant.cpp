@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans::hostmot2 {
 namespace {
@@ -33,12 +33,9 @@ HostMot2Plant::HostMot2Plant(HostMot2Settings settings, PlantSite site, std::vec
   const double bus_period_s = settings_.period_s > 0 ? settings_.period_s : period_s;
   divisor_ = settings_.bus_divisor(site_.layout.period_ns);
   if (std::abs(bus_period_s - divisor_ * period_s) > 1e-9)
-    throw InputError(
-        {.file = site_.file, .message = "plant.hm2-eth.period_s must be a whole multiple of the control period"});
+    refuse(site_.file, "plant.hm2-eth.period_s must be a whole multiple of the control period");
   if (!(settings_.watchdog_s >= 2 * bus_period_s))
-    throw InputError(
-        {.file = site_.file,
-         .message = "plant.hm2-eth.watchdog_s must be at least two periods of the bus, each of which pets it"});
+    refuse(site_.file, "plant.hm2-eth.watchdog_s must be at least two periods of the bus, each of which pets it");
   silent_ticks_max_ = std::max(5U, static_cast<std::uint32_t>(std::ceil(settings_.watchdog_s / bus_period_s)));
 }
 
@@ -50,9 +47,8 @@ std::size_t HostMot2Plant::place_in(const std::vector<std::string>& names, const
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   std::string all;
   for (const std::string& one : names) all += (all.empty() ? "" : ", ") + one;
-  throw InputError({.file = site_.file,
-                    .message = "plant.hm2-eth." + std::string(what) + "." + name +
-                               ": the robot has no such name; it has " + (all.empty() ? "none" : all)});
+  refuse(site_.file, "plant.hm2-eth." + std::string(what) + "." + name + ": the robot has no such name; it has " +
+                         (all.empty() ? "none" : all));
 }
 
 void HostMot2Plant::wire() {

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans::hostmot2 {
 
@@ -19,7 +19,7 @@ MappedLink::MappedLink(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_SYNC);
   const auto fail = [&](const std::string& why) {
     if (file >= 0) ::close(file);
-    throw InputError({.message = "the board's registers " + path + ": " + why});
+    refuse("the board's registers " + path + ": " + why);
   };
   if (file < 0) fail(std::system_category().message(errno) + "; root may open a PCI resource, and who it lets");
   struct stat is {};

@@ -11,7 +11,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -55,14 +55,14 @@ bool read_ranges(int descriptor, StickRanges& ranges) noexcept {
 
 Stick open_stick(const JoystickSettings& settings, int& descriptor) {
   descriptor = open_device(settings.device);
-  if (descriptor < 0) throw InputError({.file = settings.device, .message = why_not(errno)});
+  if (descriptor < 0) refuse(settings.device, why_not(errno));
   try {
     StickRanges ranges{};
     if (!read_ranges(descriptor, ranges)) throw std::invalid_argument("is no event device of Linux" + joysticks_here());
     return {settings, ranges};
   } catch (const std::exception& error) {
     close(descriptor);
-    throw InputError({.file = settings.device, .message = error.what()});
+    refuse(settings.device, error.what());
   }
 }
 
@@ -140,7 +140,7 @@ std::unique_ptr<JoystickSource> make_joystick(const JoystickSettings& settings, 
     try {
       return std::make_unique<JoystickPlayer>(settings, path);
     } catch (const std::invalid_argument& error) {
-      throw InputError({.file = path, .message = error.what()});
+      refuse(path, error.what());
     }
   }
   JoystickSettings of_device = settings;

@@ -11,7 +11,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -28,7 +28,7 @@ PseudoTerminal::PseudoTerminal(const std::string& link, const char* option) : li
 }
 
 void PseudoTerminal::open_terminal(const char* option) {
-  const auto fail = [&](const std::string& why) { throw InputError({.file = option, .message = link_ + ": " + why}); };
+  const auto fail = [&](const std::string& why) { refuse(option, link_ + ": " + why); };
   master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0)
     fail("no pseudo-terminal: " + std::system_category().message(errno));

@@ -10,6 +10,7 @@
 #include "live_client.h"
 #include "live_protocol.h"
 #include "remote/order/order_json.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -34,7 +35,7 @@ void LivePace::obey(const OrderRequest& request) {
   if (request.is("go")) held = false;
   if (request.is("step")) steps += 1;
   if (request.is("speed")) speed = request.number("times", 1);
-  if (request.is("push") && !push(request.text("push"))) throw InputError({.message = "too many pushes wait"});
+  if (request.is("push") && !push(request.text("push"))) refuse("too many pushes wait");
 }
 
 std::vector<std::string> LivePace::take_pushes() {
