@@ -238,12 +238,6 @@ void ActiveNow::take(const ActiveStates& told) {
   all_.insert_or_assign(std::string(told.behavior), told.copies());
 }
 
-std::string listed(const std::vector<std::string>& states) {
-  std::string text;
-  for (const std::string& state : states) text += (text.empty() ? "" : ", ") + state;
-  return text;
-}
-
 // systemd.exec(5): the device and inode of the stream that it connected.
 bool stderr_is_journal() {
   struct stat is {};

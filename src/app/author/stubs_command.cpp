@@ -85,9 +85,7 @@ nlohmann::ordered_json json_of(const ScriptArgument& argument) {
 
 // "0.02..0.2", "one of left, right", "any text".
 std::string allowed_by(const ScriptArgument& argument) {
-  std::string choices;
-  for (const std::string& choice : argument.one_of) choices += (choices.empty() ? "one of " : ", ") + choice;
-  if (!choices.empty()) return choices;
+  if (!argument.one_of.empty()) return "one of " + listed(argument.one_of);
   const bool bounded = std::isfinite(argument.min) || std::isfinite(argument.max);
   return bounded ? printed("%g..%g", argument.min, argument.max) : std::string("any ") + type_of(argument);
 }

@@ -9,14 +9,14 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "remote/order/order.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
 
 std::string subcommands_of(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* command : visible_below(app)) names += (names.empty() ? "" : " ") + command->get_name();
-  return names;
+  return listed(
+      visible_below(app), [](const CLI::App* command) { return command->get_name(); }, " ");
 }
 
 std::string options_of(const CLI::App& app) {

@@ -38,9 +38,7 @@ std::string number(const Json& value) {
 }
 
 std::string joined(const Json& texts) {
-  std::string all;
-  for (const Json& text : texts) all += (all.empty() ? "" : ", ") + text.get<std::string>();
-  return all;
+  return listed(texts, [](const Json& text) { return text.get<std::string>(); });
 }
 
 // Rows of cells, each column as wide as its widest.

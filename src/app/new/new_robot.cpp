@@ -456,9 +456,8 @@ Json scenario_json(const std::string& name, const StandingPose& stance) {
 void tell(const RobotModel& model, const StandingPose& stance, const std::vector<JointHold>& holds) {
   std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
   if (!stance.wheels.empty()) {
-    std::string wheels;
-    for (const StandingWheel& wheel : stance.wheels)
-      wheels += (wheels.empty() ? "" : ", ") + model.links[wheel.joint + 1].name;
+    const std::string wheels =
+        listed(stance.wheels, [&](const StandingWheel& wheel) { return model.links[wheel.joint + 1].name; });
     std::fprintf(stderr, "It rolls on %s, its base %.3g m high.\n", wheels.c_str(), stance.height_m);
   } else if (stance.feet.empty()) {
     std::fprintf(stderr, "No two links at its ends are the lowest of all: it is bolted down (plant.fixed_base).\n");
@@ -468,8 +467,7 @@ void tell(const RobotModel& model, const StandingPose& stance, const std::vector
                  "(plant.fixed_base).\n",
                  1000 * stance.width_m);
   } else {
-    std::string feet;
-    for (const StandingFoot& foot : stance.feet) feet += (feet.empty() ? "" : ", ") + model.links[foot.link].name;
+    const std::string feet = listed(stance.feet, [&](const StandingFoot& foot) { return model.links[foot.link].name; });
     std::fprintf(stderr, "It stands on %s, its base %.3g m high.\n", feet.c_str(), stance.height_m);
   }
   for (std::size_t i = 0; i < holds.size(); ++i) {

@@ -22,6 +22,7 @@
 #include "reduced_scenario.h"
 #include "signal/durable_file.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 #include "trial_runs.h"
 
 namespace kadans {
@@ -312,9 +313,7 @@ class Shrinking {
   // "It falls because of a push of 3.4 Ns on torso at 1 s and ground.friction = 0.3."
   std::string sentence() const {
     const std::vector<std::string> needed = scenario_.told(best_);
-    std::string text = falls() ? "It falls because of " : "It fails because of ";
-    for (std::size_t i = 0; i < needed.size(); ++i)
-      text += (i == 0 ? "" : i + 1 < needed.size() ? ", " : " and ") + needed[i];
+    std::string text = (falls() ? "It falls because of " : "It fails because of ") + listed(needed, {}, ", ", " and ");
     if (needed.empty()) text += "what it plays: no push, no fault, no event and no other quantity is needed";
     return text + "." + moment();
   }

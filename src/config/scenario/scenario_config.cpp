@@ -12,6 +12,7 @@
 #include "event_text.h"
 #include "kadans/plant/plant_type.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -179,9 +180,7 @@ void plant_fields(Fields& f, ScenarioConfig& scenario) {
   f.choice("plant", chosen, models, doc);
   scenario.plant = models[chosen];
   if (plant_type(plant_types(), scenario.plant).has_objects()) return;
-  std::string others;
-  for (const std::string& name : plant_type_names(&PlantType::has_objects))
-    others += (others.empty() ? "" : ", ") + name;
+  const std::string others = listed(plant_type_names(&PlantType::has_objects));
   for (const std::string key : {"world", "robots"}) {
     if (!f.has(key)) continue;
     f.refuse(key, ": only the " + others + " plant has one, this scenario's plant is " + scenario.plant);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans::hostmot2 {
 namespace {
@@ -45,10 +46,8 @@ std::size_t HostMot2Plant::place_in(const std::vector<std::string>& names, const
                                     const char* what) const {
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  std::string all;
-  for (const std::string& one : names) all += (all.empty() ? "" : ", ") + one;
   refuse(site_.file, "plant.hm2-eth." + std::string(what) + "." + name + ": the robot has no such name; it has " +
-                         (all.empty() ? "none" : all));
+                         (names.empty() ? "none" : listed(names)));
 }
 
 void HostMot2Plant::wire() {

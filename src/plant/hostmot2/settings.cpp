@@ -18,22 +18,16 @@ constexpr std::array<const char*, 4> output_names{"pwm_dir", "dir_pwm", "up_down
 constexpr std::array<const char*, 4> home_names{"power_on", "index", "probe", "switch"};
 constexpr std::array<const char*, 3> amplifier_names{"current", "voltage", "velocity"};
 
-std::string one_of(std::span<const char* const> names) {
-  std::string all;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    all += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
-  return all;
-}
-
 // A word among several.
 template <typename T, std::size_t N>
 void choice(PlantFields& f, std::string_view name, T& value, const std::array<const char*, N>& names,
             const std::string& doc) {
+  const std::string one_of = listed(names, {}, ", ", " or ");
   std::string word = names[static_cast<std::size_t>(value)];
-  f.string(name, word, doc + ": " + one_of(names));
+  f.string(name, word, doc + ": " + one_of);
   if (!f.reading()) return;
   const auto found = std::ranges::find(names, word);
-  if (found == names.end()) return f.refuse(name, "'" + word + "' must be " + one_of(names));
+  if (found == names.end()) return f.refuse(name, "'" + word + "' must be " + one_of);
   value = static_cast<T>(found - names.begin());
 }
 

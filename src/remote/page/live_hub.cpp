@@ -11,6 +11,7 @@
 #include "live_protocol.h"
 #include "remote/order/order_json.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -80,9 +81,7 @@ void LiveHub::beat() {
 }
 
 const std::string& LiveHub::introduction(bool writes) {
-  std::string plays;
-  for (const std::string& name : playable_names(p_.instance.facts().folders))
-    plays += (plays.empty() ? "" : " ") + name;
+  const std::string plays = listed(playable_names(p_.instance.facts().folders), {}, " ");
   if (plays != plays_) introductions_ = {};
   plays_ = plays;
   std::string& text = introductions_[writes ? 1 : 0];
