@@ -15,6 +15,18 @@
 #include "terminal.h"
 
 namespace kadans {
+namespace {
+
+// The bench of servos: each of its commands is one of `kadans dynamixel`.
+struct DynamixelOptions {
+  std::string device;
+  std::uint32_t baud = 0;  // 0: scan looks at all, the others take 1000000
+  std::uint32_t id = 1, new_id = 1, new_baud = 1'000'000;
+  bool json = false;
+};
+
+}  // namespace
+
 namespace dynamixel {
 namespace {
 
@@ -177,10 +189,23 @@ int reboot(const DynamixelOptions& options) {
 }  // namespace
 }  // namespace dynamixel
 
-void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
-  CLI::App* bench = app.add_subcommand("dynamixel", "Find Dynamixel servos on a serial port, and set them up");
+namespace {
+
+int run_dynamixel(const CommandLine& line, const DynamixelOptions& options) {
+  const CLI::App* bench = line.app.get_subcommand("dynamixel");
+  if (bench->got_subcommand("scan")) return dynamixel::scan(options);
+  if (bench->got_subcommand("info")) return dynamixel::info(options);
+  if (bench->got_subcommand("set-id")) return dynamixel::set_id(options);
+  return bench->got_subcommand("baud") ? dynamixel::set_baud(options) : dynamixel::reboot(options);
+}
+
+}  // namespace
+
+void add_dynamixel(CommandLine& line) {
+  const auto [bench, options] =
+      line.add<DynamixelOptions>("dynamixel", "Find Dynamixel servos on a serial port, and set them up", run_dynamixel);
   bench->require_subcommand(1);
-  const auto add = [&](const char* name, const char* doc, bool of_one) {
+  const auto add = [bench = bench, &options = options](const char* name, const char* doc, bool of_one) {
     CLI::App* command = bench->add_subcommand(name, doc);
     command->add_option("device", options.device, "The serial port, such as /dev/ttyUSB0")
         ->required()
@@ -210,14 +235,6 @@ void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
       ->type_name("N")
       ->check(whole_within(1, 10'000'000));
   add("reboot", "Let a servo begin anew, which clears its hardware error", true);
-}
-
-int run_dynamixel(const CLI::App& app, const DynamixelOptions& options) {
-  const CLI::App* bench = app.get_subcommand("dynamixel");
-  if (bench->got_subcommand("scan")) return dynamixel::scan(options);
-  if (bench->got_subcommand("info")) return dynamixel::info(options);
-  if (bench->got_subcommand("set-id")) return dynamixel::set_id(options);
-  return bench->got_subcommand("baud") ? dynamixel::set_baud(options) : dynamixel::reboot(options);
 }
 
 }  // namespace kadans

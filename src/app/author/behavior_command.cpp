@@ -27,6 +27,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// `kadans behavior check | graph | test`: commands for the author of a behavior, before it moves a robot.
+struct BehaviorOptions {
+  std::vector<std::string> files;
+  std::string robot;               // configuration; "": the one for the behavior's folder
+  std::string format = "mermaid";  // format of the graph: mermaid, dot or svg
+  std::string only;                // run only tests whose names contain this
+  std::string junit;
+  bool json = false;
+  bool plugins = false;  // check loads plug-ins
+};
+
 // The test files: the named files, and all *_test.lua in the named folders.
 std::vector<std::string> test_files(const std::vector<std::string>& named) {
   std::vector<std::string> files;
@@ -171,10 +182,18 @@ void add_files(CLI::App* command, BehaviorOptions& options, const char* what) {
       ->type_name("FILE");
 }
 
+int run_behavior(const CommandLine& line, const BehaviorOptions& options) {
+  const CLI::App* behavior = line.app.get_subcommand("behavior");
+  if (behavior->got_subcommand("graph")) return run_graph(options);
+  if (behavior->got_subcommand("test")) return run_tests(options);
+  return FileChecks(options.robot, options.plugins).print_all(options.files, true);
+}
+
 }  // namespace
 
-void add_behavior(CLI::App& app, BehaviorOptions& options) {
-  CLI::App* behavior = app.add_subcommand("behavior", "Check, test and draw behaviors");
+void add_behavior(CommandLine& line) {
+  const auto [behavior, options] =
+      line.add<BehaviorOptions>("behavior", "Check, test and draw behaviors", run_behavior);
   behavior->require_subcommand(1);
   CLI::App* check = behavior->add_subcommand("check", "Report mistakes in behaviors, without running them");
   add_files(check, options, "Behaviors, modules and tests (Lua); folders, patterns");
@@ -191,13 +210,6 @@ void add_behavior(CLI::App& app, BehaviorOptions& options) {
   graph->get_option("files")->expected(1);
   graph->add_option("--format", options.format, "mermaid (default), dot, or svg (needs Graphviz)")
       ->check(CLI::IsMember({"mermaid", "dot", "svg"}));
-}
-
-int run_behavior(const CLI::App& app, const BehaviorOptions& options) {
-  const CLI::App* behavior = app.get_subcommand("behavior");
-  if (behavior->got_subcommand("graph")) return run_graph(options);
-  if (behavior->got_subcommand("test")) return run_tests(options);
-  return FileChecks(options.robot, options.plugins).print_all(options.files, true);
 }
 
 }  // namespace kadans

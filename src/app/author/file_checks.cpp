@@ -10,9 +10,9 @@
 
 #include <glob.h>
 
-#include "app/commands.h"
 #include "app/sim/played_behaviors.h"
 #include "app/sim/repeated_run.h"
+#include "app/sweep/sweep_subjects.h"
 #include "app/terminal.h"
 #include "behavior_stage.h"
 #include "config/robot/project_root.h"

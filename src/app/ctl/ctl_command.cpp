@@ -28,6 +28,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// `kadans ctl`: talks to a running instance.
+struct CtlOptions {
+  std::string socket;  // "": the usual places
+  std::string host;    // "": this computer
+  bool json = false;
+  bool names = false;                                                               // list only the names
+  std::optional<long> count;                                                        // of samples; nullopt: until Ctrl-C
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
+};
+
 constexpr std::size_t column_max = 48;
 
 std::string number(const Json& value) {
@@ -396,10 +406,37 @@ void add(CLI::App& ctl, const OrderInfo& order, CtlOptions& options) {
   }
 }
 
+// The words of the command line without --host and its value.
+std::vector<std::string> without_host(std::vector<std::string> words) {
+  const auto found = std::ranges::find_if(
+      words, [](const std::string& word) { return word == "--host" || word.starts_with("--host="); });
+  if (found == words.end()) return words;
+  const bool two = *found == "--host" && std::next(found) != words.end();
+  words.erase(found, found + (two ? 2 : 1));
+  return words;
+}
+
+int run_ctl(const CommandLine& line, const CtlOptions& options) {
+  if (!options.host.empty()) {
+    const std::vector<std::string> words(line.arguments().begin() + 1, line.arguments().end());
+    return RemoteHost(options.host).run(without_host(words), STDIN_FILENO, true);
+  }
+  std::string verb;
+  for (const CLI::App* at = line.app.get_subcommand("ctl"); !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    verb += (verb.empty() ? "" : " ") + at->get_name();
+  }
+  if (verb == console) return talk_to_console(options);
+  for (const OrderInfo& order : order_table::orders) {
+    if (verb == order.words) return talk(order, options);
+  }
+  return exit_usage;
+}
+
 }  // namespace
 
-void add_ctl(CLI::App& app, CtlOptions& options) {
-  CLI::App* ctl = app.add_subcommand("ctl", "Read, command and tune a running instance");
+void add_ctl(CommandLine& line) {
+  const auto [ctl, options] = line.add<CtlOptions>("ctl", "Read, command and tune a running instance", run_ctl);
   ctl->require_subcommand(1)->fallthrough();
   ctl->add_option("--socket", options.socket,
                   "Folder of the instance's sockets, or one socket (default: see docs/ctl.md)")
@@ -418,34 +455,6 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
       ->type_name("N")
       ->check(whole_within(1, 1'000'000'000));
   ctl->footer("Exit codes: 0 done, 1 refused, 2 wrong usage or no instance. docs/ctl.md tells of roles and sockets.");
-}
-
-namespace {
-
-// The words of the command line without --host and its value.
-std::vector<std::string> without_host(std::vector<std::string> words) {
-  const auto found = std::ranges::find_if(
-      words, [](const std::string& word) { return word == "--host" || word.starts_with("--host="); });
-  if (found == words.end()) return words;
-  const bool two = *found == "--host" && std::next(found) != words.end();
-  words.erase(found, found + (two ? 2 : 1));
-  return words;
-}
-
-}  // namespace
-
-int run_ctl(const CLI::App& app, const CtlOptions& options, const std::vector<std::string>& words) {
-  if (!options.host.empty()) return RemoteHost(options.host).run(without_host(words), STDIN_FILENO, true);
-  std::string verb;
-  for (const CLI::App* at = app.get_subcommand("ctl"); !at->get_subcommands().empty();) {
-    at = at->get_subcommands().front();
-    verb += (verb.empty() ? "" : " ") + at->get_name();
-  }
-  if (verb == console) return talk_to_console(options);
-  for (const OrderInfo& order : order_table::orders) {
-    if (verb == order.words) return talk(order, options);
-  }
-  return exit_usage;
 }
 
 }  // namespace kadans

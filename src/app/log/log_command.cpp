@@ -201,19 +201,7 @@ void add_making(CLI::App& log, LogOptions& options) {
   cut->get_option("--out")->required();
 }
 
-}  // namespace
-
-void add_log(CLI::App& app, LogOptions& options) {
-  CLI::App* log = app.add_subcommand("log", "Examine a record: info, cat, csv, observations, plot, diff, cut");
-  log->require_subcommand(1);
-  add_reading(*log, options);
-  add_making(*log, options);
-  log->footer(
-      "Times are seconds of the record's own clock, as `log info` shows them.\n"
-      "Exit codes: 0 done (diff: the same), 1 diff: not the same, 2 wrong usage or input.");
-}
-
-int run_log(const CLI::App& app, const LogOptions& options) {
+int run_log(const CommandLine& line, const LogOptions& options) {
   struct Verb {
     const char* name;
     int (*run)(const LogOptions&);
@@ -227,11 +215,24 @@ int run_log(const CLI::App& app, const LogOptions& options) {
                                               {"cut", log_cut}}};
   (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that stops reading is no error
   catch_interrupts();
-  const CLI::App* log = app.get_subcommand("log");
+  const CLI::App* log = line.app.get_subcommand("log");
   for (const Verb& verb : verbs) {
     if (log->got_subcommand(verb.name)) return verb.run(options);
   }
   return exit_usage;
+}
+
+}  // namespace
+
+void add_log(CommandLine& line) {
+  const auto [log, options] =
+      line.add<LogOptions>("log", "Examine a record: info, cat, csv, observations, plot, diff, cut", run_log);
+  log->require_subcommand(1);
+  add_reading(*log, options);
+  add_making(*log, options);
+  log->footer(
+      "Times are seconds of the record's own clock, as `log info` shows them.\n"
+      "Exit codes: 0 done (diff: the same), 1 diff: not the same, 2 wrong usage or input.");
 }
 
 }  // namespace kadans

@@ -36,15 +36,5 @@ struct NewPlantOptions {
   std::string robot;
   std::string folder = ".";  // the plant's folder is made in this folder
 };
-struct NewOptions {
-  NewControlObjectOptions object;
-  NewRobotOptions robot;
-  NewPartOptions behavior, scenario, sweep;
-  NewPlantOptions plant;
-};
-void add_new(CLI::App& app, NewOptions& options);
-// After parsing. Returns the program's exit code. Throws InputError for what it is asked and cannot do; then nothing is
-// written.
-int run_new(const CLI::App& app, const NewOptions& options);
 
 }  // namespace kadans

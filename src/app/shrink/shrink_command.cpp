@@ -15,6 +15,7 @@
 #include "app/terminal.h"
 #include "campaign/shrink/delta_search.h"
 #include "config/json/foreign_json.h"
+#include "config/plan/experiment_plans.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
 #include "failing_case.h"
@@ -396,8 +397,6 @@ std::string out_of(const ShrinkOptions& options, const ScenarioConfig& scenario)
   return out.string();
 }
 
-}  // namespace
-
 int run_shrink(const ShrinkOptions& options) {
   Shrinking shrinking(options, failing_case(options));
   const std::string out = out_of(options, shrinking.config());
@@ -415,8 +414,11 @@ int run_shrink(const ShrinkOptions& options) {
   return exit_passed;
 }
 
-void add_shrink(CLI::App& app, ShrinkOptions& options) {
-  CLI::App* shrink = app.add_subcommand("shrink", "Reduce a failing run to the least that still fails in the same way");
+}  // namespace
+
+void add_shrink(CommandLine& line) {
+  const auto [shrink, options] = line.add<ShrinkOptions>(
+      "shrink", "Reduce a failing run to the least that still fails in the same way", run_shrink);
   shrink
       ->add_option("scenario", options.scenario,
                    "Scenario that fails (JSON), or the folder of a sweep's results, or the file of one case in it")

@@ -194,39 +194,6 @@ std::vector<std::string> notes_of(const Replay& replay, const RunInputs& inputs)
   return notes;
 }
 
-}  // namespace
-
-void add_replay(CLI::App& app, ReplayOptions& options) {
-  CLI::App* replay = app.add_subcommand("replay", "Run a record again, and report where and why it differs");
-  replay->add_option("record", options.record, "Record of kadans sim or kadans run (MCAP)")
-      ->required()
-      ->type_name("FILE");
-  replay->add_flag("--from-record", options.from_record, "Use the files inside the record, not those on the disk");
-  replay->add_flag("--allow-plugins", options.allow_plugins,
-                   "Load the project's plug-ins, even if they differ from the record's");
-  replay
-      ->add_option("--with", options.with,
-                   "Of a run on threads: files of this project that take the place of the record's")
-      ->type_name("FILE");
-  CLI::Option* then =
-      replay
-          ->add_option("--then-simulate", options.then_simulate,
-                       "Of a run on threads: from --at on, its engines go on in this scenario's world, with its checks")
-          ->type_name("SCENARIO");
-  CLI::Option* at = add_number(*replay, "--at", options.at_s, 0.001, scenario_duration_max_s, "S",
-                               "Second of the record from which that is simulated")
-                        ->needs(then);
-  then->needs(at);
-  replay
-      ->add_option("--record", options.written,
-                   "Of a run on threads: write all signals, as they are computed again, into this record")
-      ->type_name("FILE")
-      ->excludes(then);
-  replay->add_flag("--json", options.json, "Print one JSON object instead of text");
-}
-
-namespace {
-
 std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& inputs, bool with) {
   std::vector<std::string> notes;
   if (!run.parting().empty()) notes.push_back(run.parting());
@@ -368,8 +335,6 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   return findings.same ? exit_passed : exit_failed;
 }
 
-}  // namespace
-
 int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
   std::error_code none;
@@ -407,6 +372,38 @@ int run_replay(const ReplayOptions& options) {
     if (!changed.empty()) print_error(options.record + " cannot be run again; since it was recorded: " + changed);
     throw;
   }
+}
+
+}  // namespace
+
+void add_replay(CommandLine& line) {
+  const auto [replay, options] =
+      line.add<ReplayOptions>("replay", "Run a record again, and report where and why it differs", run_replay);
+  replay->add_option("record", options.record, "Record of kadans sim or kadans run (MCAP)")
+      ->required()
+      ->type_name("FILE");
+  replay->add_flag("--from-record", options.from_record, "Use the files inside the record, not those on the disk");
+  replay->add_flag("--allow-plugins", options.allow_plugins,
+                   "Load the project's plug-ins, even if they differ from the record's");
+  replay
+      ->add_option("--with", options.with,
+                   "Of a run on threads: files of this project that take the place of the record's")
+      ->type_name("FILE");
+  CLI::Option* then =
+      replay
+          ->add_option("--then-simulate", options.then_simulate,
+                       "Of a run on threads: from --at on, its engines go on in this scenario's world, with its checks")
+          ->type_name("SCENARIO");
+  CLI::Option* at = add_number(*replay, "--at", options.at_s, 0.001, scenario_duration_max_s, "S",
+                               "Second of the record from which that is simulated")
+                        ->needs(then);
+  then->needs(at);
+  replay
+      ->add_option("--record", options.written,
+                   "Of a run on threads: write all signals, as they are computed again, into this record")
+      ->type_name("FILE")
+      ->excludes(then);
+  replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
 }  // namespace kadans
