@@ -40,12 +40,7 @@ struct CtlOptions {
 
 constexpr std::size_t column_max = 48;
 
-std::string number(const Json& value) {
-  if (!value.is_number()) return "nan";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value.get<double>());
-  return text;
-}
+std::string number(const Json& value) { return value.is_number() ? printed("%.6g", value.get<double>()) : "nan"; }
 
 std::string joined(const Json& texts) {
   return listed(texts, [](const Json& text) { return text.get<std::string>(); });
@@ -83,9 +78,8 @@ std::string behavior_text(const Json& behavior) {
 }
 
 std::string status_text(const Json& answer) {
-  char head[128];
-  std::snprintf(head, sizeof head, "%.2f s, tick %lld", answer.at("time_s").get<double>(),
-                static_cast<long long>(answer.at("tick").get<std::int64_t>()));
+  const std::string head = printed("%.2f s, tick %lld", answer.at("time_s").get<double>(),
+                                   static_cast<long long>(answer.at("tick").get<std::int64_t>()));
   std::string text = answer.at("name").get<std::string>() + " (" + answer.at("mode").get<std::string>() + ", process " +
                      std::to_string(answer.at("pid").get<int>()) + "): " + head + "\n";
   const Json& safety = answer.at("safety");
@@ -231,9 +225,7 @@ std::string watch_head(const Json& answer) {
 
 // Without a newline.
 std::string watch_line(const Json& sample) {
-  char time[32];
-  std::snprintf(time, sizeof time, "%.3f", sample.at("time_s").get<double>());
-  std::string text = time;
+  std::string text = printed("%.3f", sample.at("time_s").get<double>());
   for (const Json& value : sample.at("values")) text += "\t" + number(value);
   return text;
 }
@@ -241,11 +233,14 @@ std::string watch_line(const Json& sample) {
 constexpr int answer_ms = 15'000;  // longer than the server waits for the behavior thread
 constexpr int keys_ms = 100;
 
-Json ask(CtlLink& link, const char* verb, const std::string& text) {
-  link.send(json_text(Json{{"verb", verb}, {"text", text}}));
+std::string answer_to(const Json& request, CtlLink& link) {
+  link.send(json_text(request));
   const std::optional<std::string> line = link.receive(answer_ms);
   if (!line) refuse("the instance does not answer");
-  return parse_foreign_json(*line);
+  return *line;
+}
+Json ask(CtlLink& link, const char* verb, const std::string& text) {
+  return parse_foreign_json(answer_to({{"verb", verb}, {"text", text}}, link));
 }
 
 int from_pipe(CtlLink& link) {
@@ -334,12 +329,10 @@ int talk_to_console(const CtlOptions& options) {
 
 int talk(const OrderInfo& order, const CtlOptions& options) {
   CtlLink link(options.socket, order.role);
-  link.send(json_text(request_of(order, options)));
-  const std::optional<std::string> line = link.receive(answer_ms);
-  if (!line) refuse("the instance does not answer");
-  const Json answer = parse_foreign_json(*line);
+  const std::string line = answer_to(request_of(order, options), link);
+  const Json answer = parse_foreign_json(line);
   if (!answer.value("ok", false)) {
-    if (options.json) print_text(*line + "\n");
+    if (options.json) print_text(line + "\n");
     print_error(answer.value("error", "refused"));
     return exit_failed;
   }
@@ -348,7 +341,7 @@ int talk(const OrderInfo& order, const CtlOptions& options) {
     for (const Json& item : answer.at("items")) print_text(item.at("name").get<std::string>() + "\n");
     return exit_passed;
   }
-  print_text(options.json ? *line + "\n" : answer_text(order.words, answer));
+  print_text(options.json ? line + "\n" : answer_text(order.words, answer));
   return exit_passed;
 }
 

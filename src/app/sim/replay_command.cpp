@@ -30,8 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t shown_differences = 12;
 
 std::optional<std::uint64_t> number_in(const TextMap& facts, const char* name) {
-  const auto found = facts.find(name);
-  return found == facts.end() ? std::nullopt : number_of<std::uint64_t>(found->second);
+  return number_of<std::uint64_t>(fact_in(facts, name));
 }
 
 ScenarioConfig repeated_scenario(const std::string& record, const RunInputs& inputs, const RunChoices& choices) {
