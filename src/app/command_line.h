@@ -30,8 +30,12 @@ class CommandLine {
   // wants it; it returns the program's exit code, and throws InputError for a wrong file.
   template <typename Options, typename Run>
   Command<Options> add(const char* name, const char* doc, Run* does) {
+    return add<Options>(app, name, doc, does);
+  }
+  template <typename Options, typename Run>
+  Command<Options> add(CLI::App& group, const char* name, const char* doc, Run* does) {
     Options& options = options_.emplace_back().emplace<Options>();
-    CLI::App* const command = app.add_subcommand(name, doc);
+    CLI::App* const command = group.add_subcommand(name, doc);
     runs_.emplace_back(command, [this, does, &options] {
       if constexpr (std::is_invocable_v<Run, const Options&>)
         return does(options);

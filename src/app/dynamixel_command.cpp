@@ -189,52 +189,27 @@ int reboot(const DynamixelOptions& options) {
 }  // namespace
 }  // namespace dynamixel
 
-namespace {
-
-int run_dynamixel(const CommandLine& line, const DynamixelOptions& options) {
-  const CLI::App* bench = line.app.get_subcommand("dynamixel");
-  if (bench->got_subcommand("scan")) return dynamixel::scan(options);
-  if (bench->got_subcommand("info")) return dynamixel::info(options);
-  if (bench->got_subcommand("set-id")) return dynamixel::set_id(options);
-  return bench->got_subcommand("baud") ? dynamixel::set_baud(options) : dynamixel::reboot(options);
-}
-
-}  // namespace
-
 void add_dynamixel(CommandLine& line) {
-  const auto [bench, options] =
-      line.add<DynamixelOptions>("dynamixel", "Find Dynamixel servos on a serial port, and set them up", run_dynamixel);
+  CLI::App* bench = line.app.add_subcommand("dynamixel", "Find Dynamixel servos on a serial port, and set them up");
   bench->require_subcommand(1);
-  const auto add = [bench = bench, &options = options](const char* name, const char* doc, bool of_one) {
-    CLI::App* command = bench->add_subcommand(name, doc);
-    command->add_option("device", options.device, "The serial port, such as /dev/ttyUSB0")
+  const auto add = [&](const char* name, const char* doc, int (*does)(const DynamixelOptions&), bool of_one) {
+    auto added = line.add<DynamixelOptions>(*bench, name, doc, does);
+    added.command->add_option("device", added.options.device, "The serial port, such as /dev/ttyUSB0")
         ->required()
         ->type_name("FILE");
-    if (of_one) {
-      command->add_option("id", options.id, "The servo's id")
-          ->required()
-          ->type_name("N")
-          ->check(whole_within(0, dynamixel::id_max));
-    }
-    add_whole(*command, "--baud", options.baud, 1, 10'000'000,
+    if (of_one) add_whole(*added.command, "id", added.options.id, 0, dynamixel::id_max, "The servo's id")->required();
+    add_whole(*added.command, "--baud", added.options.baud, 1, 10'000'000,
               "Baud rate of the servos (default: 1000000; scan tries all)");
-    return command;
+    return added;
   };
-  add("scan", "Find the servos on a serial port", false)
-      ->add_flag("--json", options.json, "Print JSON instead of text");
-  add("info", "Show what one servo is and how it is", true)
-      ->add_flag("--json", options.json, "Print JSON instead of text");
-  add("set-id", "Give a servo another id", true)
-      ->add_option("new_id", options.new_id, "Its new id")
-      ->required()
-      ->type_name("N")
-      ->check(whole_within(0, dynamixel::id_max));
-  add("baud", "Let a servo speak at another baud rate", true)
-      ->add_option("new_baud", options.new_baud, "Its new baud rate")
-      ->required()
-      ->type_name("N")
-      ->check(whole_within(1, 10'000'000));
-  add("reboot", "Let a servo begin anew, which clears its hardware error", true);
+  for (const auto& [command, options] : {add("scan", "Find the servos on a serial port", dynamixel::scan, false),
+                                         add("info", "Show what one servo is and how it is", dynamixel::info, true)})
+    command->add_flag("--json", options.json, "Print JSON instead of text");
+  const auto set_id = add("set-id", "Give a servo another id", dynamixel::set_id, true);
+  add_whole(*set_id.command, "new_id", set_id.options.new_id, 0, dynamixel::id_max, "Its new id")->required();
+  const auto baud = add("baud", "Let a servo speak at another baud rate", dynamixel::set_baud, true);
+  add_whole(*baud.command, "new_baud", baud.options.new_baud, 1, 10'000'000, "Its new baud rate")->required();
+  add("reboot", "Let a servo begin anew, which clears its hardware error", dynamixel::reboot, true);
 }
 
 }  // namespace kadans

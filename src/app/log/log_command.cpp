@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <functional>
 
@@ -213,8 +212,7 @@ int run_log(const CommandLine& line, const LogOptions& options) {
                                               {"plot", log_plot},
                                               {"diff", log_diff},
                                               {"cut", log_cut}}};
-  (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that stops reading is no error
-  catch_interrupts();
+  catch_interrupts();  // a reader that stops reading is no error
   const CLI::App* log = line.app.get_subcommand("log");
   for (const Verb& verb : verbs) {
     if (log->got_subcommand(verb.name)) return verb.run(options);

@@ -82,37 +82,12 @@ int run_kadans(std::vector<std::string> arguments) {
   return run.exit_code() < 0 ? exit_failed : run.exit_code();
 }
 
-namespace {
-
-struct NewOptions {
-  NewControlObjectOptions object;
-  NewRobotOptions robot;
-  NewPartOptions behavior, scenario, sweep;
-  NewPlantOptions plant;
-};
-
-int run_new(const CommandLine& line, const NewOptions& options) {
-  const CLI::App* made = line.app.get_subcommand("new");
-  if (made->got_subcommand("robot")) return run_new_robot(options.robot);
-  if (made->got_subcommand("behavior")) return run_new_behavior(options.behavior);
-  if (made->got_subcommand("scenario")) return run_new_scenario(options.scenario);
-  if (made->got_subcommand("sweep")) return run_new_sweep(options.sweep);
-  if (made->got_subcommand("plant")) return run_new_plant(options.plant);
-  return run_new_control_object(options.object);
-}
-
-}  // namespace
-
 void add_new(CommandLine& line) {
-  const auto [made, options] =
-      line.add<NewOptions>("new", "Write the first version of a new part of your project", run_new);
+  CLI::App* made = line.app.add_subcommand("new", "Write the first version of a new part of your project");
   made->require_subcommand(1);
-  add_new_robot(*made, options.robot);
-  add_new_behavior(*made, options.behavior);
-  add_new_scenario(*made, options.scenario);
-  add_new_sweep(*made, options.sweep);
-  add_new_control_object(*made, options.object);
-  add_new_plant(*made, options.plant);
+  for (void (*const put)(CLI::App&, CommandLine&) :
+       {add_new_robot, add_new_behavior, add_new_scenario, add_new_sweep, add_new_control_object, add_new_plant})
+    put(*made, line);
 }
 
 }  // namespace kadans

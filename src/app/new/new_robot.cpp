@@ -33,6 +33,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+struct NewRobotOptions {
+  std::string urdf, srdf, name;
+  std::vector<std::string> packages;  // NAME=FOLDER
+  std::string folder = ".";           // the project
+  bool no_run = false;
+};
+
 constexpr std::string_view sway_template =
     R"(-- Goes from one pose to another and back, a few times. Change it and run it again.
 local k = require "kadans"
@@ -490,21 +497,6 @@ int run_and_draw(const fs::path& scenario, const fs::path& picture) {
   return code;
 }
 
-}  // namespace
-
-void add_new_robot(CLI::App& made, NewRobotOptions& options) {
-  CLI::App* robot = made.add_subcommand("robot", "Write the files of a robot from its URDF or MJCF, and see it stand");
-  robot->add_option("urdf", options.urdf, "URDF, xacro or MJCF of the robot")->required()->type_name("FILE");
-  robot->add_option("--srdf", options.srdf, "SRDF of the robot: its pairs of links pass through each other")
-      ->type_name("FILE");
-  robot->add_option("--package", options.packages, package_help)->type_name("NAME=FOLDER")->allow_extra_args(false);
-  robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: that of the file)")
-      ->type_name("NAME");
-  robot->add_option("--in", options.folder, "Project to which its files are added (default: this folder)")
-      ->type_name("FOLDER");
-  robot->add_flag("--no-run", options.no_run, "Do not run its scenario");
-}
-
 int run_new_robot(const NewRobotOptions& options) {
   const UrdfPackages packages = packages_of(options.packages);
   std::vector<InputProblem> warnings;
@@ -558,6 +550,22 @@ int run_new_robot(const NewRobotOptions& options) {
                rolls ? "roll" : "sway");
   if (options.no_run) return exit_passed;
   return run_and_draw(scenario, models / (name + ".png"));
+}
+
+}  // namespace
+
+void add_new_robot(CLI::App& made, CommandLine& line) {
+  const auto [robot, options] = line.add<NewRobotOptions>(
+      made, "robot", "Write the files of a robot from its URDF or MJCF, and see it stand", run_new_robot);
+  robot->add_option("urdf", options.urdf, "URDF, xacro or MJCF of the robot")->required()->type_name("FILE");
+  robot->add_option("--srdf", options.srdf, "SRDF of the robot: its pairs of links pass through each other")
+      ->type_name("FILE");
+  robot->add_option("--package", options.packages, package_help)->type_name("NAME=FOLDER")->allow_extra_args(false);
+  robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: that of the file)")
+      ->type_name("NAME");
+  robot->add_option("--in", options.folder, "Project to which its files are added (default: this folder)")
+      ->type_name("FOLDER");
+  robot->add_flag("--no-run", options.no_run, "Do not run its scenario");
 }
 
 }  // namespace kadans

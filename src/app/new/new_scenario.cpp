@@ -213,17 +213,6 @@ WrittenScenario played(const NewSubject& subject, Json json, const fs::path& fil
   return {std::move(json), limp.failed_check()};
 }
 
-}  // namespace
-
-void add_new_scenario(CLI::App& made, NewPartOptions& options) {
-  CLI::App* scenario =
-      made.add_subcommand("scenario", "Write a scenario with checks that hold, and that fail without torque; run it");
-  add_part_options(*scenario, options, "Its name, for example nudged", "Do not run it at the end");
-  scenario
-      ->add_option("--play", options.play, "Behaviors to play: \"squat, wave\" (default: none, the robot is pushed)")
-      ->type_name("LIST");
-}
-
 int run_new_scenario(const NewPartOptions& options) {
   refuse_bad_name(options.name, "a scenario", "nudged");
   NewSubject subject = read_subject(options);
@@ -246,6 +235,18 @@ int run_new_scenario(const NewPartOptions& options) {
   tell_command("Run it  ", subject.project, "sim " + shown);
   tell_command("Break it", subject.project, "sim " + shown + " --set 'joint.*.torque_scale=0'");
   return options.no_run ? exit_passed : run_kadans({"sim", fs::absolute(file).string(), "--no-record"});
+}
+
+}  // namespace
+
+void add_new_scenario(CLI::App& made, CommandLine& line) {
+  const auto [scenario, options] = line.add<NewPartOptions>(
+      made, "scenario", "Write a scenario with checks that hold, and that fail without torque; run it",
+      run_new_scenario);
+  add_part_options(*scenario, options, "Its name, for example nudged", "Do not run it at the end");
+  scenario
+      ->add_option("--play", options.play, "Behaviors to play: \"squat, wave\" (default: none, the robot is pushed)")
+      ->type_name("LIST");
 }
 
 }  // namespace kadans
