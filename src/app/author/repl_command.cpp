@@ -15,6 +15,7 @@
 #include "behavior_stage.h"
 #include "config/robot/project_root.h"
 #include "script/console/console.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -50,9 +51,7 @@ class Chatter final : public LineSink {
  public:
   void tell(const Line& line) override {
     if (line.transition != nullptr) return;
-    char time[32];
-    std::snprintf(time, sizeof time, "%8.2f s  ", 1e-9 * static_cast<double>(line.time_ns));
-    said_.append(time).append(line.behavior);
+    said_.append(printed("%8.2f s  ", 1e-9 * static_cast<double>(line.time_ns))).append(line.behavior);
     said_.append(line.severity == BehaviorLog::Severity::error ? ": error: " : ": ").append(line.text).append("\n");
   }
   std::string take() {
