@@ -443,10 +443,7 @@ void add_ctl(CommandLine& line) {
   ctl->add_subcommand(console, console_doc)->fallthrough();
   ctl->get_subcommand("list")->add_flag("--names", options.names, "Print only names, one a line");
   ctl->get_subcommand("list")->get_option("what")->check(CLI::IsMember(list_kinds()));
-  ctl->get_subcommand("watch")
-      ->add_option("--count", options.count, "End after N samples")
-      ->type_name("N")
-      ->check(whole_within(1, 1'000'000'000));
+  add_whole(*ctl->get_subcommand("watch"), "--count", options.count, 1, 1'000'000'000, "End after N samples");
   ctl->footer("Exit codes: 0 done, 1 refused, 2 wrong usage or no instance. docs/ctl.md tells of roles and sockets.");
 }
 
