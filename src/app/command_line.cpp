@@ -1,8 +1,5 @@
 #include "command_line.h"
 
-#include <type_traits>
-
-#include "app/new/new_options.h"
 #include "commands.h"
 #include "terminal.h"
 
@@ -37,52 +34,17 @@ std::vector<const CLI::App*> visible_below(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
 }
 
-template <typename Options, typename Run>
-void CommandLine::offer(void (*add)(CLI::App&, Options&), Run does) {
-  Options& options = options_.emplace_back().emplace<Options>();
-  add(app, options);
-  const CLI::App* const command = app.get_subcommands([](const CLI::App*) { return true; }).back();
-  if constexpr (std::is_invocable_v<Run, const Options&>)
-    runs_.emplace_back(command, [does, &options] { return does(options); });
-  else
-    runs_.emplace_back(command, [this, does, &options] { return does(app, options); });
-}
-
 CommandLine::CommandLine() : app(about, "kadans") {
   app.require_subcommand(1);
-  offer(add_sim, run_sim);
-  offer(add_test, run_test);
-  offer(add_replay, run_replay);
-  offer(add_debug, run_debug);
-  offer(add_check, run_check);
-  offer(add_sweep, run_sweep);
-  offer(add_merge, run_merge);
-  offer(add_margin, run_margin);
-  offer(add_shrink, run_shrink);
-  offer(add_tune, [this](const TuneOptions&) { return start_tune_program(arguments_.data()); });
-  offer(add_behavior, run_behavior);
-  offer(add_repl, run_repl);
-  offer(add_stubs, run_stubs);
-  offer(add_params, run_params);
-  offer(add_run, run_live);
-  offer(add_behavior_process, run_behavior_process);
-  offer(add_plant, run_plant);
-  offer(add_jog, run_jog);
-  offer(add_commission, run_commission);
-  offer(add_dynamixel, run_dynamixel);
-  offer(add_jitter, run_jitter);
-  offer(add_ctl, [this](const CtlOptions& options) {
-    return run_ctl(app, options, {arguments_.begin() + 1, arguments_.end()});
-  });
-  offer(add_push, run_push);
-  offer(add_receive, run_receive);
-  offer(add_completion, run_completion);
-  offer(add_view, run_view);
-  offer(add_render, run_render);
-  offer(add_log, run_log);
-  offer(add_doctor, run_doctor);
-  offer(add_new, run_new);
-  offer(add_reference, run_reference);
+  for (void (*const put)(CommandLine&) : {add_sim,        add_test,   add_replay,     add_debug,
+                                          add_check,      add_sweep,  add_merge,      add_margin,
+                                          add_shrink,     add_tune,   add_behavior,   add_repl,
+                                          add_stubs,      add_params, add_run,        add_behavior_process,
+                                          add_plant,      add_jog,    add_commission, add_dynamixel,
+                                          add_jitter,     add_ctl,    add_push,       add_receive,
+                                          add_completion, add_view,   add_render,     add_log,
+                                          add_doctor,     add_new,    add_reference})
+    put(*this);
   add_examples(app);
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -20,18 +21,38 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;  // the parser points into it
   CommandLine& operator=(const CommandLine&) = delete;
 
+  template <typename Options>
+  struct Command {
+    CLI::App* command;
+    Options& options;
+  };
+  // Adds a command with options, which are kept here. `does` gets them after parsing, and this line before them if it
+  // wants it; it returns the program's exit code, and throws InputError for a wrong file.
+  template <typename Options, typename Run>
+  Command<Options> add(const char* name, const char* doc, Run* does) {
+    return add<Options>(app, name, doc, does);
+  }
+  template <typename Options, typename Run>
+  Command<Options> add(CLI::App& group, const char* name, const char* doc, Run* does) {
+    Options& options = options_.emplace_back().emplace<Options>();
+    CLI::App* const command = group.add_subcommand(name, doc);
+    runs_.emplace_back(command, [this, does, &options] {
+      if constexpr (std::is_invocable_v<Run, const Options&>)
+        return does(options);
+      else
+        return does(*this, options);
+    });
+    return {command, options};
+  }
+
   // After parsing: runs the command that was given. `arguments` is what was parsed, with the program's name and a null
   // behind it, for commands that hand it on. Returns the program's exit code.
   int run(std::span<char*> arguments);
+  std::span<char*> arguments() const noexcept { return arguments_; }
 
   CLI::App app;
 
  private:
-  // `add` adds the command, with options that are kept here; `run` gets them, and the parser before them if it wants
-  // it.
-  template <typename Options, typename Run>
-  void offer(void (*add)(CLI::App&, Options&), Run does);
-
   std::span<char*> arguments_;  // of run()
   std::deque<std::any> options_;
   std::vector<std::pair<const CLI::App*, std::function<int()>>> runs_;

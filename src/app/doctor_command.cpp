@@ -15,6 +15,12 @@
 namespace kadans {
 namespace {
 
+struct DoctorOptions {
+  std::string robot;       // "": of the machine alone
+  std::string root = "/";  // root folder of the machine that is examined
+  bool json = false;
+};
+
 void print_machine(const std::vector<MachineFinding>& findings) {
   const bool color = stdout_takes_color();
   for (const MachineFinding& f : findings) {
@@ -35,16 +41,6 @@ void print_json(const std::vector<MachineFinding>& findings, bool good) {
   std::puts(json_text(nlohmann::ordered_json{{"good", good}, {"findings", all}}).c_str());
 }
 
-}  // namespace
-
-void add_doctor(CLI::App& app, DoctorOptions& options) {
-  CLI::App* doctor = app.add_subcommand("doctor", "Report what keeps this machine from real time");
-  doctor->add_option("robot", options.robot, "A robot's configuration (JSON): report on its drives, too")
-      ->type_name("FILE");
-  doctor->add_option("--root", options.root, "Root folder of the examined system (default: /)")->type_name("FOLDER");
-  doctor->add_flag("--json", options.json, "Print one JSON object instead of text");
-}
-
 int run_doctor(const DoctorOptions& options) {
   std::vector<MachineFinding> findings = examine_machine(options.root, ".");
   if (!options.robot.empty()) {
@@ -62,6 +58,17 @@ int run_doctor(const DoctorOptions& options) {
     print_machine(findings);
   }
   return good ? exit_passed : exit_failed;
+}
+
+}  // namespace
+
+void add_doctor(CommandLine& line) {
+  const auto [doctor, options] =
+      line.add<DoctorOptions>("doctor", "Report what keeps this machine from real time", run_doctor);
+  doctor->add_option("robot", options.robot, "A robot's configuration (JSON): report on its drives, too")
+      ->type_name("FILE");
+  doctor->add_option("--root", options.root, "Root folder of the examined system (default: /)")->type_name("FOLDER");
+  doctor->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
 }  // namespace kadans

@@ -11,9 +11,22 @@
 #include "kadans/signal/input_error.h"
 #include "option_checks.h"
 #include "plant/dynamixel/servo_bus.h"
+#include "signal/input_file.h"
 #include "terminal.h"
 
 namespace kadans {
+namespace {
+
+// The bench of servos: each of its commands is one of `kadans dynamixel`.
+struct DynamixelOptions {
+  std::string device;
+  std::uint32_t baud = 0;  // 0: scan looks at all, the others take 1000000
+  std::uint32_t id = 1, new_id = 1, new_baud = 1'000'000;
+  bool json = false;
+};
+
+}  // namespace
+
 namespace dynamixel {
 namespace {
 
@@ -33,12 +46,9 @@ std::string model_text(std::uint16_t number) {
 
 [[noreturn]] void no_answer(const DynamixelOptions& options, Answer answer, std::uint8_t error) {
   const std::string servo = "servo " + std::to_string(options.id) + " on " + options.device;
-  if (answer == Answer::refused)
-    throw InputError({.message = servo + " refuses: " + std::string(status_error_words(error))});
-  if (answer == Answer::garbage)
-    throw InputError({.message = servo + " answers garbage: two servos have this id, or the line is disturbed"});
-  throw InputError(
-      {.message = servo + " does not answer: `kadans dynamixel scan " + options.device + "` finds servos"});
+  if (answer == Answer::refused) refuse(servo + " refuses: " + std::string(status_error_words(error)));
+  if (answer == Answer::garbage) refuse(servo + " answers garbage: two servos have this id, or the line is disturbed");
+  refuse(servo + " does not answer: `kadans dynamixel scan " + options.device + "` finds servos");
 }
 
 class Bench {
@@ -151,8 +161,8 @@ int set_id(const DynamixelOptions& options) {
   Bench bench(options);
   ServoBus::Identity other;
   if (bench.bus().ping(static_cast<std::uint8_t>(options.new_id), other) != Answer::silence)
-    throw InputError({.message = "id " + std::to_string(options.new_id) + " on " + options.device +
-                                 " is another servo's: connect one servo alone, or choose another id"});
+    refuse("id " + std::to_string(options.new_id) + " on " + options.device +
+           " is another servo's: connect one servo alone, or choose another id");
   bench.write(torque_enable, 0);
   bench.write(own_id, options.new_id);
   std::printf("servo %u is %u now\n", options.id, options.new_id);
@@ -161,7 +171,7 @@ int set_id(const DynamixelOptions& options) {
 
 int set_baud(const DynamixelOptions& options) {
   const auto* const code = std::ranges::find(baud_rates, options.new_baud);
-  if (code == baud_rates.end()) throw InputError({.message = unknown_baud(options.new_baud)});
+  if (code == baud_rates.end()) refuse(unknown_baud(options.new_baud));
   Bench bench(options);
   bench.write(torque_enable, 0);
   bench.write(baud_rate, static_cast<std::uint32_t>(code - baud_rates.begin()));
@@ -179,47 +189,27 @@ int reboot(const DynamixelOptions& options) {
 }  // namespace
 }  // namespace dynamixel
 
-void add_dynamixel(CLI::App& app, DynamixelOptions& options) {
-  CLI::App* bench = app.add_subcommand("dynamixel", "Find Dynamixel servos on a serial port, and set them up");
+void add_dynamixel(CommandLine& line) {
+  CLI::App* bench = line.app.add_subcommand("dynamixel", "Find Dynamixel servos on a serial port, and set them up");
   bench->require_subcommand(1);
-  const auto add = [&](const char* name, const char* doc, bool of_one) {
-    CLI::App* command = bench->add_subcommand(name, doc);
-    command->add_option("device", options.device, "The serial port, such as /dev/ttyUSB0")
+  const auto add = [&](const char* name, const char* doc, int (*does)(const DynamixelOptions&), bool of_one) {
+    auto added = line.add<DynamixelOptions>(*bench, name, doc, does);
+    added.command->add_option("device", added.options.device, "The serial port, such as /dev/ttyUSB0")
         ->required()
         ->type_name("FILE");
-    if (of_one) {
-      command->add_option("id", options.id, "The servo's id")
-          ->required()
-          ->type_name("N")
-          ->check(whole_within(0, dynamixel::id_max));
-    }
-    add_whole(*command, "--baud", options.baud, 1, 10'000'000,
+    if (of_one) add_whole(*added.command, "id", added.options.id, 0, dynamixel::id_max, "The servo's id")->required();
+    add_whole(*added.command, "--baud", added.options.baud, 1, 10'000'000,
               "Baud rate of the servos (default: 1000000; scan tries all)");
-    return command;
+    return added;
   };
-  add("scan", "Find the servos on a serial port", false)
-      ->add_flag("--json", options.json, "Print JSON instead of text");
-  add("info", "Show what one servo is and how it is", true)
-      ->add_flag("--json", options.json, "Print JSON instead of text");
-  add("set-id", "Give a servo another id", true)
-      ->add_option("new_id", options.new_id, "Its new id")
-      ->required()
-      ->type_name("N")
-      ->check(whole_within(0, dynamixel::id_max));
-  add("baud", "Let a servo speak at another baud rate", true)
-      ->add_option("new_baud", options.new_baud, "Its new baud rate")
-      ->required()
-      ->type_name("N")
-      ->check(whole_within(1, 10'000'000));
-  add("reboot", "Let a servo begin anew, which clears its hardware error", true);
-}
-
-int run_dynamixel(const CLI::App& app, const DynamixelOptions& options) {
-  const CLI::App* bench = app.get_subcommand("dynamixel");
-  if (bench->got_subcommand("scan")) return dynamixel::scan(options);
-  if (bench->got_subcommand("info")) return dynamixel::info(options);
-  if (bench->got_subcommand("set-id")) return dynamixel::set_id(options);
-  return bench->got_subcommand("baud") ? dynamixel::set_baud(options) : dynamixel::reboot(options);
+  for (const auto& [command, options] : {add("scan", "Find the servos on a serial port", dynamixel::scan, false),
+                                         add("info", "Show what one servo is and how it is", dynamixel::info, true)})
+    command->add_flag("--json", options.json, "Print JSON instead of text");
+  const auto set_id = add("set-id", "Give a servo another id", dynamixel::set_id, true);
+  add_whole(*set_id.command, "new_id", set_id.options.new_id, 0, dynamixel::id_max, "Its new id")->required();
+  const auto baud = add("baud", "Let a servo speak at another baud rate", dynamixel::set_baud, true);
+  add_whole(*baud.command, "new_baud", baud.options.new_baud, 1, 10'000'000, "Its new baud rate")->required();
+  add("reboot", "Let a servo begin anew, which clears its hardware error", dynamixel::reboot, true);
 }
 
 }  // namespace kadans

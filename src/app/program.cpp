@@ -8,92 +8,11 @@
 
 #include "app/run/real_time_start.h"
 #include "command_line.h"
-#include "commands.h"
-#include "kadans/plant/plant_type.h"
 #include "kadans/signal/nearest_name.h"
-#include "option_checks.h"
 #include "terminal.h"
 #include "version.h"
 
 namespace kadans {
-namespace {
-
-// " bullet, the robot's model ...; udp, a plant on another machine"
-std::string plant_type_docs() {
-  std::string docs;
-  for (const auto& type : plant_types()) {
-    docs += docs.empty() ? " " : "; ";
-    docs += std::string(type->name()) + ", " + std::string(type->doc());
-  }
-  return docs;
-}
-
-}  // namespace
-
-void add_run(CLI::App& app, RunOptions& options) {
-  CLI::App* run =
-      app.add_subcommand("run", "Drive a robot, or a model of it, on the wall clock until SIGINT or SIGTERM");
-  run->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
-  run->add_option("--plant", options.plant,
-                  "Plant to drive (default: bullet):" + plant_type_docs() + "; or a plug-in's")
-      ->type_name("TYPE");
-  run->add_option("--peer", options.peer, "Address of the drives, or of `kadans plant` (default: the configuration's)")
-      ->type_name("HOST:PORT");
-  run->add_option("--imu", options.imu, "Serial port of the IMU beside the drives (default: the configuration's)")
-      ->type_name("FILE");
-  run->add_flag("--read-only", options.read_only, "Read every sensor, and ask nothing of the drives: none is enabled");
-  run->add_option("--play", options.play,
-                  "Behaviors to play: \"squat, wave\" (default: none, the robot holds its position)")
-      ->type_name("LIST");
-  run->add_option(
-         "--joystick", options.joystick,
-         "Joystick that behaviors read as s.joystick: a device such as /dev/input/event5, or a recording of one")
-      ->type_name("FILE");
-  add_number(*run, "--duration", options.duration_s, 0.001, 1e9, "S",
-             "Seconds to run (default: until SIGINT or SIGTERM)");
-  run->add_option("--record", options.record,
-                  "Write a record to this file, or to numbered files in this folder (default: none)")
-      ->type_name("PATH");
-  add_record_options(*run, options.recording);
-  add_number(*run, "--records-max", options.recording.folder_MB, 0.0, 1e7, "MB",
-             "Room for numbered records and those of the flight recorder; the oldest go (default: the robot's "
-             "record.folder_MB; 0: no bound)");
-  add_seed(*run, options.seed, "Seed of a model's random numbers (default: 1)");
-  run->add_flag("--soft", options.soft, "Run even without the rights that real time needs");
-  run->add_flag("--threads-on-virtual-time", options.virtual_time,
-                "Run the same threads on virtual time, which waits for all of them");
-  CLI::Option* sleep = run->add_flag("--sleep-only", options.sleep_only, "Sleep until the next tick, without spinning");
-  add_number(*run, "--spin-us", options.spin_us, 1.0, 900.0, "US", "Time to spin after sleeping")->excludes(sleep);
-  run->add_flag("!--no-keep-awake", options.keep_awake, "Let the control thread's CPU idle between the ticks");
-  add_whole(*run, "--cpu", options.cpu, 0, 1023, "CPU of the control thread (default: an isolated one, else the last)");
-  run->add_option("--behaviors", options.behaviors,
-                  "Play behaviors in a thread (default), or in a process of their own, which may die")
-      ->check(CLI::IsMember({"thread", "process"}));
-  run->add_option(
-         "--decisions", options.decisions,
-         "Run the supervisor's decisions in its thread, or in a process of their own (default: as --behaviors)")
-      ->check(CLI::IsMember({"thread", "process"}));
-  add_number(*run, "--behaviors-patience", options.behaviors_patience_s, 0.01, 1000.0, "S",
-             "Time without an answer after which such a process is killed (default: 0.3; on virtual time 10)");
-  add_whole(*run, "--behaviors-deaths", options.behaviors_deaths, 1, 1'000'000'000,
-            "Deaths in a row after which such a process is not started again (default: 8)");
-  add_number(*run, "--behaviors-memory", options.behaviors_memory_MB, 1.0, 1e6, "MB",
-             "Memory that such a process may take in addition to what it has when it begins to play (default: 256)");
-  add_services(*run, options);
-  run->add_flag("--json", options.json, "Print one JSON object instead of text");
-  run->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log and their transitions");
-  run->add_option("--log-file", options.log_file, "Append all log lines to this file, transitions too (default: none)")
-      ->type_name("FILE");
-}
-
-// A hidden command that `run` starts, under another name for each process, for those who list processes.
-void add_behavior_process(CLI::App& app, RunOptions& options) {
-  CLI::App* process = app.add_subcommand("behavior-process", "")->alias("decision-process")->group("");
-  process->add_option("robot", options.robot)->required();
-  process->add_option("--play", options.play);
-  process->add_option("--seed", options.seed)->check(any_seed());
-}
-
 namespace {
 
 // The hint for a wrong option such as "--sed 1".

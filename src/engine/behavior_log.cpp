@@ -15,8 +15,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
 #include "signal/byte_order.h"
+#include "signal/input_file.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -238,12 +238,6 @@ void ActiveNow::take(const ActiveStates& told) {
   all_.insert_or_assign(std::string(told.behavior), told.copies());
 }
 
-std::string listed(const std::vector<std::string>& states) {
-  std::string text;
-  for (const std::string& state : states) text += (text.empty() ? "" : ", ") + state;
-  return text;
-}
-
 // systemd.exec(5): the device and inode of the stream that it connected.
 bool stderr_is_journal() {
   struct stat is {};
@@ -304,7 +298,7 @@ class LogFile::Sink final : public spdlog::sinks::sink {
 
 LogFile::LogFile(const std::string& file) try : sink_(std::make_shared<Sink>(file)) {
 } catch (const spdlog::spdlog_ex& error) {
-  throw InputError({.message = error.what()});
+  refuse(error.what());
 }
 TextSink LogFile::sink() const { return sink_; }
 bool LogFile::failed() const noexcept { return sink_->failed(); }

@@ -67,8 +67,6 @@ class ActiveNow {
  private:
   std::map<std::string, std::vector<std::string>, std::less<>> all_;
 };
-// "act.arm.wave, act.leg.step"
-std::string listed(const std::vector<std::string>& states);
 
 struct Line;
 class LineSink;

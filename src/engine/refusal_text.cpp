@@ -33,11 +33,7 @@ std::string out_of_range(const Refusal& refusal, const Catalog& catalog) {
                                                     : text(catalog.setpoints[refusal.index]);
 }
 
-std::string seconds_text(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", seconds);
-  return text;
-}
+std::string seconds_text(double seconds) { return printed("%.3f s", seconds); }
 
 }  // namespace
 

@@ -26,7 +26,7 @@ bool is_new(std::uint32_t sequence, std::uint32_t& last_sequence, bool look, Sen
   return false;
 }
 
-[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("estimate: " + what); }
+[[noreturn]] void reject(const std::string& what) { throw std::invalid_argument("estimate: " + what); }
 
 // The vector's value for a joint; `otherwise` when the vector is empty.
 template <typename T>
@@ -37,7 +37,7 @@ T of_joint(const std::vector<T>& values, std::size_t joint, T otherwise) {
 template <typename T>
 void check_size(const std::vector<T>& values, const char* key, const RobotModel& model) {
   if (!values.empty() && values.size() != model.joints.size())
-    refuse(std::string(key) + " has " + std::to_string(values.size()) + " values, the robot " +
+    reject(std::string(key) + " has " + std::to_string(values.size()) + " values, the robot " +
            std::to_string(model.joints.size()) + " joints");
 }
 
@@ -54,7 +54,7 @@ Part make(const typename Part::Config& config, const std::string& owner) {
   try {
     return Part(config);
   } catch (const std::invalid_argument& error) {
-    refuse(owner + ": " + error.what());
+    reject(owner + ": " + error.what());
   }
 }
 
@@ -233,11 +233,11 @@ Estimator::Estimator(const RobotModel& model, const EstimateSettings& settings, 
     : settings_(settings),
       orientation_(make<OrientationFilter>(orientation_config(settings), "base orientation")),
       dt_s_(dt_s) {
-  if (!(dt_s > 0 && std::isfinite(dt_s))) refuse("dt_s = " + std::to_string(dt_s) + " must be > 0");
+  if (!(dt_s > 0 && std::isfinite(dt_s))) reject("dt_s = " + std::to_string(dt_s) + " must be > 0");
   add_joints(model, settings, dt_s);
   add_feet(model, settings);
   if (settings.channels.size() > max_channels)
-    refuse(std::to_string(settings.channels.size()) + " sensors, at most " + std::to_string(max_channels));
+    reject(std::to_string(settings.channels.size()) + " sensors, at most " + std::to_string(max_channels));
   health_.channel_count = static_cast<std::uint32_t>(settings.channels.size());
   health_.imu.period_ticks = std::max(1U, settings.imu_divisor);
   channels_.fill(std::numeric_limits<double>::quiet_NaN());
@@ -248,7 +248,7 @@ Estimator::Estimator(const RobotModel& model, const EstimateSettings& settings, 
 
 void Estimator::add_joints(const RobotModel& model, const EstimateSettings& settings, double dt_s) {
   if (model.joints.size() > max_joints)
-    refuse("the robot has " + std::to_string(model.joints.size()) + " joints, at most " + std::to_string(max_joints));
+    reject("the robot has " + std::to_string(model.joints.size()) + " joints, at most " + std::to_string(max_joints));
   check_size(settings.joint_velocity_cutoff_Hz, "joint_velocity_cutoff_Hz", model);
   check_size(settings.spring_Nm_per_rad, "spring_Nm_per_rad", model);
   check_size(settings.sample_divisor, "sample_divisor", model);
@@ -257,8 +257,8 @@ void Estimator::add_joints(const RobotModel& model, const EstimateSettings& sett
     const double spring_Nm_per_rad = of_joint(settings.spring_Nm_per_rad, i, 0.0);
     const std::uint32_t divisor = of_joint(settings.sample_divisor, i, std::uint32_t{1});
     if (!(spring_Nm_per_rad >= 0 && std::isfinite(spring_Nm_per_rad)))
-      refuse(owner + ": spring_Nm_per_rad = " + std::to_string(spring_Nm_per_rad) + " must be >= 0");
-    if (divisor == 0) refuse(owner + ": sample_divisor = 0 must be >= 1");
+      reject(owner + ": spring_Nm_per_rad = " + std::to_string(spring_Nm_per_rad) + " must be >= 0");
+    if (divisor == 0) reject(owner + ": sample_divisor = 0 must be >= 1");
     const VelocityFilter::Config velocity{.cutoff_Hz = settings.cutoff_Hz(i), .dt_s = divisor * dt_s};
     joints_.push_back({.velocity = make<VelocityFilter>(velocity, owner + ": velocity"),
                        .spring_Nm_per_rad = spring_Nm_per_rad,
@@ -285,10 +285,10 @@ void Estimator::add_joints(const RobotModel& model, const EstimateSettings& sett
 
 void Estimator::add_feet(const RobotModel& model, const EstimateSettings& settings) {
   if (settings.feet.size() > max_feet)
-    refuse(std::to_string(settings.feet.size()) + " feet, at most " + std::to_string(max_feet));
+    reject(std::to_string(settings.feet.size()) + " feet, at most " + std::to_string(max_feet));
   for (const EstimateFoot& foot : settings.feet) {
     const auto link = model.find_link(foot.link);
-    if (!link) refuse("foot: the robot has no link '" + foot.link + "'");
+    if (!link) reject("foot: the robot has no link '" + foot.link + "'");
     const ContactDetector::Config contact{
         .on_N = settings.contact_on_N, .off_N = settings.contact_off_N, .sensors_m = foot.sensors_m};
     feet_.push_back({.detector = make<ContactDetector>(contact, "foot '" + foot.link + "'"),

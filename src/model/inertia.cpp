@@ -1,11 +1,11 @@
 #include "kadans/model/inertia.h"
 
 #include <array>
-#include <cstdio>
 
 #include <Eigen/Eigenvalues>
 
 #include "kadans/model/kinematics.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -38,13 +38,7 @@ void add_point(Inertia& i, double mass_kg, const Vec3& d) noexcept {
   i.yz -= mass_kg * d[1] * d[2];
 }
 
-std::string moment(double kg_m2) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", kg_m2);
-  return text.data();
-}
-
-std::string moments(const Eigen::Vector3d& m) { return moment(m[0]) + ", " + moment(m[1]) + ", " + moment(m[2]); }
+std::string moments(const Eigen::Vector3d& m) { return printed("%.4g, %.4g, %.4g", m[0], m[1], m[2]); }
 
 }  // namespace
 
@@ -90,7 +84,7 @@ std::optional<std::string> inertia_defect(const Inertia& inertia, double roundin
   }
   if (!(principal[0] + principal[1] >= principal[2] * (1 - rounding))) {
     return "breaks the triangle inequality: of its principal moments " + moments(principal) +
-           " kg m2 no one may exceed the sum of the other two, here " + moment(principal[0] + principal[1]);
+           " kg m2 no one may exceed the sum of the other two, here " + printed("%.4g", principal[0] + principal[1]);
   }
   return std::nullopt;
 }

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <string>
 
+#include "signal/number_text.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -16,11 +16,7 @@ bool control(char c) noexcept {
   return (byte < 0x20U && c != '\t' && c != '\n' && c != '\r') || byte == 0x7FU;
 }
 
-std::string hex(char c) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "0x%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
-  return text.data();
-}
+std::string hex(char c) { return printed("0x%02X", static_cast<unsigned>(static_cast<unsigned char>(c))); }
 
 }  // namespace
 

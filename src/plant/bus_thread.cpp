@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 #include "signal/quiet_thread.h"
 
 namespace kadans {
@@ -19,7 +19,7 @@ void BusThread::start(const char* name, const char* whom, std::function<void()> 
   serve_ = std::move(serve);
   stop_.store(false, std::memory_order_relaxed);
   runs_ = start_quiet_thread<&BusThread::serve_>(thread_, {name, stack_bytes}, this) == 0;
-  if (!runs_) throw InputError({.message = std::string("the system gives no thread to ") + whom});
+  if (!runs_) refuse(std::string("the system gives no thread to ") + whom);
   sched_param parameter{};
   parameter.sched_priority = bus_thread_priority;
   (void)pthread_setschedparam(thread_, SCHED_FIFO, &parameter);

@@ -15,11 +15,8 @@ void check_fault(const EmulatedFault& fault, std::span<const EmulatedFaultKind> 
   using Of = EmulatedFaultKind::Of;
   const auto fail = [](const std::string& why) { throw std::invalid_argument(why); };
   const auto kind = std::ranges::find_if(kinds, [&](const EmulatedFaultKind& one) { return one.name == fault.kind; });
-  if (kind == kinds.end()) {
-    std::string all;
-    for (const EmulatedFaultKind& one : kinds) all += (all.empty() ? "" : ", ") + std::string(one.name);
-    fail("no fault '" + fault.kind + "' of this bus; there are " + all);
-  }
+  if (kind == kinds.end())
+    fail("no fault '" + fault.kind + "' of this bus; there are " + listed(kinds, &EmulatedFaultKind::name));
   const std::vector<std::string>& names = kind->of == Of::drive ? drives : lines;
   const bool known = std::ranges::find(names, fault.of) != names.end();
   if (kind->of == Of::nothing && !fault.of.empty()) fail(fault.kind + " is of nothing, not of '" + fault.of + "'");

@@ -10,12 +10,12 @@
 #include <netinet/ip.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
 
-[[noreturn]] void fail(const std::string& message) { throw InputError({.message = message}); }
+[[noreturn]] void fail(const std::string& message) { refuse(message); }
 
 struct HostPort {
   std::string host, port;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "kadans/signal/input_error.h"
 #include "signal/input_file.h"
 #include "signal/number_text.h"
 
@@ -45,7 +44,7 @@ void ContentHash::add_folder(const fs::path& folder, std::string_view ending, co
       i.disable_recursion_pending();
     if (i->is_regular_file(error) && i->path().filename().string().ends_with(ending)) files.push_back(i->path());
   }
-  if (error) throw InputError({.file = folder.string(), .message = "cannot be read: " + error.message()});
+  if (error) refuse(folder, "cannot be read: " + error.message());
   std::ranges::sort(files);
   for (const fs::path& file : files) {
     add(file.lexically_relative(folder).generic_string());

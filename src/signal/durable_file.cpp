@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
+#include "input_file.h"
 #include "kadans/signal/output_file.h"
 
 namespace kadans {
@@ -56,7 +56,7 @@ class Descriptor {
 
  private:
   [[noreturn]] void fail(const char* what) const {
-    throw InputError({.file = path_.string(), .message = what + (": " + std::generic_category().message(errno))});
+    refuse(path_, what + (": " + std::generic_category().message(errno)));
   }
   fs::path path_;
   int file_;
@@ -72,7 +72,7 @@ void replace(const fs::path& file, std::string_view bytes) {
     descriptor.sync();
     std::error_code error;
     fs::rename(temporary, file, error);
-    if (error) throw InputError({.file = file.string(), .message = "cannot be replaced: " + error.message()});
+    if (error) refuse(file, "cannot be replaced: " + error.message());
   } catch (...) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
@@ -96,7 +96,7 @@ fs::path end_of_link(const fs::path& file) {
   std::error_code error;
   for (int i = 0; fs::is_symlink(fs::symlink_status(end, error)); ++i) {
     const fs::path target = fs::read_symlink(end, error);
-    if (error || i == links_max) throw InputError({.file = file.string(), .message = "is a link that leads nowhere"});
+    if (error || i == links_max) refuse(file, "is a link that leads nowhere");
     end = end.parent_path() / target;  // or the target alone, when that is absolute
   }
   return end;
@@ -112,7 +112,7 @@ void write_durably(const fs::path& file, std::string_view bytes) {
 void write_output_file(const std::filesystem::path& file, std::string_view bytes) {
   std::error_code error;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), error);
-  if (error) throw InputError({.file = file.parent_path().string(), .message = "cannot be made: " + error.message()});
+  if (error) refuse(file.parent_path(), "cannot be made: " + error.message());
   write_durably(file, bytes);
 }
 

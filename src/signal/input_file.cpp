@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
+#include "number_text.h"
 #include "owned_descriptor.h"
 
 namespace kadans {
@@ -16,6 +17,7 @@ namespace kadans {
 void refuse(const std::filesystem::path& file, const std::string& why) {
   throw InputError({.file = file.string(), .message = why});
 }
+void refuse(const std::string& why) { throw InputError({.message = why}); }
 
 namespace {
 
@@ -66,19 +68,6 @@ std::string read_input_file(const std::filesystem::path& file, std::size_t size_
 
 void check_input_file(const std::filesystem::path& file) { const OpenFile opened(file); }
 
-namespace {
-
-std::string joined(const std::vector<InputProblem>& problems) {
-  std::string text;
-  for (const InputProblem& problem : problems) {
-    if (!text.empty()) text += '\n';
-    text += problem.text();
-  }
-  return text;
-}
-
-}  // namespace
-
 std::string InputProblem::text() const {
   std::string place = file;
   if (line > 0) place += (file.empty() ? "" : ":") + std::to_string(line);
@@ -89,6 +78,6 @@ std::string InputProblem::text() const {
 InputError::InputError(InputProblem problem) : InputError(std::vector<InputProblem>{std::move(problem)}) {}
 
 InputError::InputError(std::vector<InputProblem> problems)
-    : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
+    : std::runtime_error(listed(problems, &InputProblem::text, "\n")), problems_(std::move(problems)) {}
 
 }  // namespace kadans

@@ -17,7 +17,8 @@ std::string read_input_file(const std::filesystem::path& file, std::size_t size_
 // Throws as read_input_file() does, without reading: for code that reads a file piece by piece.
 void check_input_file(const std::filesystem::path& file);
 
-// Throws InputError: "FILE: why". Also of options: refuse("--seed", ...).
+// Throws InputError: "FILE: why", or "why" alone. Also of options: refuse("--seed", ...).
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why);
+[[noreturn]] void refuse(const std::string& why);
 
 }  // namespace kadans

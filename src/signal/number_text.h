@@ -1,5 +1,5 @@
-// Numbers as text and back, in the same way everywhere: the locale has no influence. A text that is a number only in
-// part is no number, and neither is nan.
+// Numbers and lists as text, and numbers back, in the same way everywhere: the locale has no influence. A text that is
+// a number only in part is no number, and neither is nan.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <functional>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,6 +64,18 @@ std::optional<Number> number_of(std::string_view text, Base... base) {
     if (!std::isfinite(number)) return std::nullopt;
   }
   return number;
+}
+
+// "a, b, c": what `text` makes of each; `last`, when it is given, stands before the last in place of `between`.
+template <typename List, typename Text = std::identity>
+std::string listed(const List& list, Text text = {}, std::string_view between = ", ", std::string_view last = {}) {
+  std::string all;
+  for (auto at = std::begin(list); at != std::end(list); ++at) {
+    const bool ends = !last.empty() && std::next(at) == std::end(list);
+    if (!all.empty()) all += ends ? last : between;
+    all += std::invoke(text, *at);
+  }
+  return all;
 }
 
 // Rounded to so many digits.

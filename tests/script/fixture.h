@@ -11,6 +11,7 @@
 #include "engine/transaction.h"
 #include "script/behavior/behavior.h"
 #include "script/host/script_host.h"
+#include "signal/number_text.h"
 
 namespace kadans::script_test {
 

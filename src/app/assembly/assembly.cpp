@@ -385,7 +385,7 @@ void Assembly::make_joystick_player() {
     joystick_ = std::make_unique<JoystickPlayer>(robot_.config.joystick, joystick.recording, ns(joystick.at_s),
                                                  ns(joystick.lost_at_s));
   } catch (const std::invalid_argument& error) {
-    throw InputError({scenario_.file, joystick.place.line, joystick.place.column, error.what()});
+    refuse(scenario_.file, joystick.place, error.what());
   }
 }
 

@@ -27,6 +27,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// `kadans behavior check | graph | test`: commands for the author of a behavior, before it moves a robot.
+struct BehaviorOptions {
+  std::vector<std::string> files;
+  std::string robot;               // configuration; "": the one for the behavior's folder
+  std::string format = "mermaid";  // format of the graph: mermaid, dot or svg
+  std::string only;                // run only tests whose names contain this
+  std::string junit;
+  bool json = false;
+  bool plugins = false;  // check loads plug-ins
+};
+
 // The test files: the named files, and all *_test.lua in the named folders.
 std::vector<std::string> test_files(const std::vector<std::string>& named) {
   std::vector<std::string> files;
@@ -165,39 +176,37 @@ int run_graph(const BehaviorOptions& options) {
   return exit_passed;
 }
 
-void add_files(CLI::App* command, BehaviorOptions& options, const char* what) {
-  command->add_option("files", options.files, what)->required()->type_name("FILE...");
-  command->add_option("--robot", options.robot, "Robot of the behaviors (default: the one of their folder)")
-      ->type_name("FILE");
+int check_behaviors(const BehaviorOptions& options) {
+  return FileChecks(options.robot, options.plugins).print_all(options.files, true);
 }
 
 }  // namespace
 
-void add_behavior(CLI::App& app, BehaviorOptions& options) {
-  CLI::App* behavior = app.add_subcommand("behavior", "Check, test and draw behaviors");
+void add_behavior(CommandLine& line) {
+  CLI::App* behavior = line.app.add_subcommand("behavior", "Check, test and draw behaviors");
   behavior->require_subcommand(1);
-  CLI::App* check = behavior->add_subcommand("check", "Report mistakes in behaviors, without running them");
-  add_files(check, options, "Behaviors, modules and tests (Lua); folders, patterns");
-  check->add_flag("--plugins", options.plugins, "Load the plug-ins that robots name; this runs code of the plug-ins");
-  CLI::App* test =
-      behavior->add_subcommand("test", "Run tests of behaviors on a robot without physics, in virtual time");
-  add_files(test, options, "Tests (*_test.lua), or folders of them");
-  test->add_option("--only", options.only, "Run only tests whose name, with that of `describe`, contains this text")
+  const auto add = [&](const char* name, const char* doc, int (*does)(const BehaviorOptions&), const char* files) {
+    auto added = line.add<BehaviorOptions>(*behavior, name, doc, does);
+    added.command->add_option("files", added.options.files, files)->required()->type_name("FILE...");
+    added.command
+        ->add_option("--robot", added.options.robot, "Robot of the behaviors (default: the one of their folder)")
+        ->type_name("FILE");
+    return added;
+  };
+  const auto check = add("check", "Report mistakes in behaviors, without running them", check_behaviors,
+                         "Behaviors, modules and tests (Lua); folders, patterns");
+  check.command->add_flag("--plugins", check.options.plugins,
+                          "Load the plug-ins that robots name; this runs code of the plug-ins");
+  const auto [test, tested] = add("test", "Run tests of behaviors on a robot without physics, in virtual time",
+                                  run_tests, "Tests (*_test.lua), or folders of them");
+  test->add_option("--only", tested.only, "Run only tests whose name, with that of `describe`, contains this text")
       ->type_name("TEXT");
-  test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
-  test->add_flag("--json", options.json, "Print one JSON object a test instead of text");
-  CLI::App* graph = behavior->add_subcommand("graph", "Draw a behavior's states and transitions");
-  add_files(graph, options, "Behavior (Lua)");
+  test->add_option("--junit", tested.junit, "Write the results as JUnit XML")->type_name("FILE");
+  test->add_flag("--json", tested.json, "Print one JSON object a test instead of text");
+  const auto [graph, drawn] = add("graph", "Draw a behavior's states and transitions", run_graph, "Behavior (Lua)");
   graph->get_option("files")->expected(1);
-  graph->add_option("--format", options.format, "mermaid (default), dot, or svg (needs Graphviz)")
+  graph->add_option("--format", drawn.format, "mermaid (default), dot, or svg (needs Graphviz)")
       ->check(CLI::IsMember({"mermaid", "dot", "svg"}));
-}
-
-int run_behavior(const CLI::App& app, const BehaviorOptions& options) {
-  const CLI::App* behavior = app.get_subcommand("behavior");
-  if (behavior->got_subcommand("graph")) return run_graph(options);
-  if (behavior->got_subcommand("test")) return run_tests(options);
-  return FileChecks(options.robot, options.plugins).print_all(options.files, true);
 }
 
 }  // namespace kadans

@@ -5,6 +5,7 @@
 #include "config/json/problems.h"
 #include "config/robot/project_root.h"
 #include "decision_stage.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -68,10 +69,9 @@ fs::path only_robot(const fs::path& folder, const std::string& named) {
   const fs::path configs = project_root(folder / "x") / "config";
   const std::vector<fs::path> robots = robots_in(configs);
   if (robots.size() == 1) return robots.front();
-  std::string names;
-  for (const fs::path& robot : robots) names += (names.empty() ? ": " : ", ") + fs::proximate(robot).string();
-  refuse(configs, robots.empty() ? "there is no robot.json in its folders; name one: " + named
-                                 : "there are several robots, name one: " + named + names);
+  if (robots.empty()) refuse(configs, "there is no robot.json in its folders; name one: " + named);
+  const auto shown = [](const fs::path& robot) { return fs::proximate(robot).string(); };
+  refuse(configs, "there are several robots, name one: " + named + ": " + listed(robots, shown));
 }
 
 std::unique_ptr<TestStage> RobotStages::make(const fs::path& behavior, const Options& options) {

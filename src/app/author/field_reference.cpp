@@ -119,12 +119,11 @@ std::string object_reference(const fs::path& root) {
       "or set-point that each joint of an object has stands once. [control.md](control.md) is the guide.\n";
   for (const auto& [type, rows] : types) {
     known.erase(type);
-    text += "\n## " + type + "\n\nUsed by: " + listed({rows.robots.begin(), rows.robots.end()}) + ".\n";
+    text += "\n## " + type + "\n\nUsed by: " + listed(rows.robots) + ".\n";
     add_table("parameter", rows.parameters, text);
     add_table("set-point", rows.setpoints, text);
   }
-  if (!known.empty())
-    text += "\n## Others\n\nNone of these robots uses: " + listed({known.begin(), known.end()}) + ".\n";
+  if (!known.empty()) text += "\n## Others\n\nNone of these robots uses: " + listed(known) + ".\n";
   return text;
 }
 

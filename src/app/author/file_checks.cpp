@@ -10,9 +10,9 @@
 
 #include <glob.h>
 
-#include "app/commands.h"
 #include "app/sim/played_behaviors.h"
 #include "app/sim/repeated_run.h"
+#include "app/sweep/sweep_subjects.h"
 #include "app/terminal.h"
 #include "behavior_stage.h"
 #include "config/robot/project_root.h"
@@ -24,6 +24,7 @@
 #include "robot_description.h"
 #include "scenario/judge/checks.h"
 #include "script/check/check_behavior.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 
@@ -173,10 +174,8 @@ std::string FileChecks::check_description_of(const fs::path& file) {
     motors += joint.passive() ? 0 : 1;
     mimics += joint.mimic ? 1 : 0;
   }
-  char text[128];
-  std::snprintf(text, sizeof text, "robot description: %zu links, %zu joints, %zu motors, %.3f kg", model.links.size(),
-                model.joints.size(), motors, model.mass_kg());
-  std::string what = text;
+  std::string what = printed("robot description: %zu links, %zu joints, %zu motors, %.3f kg", model.links.size(),
+                             model.joints.size(), motors, model.mass_kg());
   if (mimics > 0) what += "; " + std::to_string(mimics) + " joints mimic others";
   return with_warnings(what, warnings);
 }

@@ -12,6 +12,9 @@ namespace kadans {
 // "kadans sim".
 std::string man_page(const CLI::App& command, const std::string& words);
 
+// completion.cpp. The script by which a shell ("bash" or "zsh") completes the program's commands.
+std::string completion_script(const CLI::App& program, const std::string& shell);
+
 // All commands of the program.
 std::string command_reference(const CLI::App& program);
 

@@ -15,11 +15,21 @@
 #include "behavior_stage.h"
 #include "config/robot/project_root.h"
 #include "script/console/console.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
+
+// `kadans repl`: a console in a simulation. On a terminal the simulation runs at the pace of the wall clock meanwhile.
+// From a pipe time passes only by `:run`, so the output is repeatable.
+struct ReplOptions {
+  std::string scenario;  // "": the project's only robot, and nothing plays
+  std::string play;      // replaces the scenario's list
+  std::optional<std::uint64_t> seed;
+  double speed = 1;  // on a terminal: simulated seconds per second; 0: time passes only by :run
+};
 
 constexpr int frame_ms = 10;           // between checks of the keyboard
 constexpr double behind_max_s = 0.25;  // on a slow machine the simulation falls behind, not the keyboard
@@ -41,9 +51,7 @@ class Chatter final : public LineSink {
  public:
   void tell(const Line& line) override {
     if (line.transition != nullptr) return;
-    char time[32];
-    std::snprintf(time, sizeof time, "%8.2f s  ", 1e-9 * static_cast<double>(line.time_ns));
-    said_.append(time).append(line.behavior);
+    said_.append(printed("%8.2f s  ", 1e-9 * static_cast<double>(line.time_ns))).append(line.behavior);
     said_.append(line.severity == BehaviorLog::Severity::error ? ": error: " : ": ").append(line.text).append("\n");
   }
   std::string take() {
@@ -158,11 +166,17 @@ class Repl {
   double due_s_ = 0;
 };
 
+int run_repl(const ReplOptions& options) {
+  Repl repl(options);
+  catch_interrupts();
+  return isatty(STDIN_FILENO) == 1 ? repl.from_terminal() : repl.from_pipe();
+}
+
 }  // namespace
 
-void add_repl(CLI::App& app, ReplOptions& options) {
-  CLI::App* repl =
-      app.add_subcommand("repl", "Open a console in a simulation: read signals, command the robot, play behaviors");
+void add_repl(CommandLine& line) {
+  const auto [repl, options] = line.add<ReplOptions>(
+      "repl", "Open a console in a simulation: read signals, command the robot, play behaviors", run_repl);
   repl->add_option("scenario", options.scenario, "Scenario file (default: the project's robot, nothing plays)")
       ->type_name("FILE");
   repl->add_option("--play", options.play, "Behaviors to play instead of the scenario's: \"squat, wave\"")
@@ -171,12 +185,6 @@ void add_repl(CLI::App& app, ReplOptions& options) {
   add_number(*repl, "--speed", options.speed, 0.0, 1000.0, "X",
              "Speed on a terminal as a multiple of the wall clock's; 0: time passes by :run only (default: 1)");
   repl->footer("Type :help. With input from a pipe, time passes by :run only, and a wrong line makes the exit code 1.");
-}
-
-int run_repl(const ReplOptions& options) {
-  Repl repl(options);
-  catch_interrupts();
-  return isatty(STDIN_FILENO) == 1 ? repl.from_terminal() : repl.from_pipe();
 }
 
 }  // namespace kadans

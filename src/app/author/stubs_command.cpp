@@ -21,6 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// `kadans lua-stubs` and `kadans params`: show the tables of a robot and of a behavior, for editors and for people.
+struct StubsOptions {
+  std::string robot, output = ".";
+  bool markdown = false;
+};
+
+struct ParamsOptions {
+  std::string file, robot;
+  bool json = false;
+};
+
 constexpr const char* luarc = R"({
   "runtime.version": "LuaJIT",
   "workspace.library": ["."],
@@ -85,9 +96,7 @@ nlohmann::ordered_json json_of(const ScriptArgument& argument) {
 
 // "0.02..0.2", "one of left, right", "any text".
 std::string allowed_by(const ScriptArgument& argument) {
-  std::string choices;
-  for (const std::string& choice : argument.one_of) choices += (choices.empty() ? "one of " : ", ") + choice;
-  if (!choices.empty()) return choices;
+  if (!argument.one_of.empty()) return "one of " + listed(argument.one_of);
   const bool bounded = std::isfinite(argument.min) || std::isfinite(argument.max);
   return bounded ? printed("%g..%g", argument.min, argument.max) : std::string("any ") + type_of(argument);
 }
@@ -107,16 +116,6 @@ void print_json(const Tables& tables) {
   std::puts(json_text(all).c_str());
 }
 
-}  // namespace
-
-void add_stubs(CLI::App& app, StubsOptions& options) {
-  CLI::App* stubs = app.add_subcommand("lua-stubs", "Write the files with which editors complete and check behaviors");
-  stubs->add_option("--robot", options.robot, "Robot whose names they contain (default: the only one of the project)")
-      ->type_name("FILE");
-  stubs->add_option("--output", options.output, "Folder for kadans.lua and .luarc.json")->type_name("DIR");
-  stubs->add_flag("--markdown", options.markdown, "Print the reference instead");
-}
-
 int run_stubs(const StubsOptions& options) {
   if (options.markdown) {
     std::fputs(api_reference(project_root(fs::current_path() / "behaviors")).c_str(), stdout);
@@ -129,17 +128,6 @@ int run_stubs(const StubsOptions& options) {
   write_durably(fs::path(options.output) / ".luarc.json", luarc);
   std::printf("wrote %s and .luarc.json\n", (fs::path(options.output) / "kadans.lua").c_str());
   return exit_passed;
-}
-
-void add_params(CLI::App& app, ParamsOptions& options) {
-  CLI::App* params =
-      app.add_subcommand("params", "List the parameters of a behavior or a robot, and a behavior's arguments");
-  params->add_option("file", options.file, "Behavior (Lua) or robot configuration (JSON)")
-      ->required()
-      ->type_name("FILE");
-  params->add_option("--robot", options.robot, "Robot of the behavior (default: the one of its folder)")
-      ->type_name("FILE");
-  params->add_flag("--json", options.json, "Print one JSON array instead of text");
 }
 
 int run_params(const ParamsOptions& options) {
@@ -160,6 +148,28 @@ int run_params(const ParamsOptions& options) {
                allowed_by(argument) + "  " + argument.doc + "\n");
   }
   return exit_passed;
+}
+
+}  // namespace
+
+void add_stubs(CommandLine& line) {
+  const auto [stubs, options] =
+      line.add<StubsOptions>("lua-stubs", "Write the files with which editors complete and check behaviors", run_stubs);
+  stubs->add_option("--robot", options.robot, "Robot whose names they contain (default: the only one of the project)")
+      ->type_name("FILE");
+  stubs->add_option("--output", options.output, "Folder for kadans.lua and .luarc.json")->type_name("DIR");
+  stubs->add_flag("--markdown", options.markdown, "Print the reference instead");
+}
+
+void add_params(CommandLine& line) {
+  const auto [params, options] = line.add<ParamsOptions>(
+      "params", "List the parameters of a behavior or a robot, and a behavior's arguments", run_params);
+  params->add_option("file", options.file, "Behavior (Lua) or robot configuration (JSON)")
+      ->required()
+      ->type_name("FILE");
+  params->add_option("--robot", options.robot, "Robot of the behavior (default: the one of its folder)")
+      ->type_name("FILE");
+  params->add_flag("--json", options.json, "Print one JSON array instead of text");
 }
 
 }  // namespace kadans

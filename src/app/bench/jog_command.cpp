@@ -18,6 +18,15 @@
 namespace kadans {
 namespace {
 
+struct JogOptions {
+  std::string robot, joint;
+  std::string plant = "bullet";
+  std::string peer;          // address of the drives; "": the robot's own
+  std::string imu;           // serial port of the IMU beside them; "": the robot's own
+  double share = 0.1;        // of the joint's greatest torque
+  double speed_rad_s = 0.5;  // at which none is left
+};
+
 constexpr double stop_margin_rad = 0.05;
 constexpr std::int64_t told_every_ns = 100'000'000;
 
@@ -94,10 +103,18 @@ class JogRun {
   bool failed_ = false;
 };
 
+int run_jog(const JogOptions& options) {
+  require_kind(options.robot, JsonKind::robot);
+  JogRun run(options);
+  catch_interrupts();
+  return run.run();
+}
+
 }  // namespace
 
-void add_jog(CLI::App& app, JogOptions& options) {
-  CLI::App* jog = app.add_subcommand("jog", "Move one joint at a low torque while a key is held; all others are off");
+void add_jog(CommandLine& line) {
+  const auto [jog, options] =
+      line.add<JogOptions>("jog", "Move one joint at a low torque while a key is held; all others are off", run_jog);
   jog->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
   jog->add_option("joint", options.joint, "The joint")->required()->type_name("NAME");
   jog->add_option("--plant", options.plant, "Plant to drive (default: bullet, its model)")->type_name("TYPE");
@@ -108,13 +125,6 @@ void add_jog(CLI::App& app, JogOptions& options) {
              "Torque, as a share of the joint's greatest (default: 0.1)");
   add_number(*jog, "--speed", options.speed_rad_s, 0.01, 10.0, "X",
              "Speed in rad/s at which no torque is left (default: 0.5)");
-}
-
-int run_jog(const JogOptions& options) {
-  require_kind(options.robot, JsonKind::robot);
-  JogRun run(options);
-  catch_interrupts();
-  return run.run();
 }
 
 }  // namespace kadans

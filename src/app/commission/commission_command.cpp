@@ -17,6 +17,17 @@
 namespace kadans {
 namespace {
 
+struct CommissionOptions {
+  std::string robot;
+  std::string plant;  // "": the only type with wiring that the robot's configuration has
+  std::string peer;   // address of the drives; "": the robot's own
+  double share = 0.1;
+  std::vector<std::string> steps;  // none: all
+  std::vector<std::string> joints;
+  std::string answers;  // file of lines; "": the terminal, or lines of the standard input
+  bool again = false;
+};
+
 // The only type of plant with wiring that the robot's configuration describes.
 std::string wired_plant(const std::string& file) {
   const Robot robot = read_robot(file);
@@ -31,33 +42,6 @@ std::string wired_plant(const std::string& file) {
   refuse(file, types.empty() ? "describes no drives on a bus, such as plant.hm2-eth "
                                "(docs/hostmot2.md) or plant.dynamixel (docs/dynamixel.md)"
                              : "describes drives on several buses: --plant says which");
-}
-
-}  // namespace
-
-void add_commission(CLI::App& app, CommissionOptions& options) {
-  CLI::App* command = app.add_subcommand(
-      "commission",
-      "Find out which drive is which joint, its signs, zero, limits, scale and gains, and write them down");
-  command->add_option("robot", options.robot, "The robot's configuration (JSON); what is found is written into it")
-      ->required()
-      ->type_name("FILE");
-  command->add_option("joints", options.joints, "Only these joints (default: all that have a motor)")
-      ->type_name("NAME");
-  command->add_option("--plant", options.plant, "How its drives are reached (default: what the configuration has)")
-      ->type_name("TYPE");
-  command->add_option("--peer", options.peer, "Address of the drives (default: the configuration's)")
-      ->type_name("HOST:PORT");
-  add_number(*command, "--share", options.share, 0.001, 0.5, "X",
-             "No joint ever gets more than this share of its torque (default: 0.1)");
-  command->add_option("--steps", options.steps, "Only these steps, as in names,direction (default: all)")
-      ->type_name("LIST")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember(commission_steps()));
-  command->add_flag("--again", options.again, "Forget what was done, and begin anew");
-  command->add_option("--answers", options.answers, "Answers from this file, a line each, instead of the terminal")
-      ->type_name("FILE");
 }
 
 int run_commission(const CommissionOptions& options) {
@@ -87,6 +71,34 @@ int run_commission(const CommissionOptions& options) {
   }
   person->hear("All is done.");
   return exit_passed;
+}
+
+}  // namespace
+
+void add_commission(CommandLine& line) {
+  const auto [command, options] = line.add<CommissionOptions>(
+      "commission",
+      "Find out which drive is which joint, its signs, zero, limits, scale and gains, and write them down",
+      run_commission);
+  command->add_option("robot", options.robot, "The robot's configuration (JSON); what is found is written into it")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("joints", options.joints, "Only these joints (default: all that have a motor)")
+      ->type_name("NAME");
+  command->add_option("--plant", options.plant, "How its drives are reached (default: what the configuration has)")
+      ->type_name("TYPE");
+  command->add_option("--peer", options.peer, "Address of the drives (default: the configuration's)")
+      ->type_name("HOST:PORT");
+  add_number(*command, "--share", options.share, 0.001, 0.5, "X",
+             "No joint ever gets more than this share of its torque (default: 0.1)");
+  command->add_option("--steps", options.steps, "Only these steps, as in names,direction (default: all)")
+      ->type_name("LIST")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(commission_steps()));
+  command->add_flag("--again", options.again, "Forget what was done, and begin anew");
+  command->add_option("--answers", options.answers, "Answers from this file, a line each, instead of the terminal")
+      ->type_name("FILE");
 }
 
 }  // namespace kadans

@@ -6,14 +6,13 @@
 
 #include "app/terminal.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
 
 void show_question(const Question& question) {
-  std::string text = question.text;
-  for (const std::string& one : question.answers) text += (&one == question.answers.data() ? " [" : ", ") + one;
-  print_text(text + (question.answers.empty() ? "\n" : "]\n"));
+  print_text(question.text + (question.answers.empty() ? "" : " [" + listed(question.answers) + "]") + "\n");
   std::fflush(stdout);
 }
 

@@ -148,9 +148,8 @@ void write_gains(CommissionStep& step, std::size_t joint, const Gains& gains, co
   }
   step.wiring.write();
   step.done(joint, "written");
-  std::string who;
-  for (const GainFields& fields : all) who += (who.empty() ? "" : ", ") + fields.of;
-  step.session.tell("joint '" + step.joint_name(joint) + "': " + told(gains) + " are written for " + who);
+  step.session.tell("joint '" + step.joint_name(joint) + "': " + told(gains) + " are written for " +
+                    listed(all, &GainFields::of));
 }
 
 void find_joint_gains(CommissionStep& step, const ParameterTable& parameters, std::size_t joint, double inertia_kg_m2,

@@ -6,17 +6,21 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/command_line.h"
+#include "app/author/reference_pages.h"
 #include "app/commands.h"
 #include "remote/order/order.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
 
+struct CompletionOptions {
+  std::string shell;  // "bash" or "zsh"
+};
+
 std::string subcommands_of(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* command : visible_below(app)) names += (names.empty() ? "" : " ") + command->get_name();
-  return names;
+  return listed(
+      visible_below(app), [](const CLI::App* command) { return command->get_name(); }, " ");
 }
 
 std::string options_of(const CLI::App& app) {
@@ -85,11 +89,6 @@ if [[ $funcstack[1] == _kadans ]]; then _kadans "$@"; elif (( $+functions[compde
 
 }  // namespace
 
-void add_completion(CLI::App& app, CompletionOptions& options) {
-  CLI::App* completion = app.add_subcommand("completion", "Print the completion script of a shell");
-  completion->add_option("shell", options.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
-}
-
 std::string completion_script(const CLI::App& app, const std::string& shell) {
   const bool bash = shell == "bash";
   std::string text = bash ? "" : "#compdef kadans\n";
@@ -109,9 +108,19 @@ std::string completion_script(const CLI::App& app, const std::string& shell) {
   return text;
 }
 
-int run_completion(const CLI::App& app, const CompletionOptions& options) {
-  std::fputs(completion_script(app, options.shell).c_str(), stdout);
+namespace {
+
+int run_completion(const CommandLine& line, const CompletionOptions& options) {
+  std::fputs(completion_script(line.app, options.shell).c_str(), stdout);
   return 0;
+}
+
+}  // namespace
+
+void add_completion(CommandLine& line) {
+  const auto [completion, options] =
+      line.add<CompletionOptions>("completion", "Print the completion script of a shell", run_completion);
+  completion->add_option("shell", options.shell, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
 }
 
 }  // namespace kadans

@@ -17,10 +17,10 @@
 #include "app/push/remote_host.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
-#include "kadans/signal/input_error.h"
 #include "remote/ctl/ctl_folder.h"
 #include "remote/order/order.h"
 #include "remote/order/order_json.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -28,19 +28,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// `kadans ctl`: talks to a running instance.
+struct CtlOptions {
+  std::string socket;  // "": the usual places
+  std::string host;    // "": this computer
+  bool json = false;
+  bool names = false;                                                               // list only the names
+  std::optional<long> count;                                                        // of samples; nullopt: until Ctrl-C
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> given{};  // by verb and argument
+};
+
 constexpr std::size_t column_max = 48;
 
-std::string number(const Json& value) {
-  if (!value.is_number()) return "nan";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value.get<double>());
-  return text;
-}
+std::string number(const Json& value) { return value.is_number() ? printed("%.6g", value.get<double>()) : "nan"; }
 
 std::string joined(const Json& texts) {
-  std::string all;
-  for (const Json& text : texts) all += (all.empty() ? "" : ", ") + text.get<std::string>();
-  return all;
+  return listed(texts, [](const Json& text) { return text.get<std::string>(); });
 }
 
 // Rows of cells, each column as wide as its widest.
@@ -75,9 +78,8 @@ std::string behavior_text(const Json& behavior) {
 }
 
 std::string status_text(const Json& answer) {
-  char head[128];
-  std::snprintf(head, sizeof head, "%.2f s, tick %lld", answer.at("time_s").get<double>(),
-                static_cast<long long>(answer.at("tick").get<std::int64_t>()));
+  const std::string head = printed("%.2f s, tick %lld", answer.at("time_s").get<double>(),
+                                   static_cast<long long>(answer.at("tick").get<std::int64_t>()));
   std::string text = answer.at("name").get<std::string>() + " (" + answer.at("mode").get<std::string>() + ", process " +
                      std::to_string(answer.at("pid").get<int>()) + "): " + head + "\n";
   const Json& safety = answer.at("safety");
@@ -223,9 +225,7 @@ std::string watch_head(const Json& answer) {
 
 // Without a newline.
 std::string watch_line(const Json& sample) {
-  char time[32];
-  std::snprintf(time, sizeof time, "%.3f", sample.at("time_s").get<double>());
-  std::string text = time;
+  std::string text = printed("%.3f", sample.at("time_s").get<double>());
   for (const Json& value : sample.at("values")) text += "\t" + number(value);
   return text;
 }
@@ -233,11 +233,14 @@ std::string watch_line(const Json& sample) {
 constexpr int answer_ms = 15'000;  // longer than the server waits for the behavior thread
 constexpr int keys_ms = 100;
 
-Json ask(CtlLink& link, const char* verb, const std::string& text) {
-  link.send(json_text(Json{{"verb", verb}, {"text", text}}));
+std::string answer_to(const Json& request, CtlLink& link) {
+  link.send(json_text(request));
   const std::optional<std::string> line = link.receive(answer_ms);
-  if (!line) throw InputError({.message = "the instance does not answer"});
-  return parse_foreign_json(*line);
+  if (!line) refuse("the instance does not answer");
+  return *line;
+}
+Json ask(CtlLink& link, const char* verb, const std::string& text) {
+  return parse_foreign_json(answer_to({{"verb", verb}, {"text", text}}, link));
 }
 
 int from_pipe(CtlLink& link) {
@@ -326,12 +329,10 @@ int talk_to_console(const CtlOptions& options) {
 
 int talk(const OrderInfo& order, const CtlOptions& options) {
   CtlLink link(options.socket, order.role);
-  link.send(json_text(request_of(order, options)));
-  const std::optional<std::string> line = link.receive(answer_ms);
-  if (!line) throw InputError({.message = "the instance does not answer"});
-  const Json answer = parse_foreign_json(*line);
+  const std::string line = answer_to(request_of(order, options), link);
+  const Json answer = parse_foreign_json(line);
   if (!answer.value("ok", false)) {
-    if (options.json) print_text(*line + "\n");
+    if (options.json) print_text(line + "\n");
     print_error(answer.value("error", "refused"));
     return exit_failed;
   }
@@ -340,7 +341,7 @@ int talk(const OrderInfo& order, const CtlOptions& options) {
     for (const Json& item : answer.at("items")) print_text(item.at("name").get<std::string>() + "\n");
     return exit_passed;
   }
-  print_text(options.json ? *line + "\n" : answer_text(order.words, answer));
+  print_text(options.json ? line + "\n" : answer_text(order.words, answer));
   return exit_passed;
 }
 
@@ -398,10 +399,37 @@ void add(CLI::App& ctl, const OrderInfo& order, CtlOptions& options) {
   }
 }
 
+// The words of the command line without --host and its value.
+std::vector<std::string> without_host(std::vector<std::string> words) {
+  const auto found = std::ranges::find_if(
+      words, [](const std::string& word) { return word == "--host" || word.starts_with("--host="); });
+  if (found == words.end()) return words;
+  const bool two = *found == "--host" && std::next(found) != words.end();
+  words.erase(found, found + (two ? 2 : 1));
+  return words;
+}
+
+int run_ctl(const CommandLine& line, const CtlOptions& options) {
+  if (!options.host.empty()) {
+    const std::vector<std::string> words(line.arguments().begin() + 1, line.arguments().end());
+    return RemoteHost(options.host).run(without_host(words), STDIN_FILENO, true);
+  }
+  std::string verb;
+  for (const CLI::App* at = line.app.get_subcommand("ctl"); !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    verb += (verb.empty() ? "" : " ") + at->get_name();
+  }
+  if (verb == console) return talk_to_console(options);
+  for (const OrderInfo& order : order_table::orders) {
+    if (verb == order.words) return talk(order, options);
+  }
+  return exit_usage;
+}
+
 }  // namespace
 
-void add_ctl(CLI::App& app, CtlOptions& options) {
-  CLI::App* ctl = app.add_subcommand("ctl", "Read, command and tune a running instance");
+void add_ctl(CommandLine& line) {
+  const auto [ctl, options] = line.add<CtlOptions>("ctl", "Read, command and tune a running instance", run_ctl);
   ctl->require_subcommand(1)->fallthrough();
   ctl->add_option("--socket", options.socket,
                   "Folder of the instance's sockets, or one socket (default: see docs/ctl.md)")
@@ -415,39 +443,8 @@ void add_ctl(CLI::App& app, CtlOptions& options) {
   ctl->add_subcommand(console, console_doc)->fallthrough();
   ctl->get_subcommand("list")->add_flag("--names", options.names, "Print only names, one a line");
   ctl->get_subcommand("list")->get_option("what")->check(CLI::IsMember(list_kinds()));
-  ctl->get_subcommand("watch")
-      ->add_option("--count", options.count, "End after N samples")
-      ->type_name("N")
-      ->check(whole_within(1, 1'000'000'000));
+  add_whole(*ctl->get_subcommand("watch"), "--count", options.count, 1, 1'000'000'000, "End after N samples");
   ctl->footer("Exit codes: 0 done, 1 refused, 2 wrong usage or no instance. docs/ctl.md tells of roles and sockets.");
-}
-
-namespace {
-
-// The words of the command line without --host and its value.
-std::vector<std::string> without_host(std::vector<std::string> words) {
-  const auto found = std::ranges::find_if(
-      words, [](const std::string& word) { return word == "--host" || word.starts_with("--host="); });
-  if (found == words.end()) return words;
-  const bool two = *found == "--host" && std::next(found) != words.end();
-  words.erase(found, found + (two ? 2 : 1));
-  return words;
-}
-
-}  // namespace
-
-int run_ctl(const CLI::App& app, const CtlOptions& options, const std::vector<std::string>& words) {
-  if (!options.host.empty()) return RemoteHost(options.host).run(without_host(words), STDIN_FILENO, true);
-  std::string verb;
-  for (const CLI::App* at = app.get_subcommand("ctl"); !at->get_subcommands().empty();) {
-    at = at->get_subcommands().front();
-    verb += (verb.empty() ? "" : " ") + at->get_name();
-  }
-  if (verb == console) return talk_to_console(options);
-  for (const OrderInfo& order : order_table::orders) {
-    if (verb == order.words) return talk(order, options);
-  }
-  return exit_usage;
 }
 
 }  // namespace kadans

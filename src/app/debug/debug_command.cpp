@@ -43,11 +43,21 @@ int accepted_editor(int port) {
   return editor;
 }
 
+// The editor gets the protocol on stdout, so nothing else is printed there.
+int run_debug(const DebugOptions& options) {
+  if (options.port && options.file.empty())  // whoever connects does not choose what runs
+    refuse("--port", "name the scenario or record, too");
+  std::signal(SIGPIPE, SIG_IGN);
+  const int editor = options.port ? accepted_editor(*options.port) : -1;
+  const DapStream stream = editor < 0 ? DapStream(STDIN_FILENO, STDOUT_FILENO) : DapStream(editor, editor);
+  return DebugSession(options, stream).run();
+}
+
 }  // namespace
 
-void add_debug(CLI::App& app, DebugOptions& options) {
-  CLI::App* debug = app.add_subcommand(
-      "debug", "Let an editor debug the behaviors of a simulation or a record, forwards and backwards");
+void add_debug(CommandLine& line) {
+  const auto [debug, options] = line.add<DebugOptions>(
+      "debug", "Let an editor debug the behaviors of a simulation or a record, forwards and backwards", run_debug);
   debug->add_option("file", options.file, "Scenario (JSON) or record (MCAP); default: what the editor launches")
       ->type_name("FILE");
   add_whole(*debug, "--port", options.port, 0, 65535,
@@ -57,16 +67,6 @@ void add_debug(CLI::App& app, DebugOptions& options) {
   debug->add_flag("--from-record", options.from_record, "Use the files inside the record, not those on the disk");
   debug->add_flag("--allow-plugins", options.allow_plugins,
                   "Load the project's plug-ins, even if they differ from the record's");
-}
-
-// The editor gets the protocol on stdout, so nothing else is printed there.
-int run_debug(const DebugOptions& options) {
-  if (options.port && options.file.empty())  // whoever connects does not choose what runs
-    refuse("--port", "name the scenario or record, too");
-  std::signal(SIGPIPE, SIG_IGN);
-  const int editor = options.port ? accepted_editor(*options.port) : -1;
-  const DapStream stream = editor < 0 ? DapStream(STDIN_FILENO, STDOUT_FILENO) : DapStream(editor, editor);
-  return DebugSession(options, stream).run();
 }
 
 }  // namespace kadans

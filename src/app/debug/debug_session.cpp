@@ -175,18 +175,19 @@ Json DebugSession::initialize(const Json& arguments) {
 Json DebugSession::launch(const Json& arguments) {
   if (doing_ != Doing::nothing) refuse_it("the run is there already");
   DebugLaunch launch;
-  launch.scenario = arguments.value("program", options_.file);
-  launch.play = arguments.value("play", "");
-  launch.set = arguments.value("set", std::vector<std::string>());
+  RunChoices& choices = launch.choices;
+  launch.file = arguments.value("program", options_.file);
+  choices.play = arguments.value("play", "");
+  choices.set = arguments.value("set", std::vector<std::string>());
   launch.from_record = arguments.value("fromRecord", options_.from_record);
   launch.allow_plugins = options_.allow_plugins;
-  if (arguments.contains("seed")) launch.seed = whole_number(arguments.at("seed"));
-  if (arguments.contains("duration")) launch.duration_s = arguments.at("duration").get<double>();
-  if (launch.duration_s && !(*launch.duration_s > 0 && *launch.duration_s <= scenario_duration_max_s))
+  if (arguments.contains("seed")) choices.seed = whole_number(arguments.at("seed"));
+  if (arguments.contains("duration")) choices.duration_s = arguments.at("duration").get<double>();
+  if (choices.duration_s && !(*choices.duration_s > 0 && *choices.duration_s <= scenario_duration_max_s))
     refuse_it("duration must be a number of seconds above 0");
-  if (options_.port && launch.scenario != options_.file)
+  if (options_.port && launch.file != options_.file)
     refuse_it("at a port, the command line says what runs: " + options_.file);
-  if (launch.scenario.empty()) refuse_it("name a scenario or a record, as \"program\" or on the command line");
+  if (launch.file.empty()) refuse_it("name a scenario or a record, as \"program\" or on the command line");
   stop_on_entry_ = arguments.value("stopOnEntry", false);
   stop_at_end_ = arguments.value("stopAtEnd", false);
   subject_.emplace(debug_subject(std::move(launch)));

@@ -19,6 +19,14 @@
 
 namespace kadans {
 
+// `kadans debug`: serves the Debug Adapter Protocol for a simulation or the repetition of a record (docs/debugging.md).
+struct DebugOptions {
+  std::string file;         // scenario or record; "": the client names it
+  std::optional<int> port;  // of this machine, for one client; nullopt: stdin and stdout
+  double memory_MB = 1024;  // of all processes of the run
+  bool from_record = false, allow_plugins = false;
+};
+
 std::uint64_t whole_number(const Json& json);  // throws std::runtime_error
 
 class DebugSession {

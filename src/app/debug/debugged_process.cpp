@@ -57,7 +57,7 @@ Json description(Assembly& assembly, const DebugSubject& subject) {
   };
   describe(assembly);
   for (const auto& other : assembly.others()) describe(*other);
-  return {{"file", fs::absolute(subject.launch.scenario).lexically_normal().string()},
+  return {{"file", fs::absolute(subject.launch.file).lexically_normal().string()},
           {"root", root.string()},
           {"sources", sources},
           {"states", states}};
@@ -75,7 +75,7 @@ std::string judgement(const RunResult& result) {
 
 void simulate(RunChannel& channel, const DebugSubject& subject, const RunChoices& choices) {
   ScenarioConfig scenario = read_scenario(choices);
-  if (subject.recorded) add_ordered_events(subject.inputs, subject.launch.scenario, scenario);
+  if (subject.recorded) add_ordered_events(subject.inputs, subject.launch.file, scenario);
   RunLog log({}, lines_kept);
   Assembly assembly(scenario, choices.seed.value_or(scenario.seed), log);
   if (!subject.recorded) refuse_faulty_behaviors(scenario, assembly.catalog());
@@ -94,9 +94,9 @@ void simulate(RunChannel& channel, const DebugSubject& subject, const RunChoices
 
 // A run on threads: its files come out of the record.
 void repeat(RunChannel& channel, const DebugSubject& subject) {
-  const ScenarioConfig scenario = unpacked_scenario(subject.inputs, subject.launch.scenario, *subject.unpacked);
+  const ScenarioConfig scenario = unpacked_scenario(subject.inputs, subject.launch.file, *subject.unpacked);
   RepeatedRun repeated(
-      subject.launch.scenario, scenario, *subject.unpacked, subject.inputs.fact("root"),
+      subject.launch.file, scenario, *subject.unpacked, subject.inputs.fact("root"),
       played_elsewhere(subject.inputs) ? RepeatedRun::Behaviors::none : RepeatedRun::Behaviors::compared);
   DebuggedRun run(channel, repeated.assembly(), repeated.log(), nullptr);
   run.begin(description(repeated.assembly(), subject));
@@ -109,14 +109,16 @@ void repeat(RunChannel& channel, const DebugSubject& subject) {
 
 void debug(RunChannel& channel, const DebugSubject& subject) {
   const DebugLaunch& launch = subject.launch;
+  RunChoices choices = launch.choices;
+  choices.scenario = launch.file;
   if (!subject.recorded) {
-    require_kind(launch.scenario, JsonKind::scenario);
-    return simulate(channel, subject, launch);
+    require_kind(launch.file, JsonKind::scenario);
+    return simulate(channel, subject, choices);
   }
   if (subject.inputs.fact("clock") == clock_of_threads) return repeat(channel, subject);
-  RunChoices choices = choices_of(subject.inputs.run, launch.scenario);
+  choices = choices_of(subject.inputs.run, launch.file);
   const UnpackedInputs* const unpacked = subject.unpacked.get();
-  choices.scenario = unpacked ? unpacked->scenario().string() : find_scenario(subject.inputs, launch.scenario).string();
+  choices.scenario = unpacked ? unpacked->scenario().string() : find_scenario(subject.inputs, launch.file).string();
   choices.plugins = unpacked ? unpacked->plugins() : plugins_beside(choices.scenario, launch.allow_plugins);
   simulate(channel, subject, choices);
 }
@@ -125,10 +127,11 @@ void debug(RunChannel& channel, const DebugSubject& subject) {
 
 DebugSubject debug_subject(DebugLaunch launch) {
   DebugSubject subject{.launch = std::move(launch)};
-  const std::string& file = subject.launch.scenario;
+  const std::string& file = subject.launch.file;
+  const RunChoices& choices = subject.launch.choices;
   subject.recorded = is_record(file);
   if (!subject.recorded) return subject;
-  if (subject.launch.seed || subject.launch.duration_s || !subject.launch.play.empty() || !subject.launch.set.empty())
+  if (choices.seed || choices.duration_s || !choices.play.empty() || !choices.set.empty())
     refuse(file, "is a record, which says itself what was played, and with which seed");
   subject.inputs = read_front(file);
   if (subject.launch.from_record || subject.inputs.fact("clock") == clock_of_threads)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "app/run/run_choices.h"
 #include "app/sim/input_files.h"
@@ -9,7 +10,9 @@
 
 namespace kadans {
 
-struct DebugLaunch : RunChoices {  // its scenario may also be a record
+struct DebugLaunch {
+  std::string file;    // scenario or record
+  RunChoices choices;  // for a scenario
   bool from_record = false, allow_plugins = false;
 };
 

@@ -8,7 +8,7 @@
 namespace kadans {
 namespace {
 
-constexpr std::size_t measured_every = 16, least = 8, most_of_all = 300;
+constexpr std::size_t measured_every = 16, copies_least = 8, most_of_all = 300;
 constexpr std::uint64_t beside_ticks = 4;
 
 // Its share of the memory of all copies; 0: not known.
@@ -57,7 +57,7 @@ void RunCopies::add(RunCopy copy, const RunPosition& near) {
     for (const RunCopy& one : all_) bytes += memory_of(one.pid);
     const double each = bytes / static_cast<double>(all_.size());
     most_ = each > 0 ? static_cast<std::size_t>(memory_bytes_ / each) : most_of_all / 4;
-    most_ = std::clamp(most_, least, most_of_all);
+    most_ = std::clamp(most_, copies_least, most_of_all);
   }
   while (all_.size() > most_) thin(near);
 }

@@ -20,6 +20,7 @@
 #include "realtime/machine/child_process.h"
 #include "record_meshes.h"
 #include "remote/page/page_files.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -123,11 +124,11 @@ class Frames {
     const auto end = std::chrono::steady_clock::now() + patience;
     while (waiting_.empty() && !done_ && problem_.empty()) {
       if (came_.wait_for(lock, look_for_pictures) == std::cv_status::no_timeout) continue;
-      if (interrupted()) throw InputError({.message = "interrupted"});
-      if (!chromium.runs()) throw InputError({.message = "chromium ended before the picture was drawn"});
-      if (std::chrono::steady_clock::now() > end) throw InputError({.message = "chromium draws nothing"});
+      if (interrupted()) refuse("interrupted");
+      if (!chromium.runs()) refuse("chromium ended before the picture was drawn");
+      if (std::chrono::steady_clock::now() > end) refuse("chromium draws nothing");
     }
-    if (!problem_.empty()) throw InputError({.message = problem_});
+    if (!problem_.empty()) refuse(problem_);
     return std::exchange(waiting_, {});
   }
 
@@ -154,7 +155,7 @@ std::string pictures_missing() {
 
 void draw_record(const PictureOptions& options,
                  const std::function<void(const std::string& name, std::string bytes)>& take) {
-  if (const std::string missing = pictures_missing(); !missing.empty()) throw InputError({.message = missing});
+  if (const std::string missing = pictures_missing(); !missing.empty()) refuse(missing);
   Frames frames;
   LiveServer server(
       {.port = 0, .token = "", .hosts = {}}, nullptr,

@@ -15,6 +15,12 @@
 namespace kadans {
 namespace {
 
+// `kadans view` shows a record in the web page; `kadans render` makes pictures of it.
+struct ViewOptions {
+  std::string record;
+  LiveServiceOptions live;
+};
+
 std::string in_url(const std::string& text) {
   std::string safe;
   for (const char c : text) {
@@ -27,22 +33,8 @@ std::string in_url(const std::string& text) {
   return safe;
 }
 
-}  // namespace
-
-void add_view(CLI::App& app, ViewOptions& options) {
-  CLI::App* view = app.add_subcommand("view", "Show a record in the browser");
-  view->add_option("record", options.record, "Record (MCAP); without it, drop one onto the page")
-      ->type_name("FILE")
-      ->check(CLI::ExistingFile);
-  options.live.port = "0";
-  add_whole(*view, "--port", options.live.port, 0, 65535, "Port (default: a free one)");
-  view->add_option("--live-address", options.live.address, "Address to listen on (default: this machine alone)")
-      ->type_name("IP");
-  add_live_hosts(*view, options.live);
-}
-
 int run_view(const ViewOptions& options) {
-  if (page_files().empty()) throw InputError({.message = std::string(page_is_missing)});
+  if (page_files().empty()) refuse(std::string(page_is_missing));
   const std::filesystem::path file = options.record.empty() ? "" : std::filesystem::absolute(options.record);
   if (!file.empty()) check_input_file(file);
   LiveServer server(
@@ -56,6 +48,20 @@ int run_view(const ViewOptions& options) {
   std::fflush(stdout);
   while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
   return exit_passed;
+}
+
+}  // namespace
+
+void add_view(CommandLine& line) {
+  const auto [view, options] = line.add<ViewOptions>("view", "Show a record in the browser", run_view);
+  view->add_option("record", options.record, "Record (MCAP); without it, drop one onto the page")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
+  options.live.port = "0";
+  add_whole(*view, "--port", options.live.port, 0, 65535, "Port (default: a free one)");
+  view->add_option("--live-address", options.live.address, "Address to listen on (default: this machine alone)")
+      ->type_name("IP");
+  add_live_hosts(*view, options.live);
 }
 
 }  // namespace kadans

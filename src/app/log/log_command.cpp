@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <functional>
 
@@ -9,9 +8,9 @@
 #include "app/commands.h"
 #include "app/option_checks.h"
 #include "app/terminal.h"
-#include "kadans/signal/input_error.h"
 #include "log_verbs.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "telemetry/plot/signal_plot.h"
 #include "telemetry/reading/record_export.h"
@@ -121,8 +120,8 @@ int log_plot(const LogOptions& options) {
   require_overlap(record, span);
   const std::vector<ChosenSignal> signals = choose_signals(record, options.signals);
   if (signals.size() > signals_max)
-    throw InputError({.message = "these are " + std::to_string(signals.size()) + " signals; a plot of more than " +
-                                 std::to_string(signals_max) + " cannot be read, choose fewer"});
+    refuse("these are " + std::to_string(signals.size()) + " signals; a plot of more than " +
+           std::to_string(signals_max) + " cannot be read, choose fewer");
   SignalPlot plot = plot_of(record, panels_by_unit(signals), span);
   plot.title = title_of(record);
   tell_problem(record);
@@ -201,19 +200,7 @@ void add_making(CLI::App& log, LogOptions& options) {
   cut->get_option("--out")->required();
 }
 
-}  // namespace
-
-void add_log(CLI::App& app, LogOptions& options) {
-  CLI::App* log = app.add_subcommand("log", "Examine a record: info, cat, csv, observations, plot, diff, cut");
-  log->require_subcommand(1);
-  add_reading(*log, options);
-  add_making(*log, options);
-  log->footer(
-      "Times are seconds of the record's own clock, as `log info` shows them.\n"
-      "Exit codes: 0 done (diff: the same), 1 diff: not the same, 2 wrong usage or input.");
-}
-
-int run_log(const CLI::App& app, const LogOptions& options) {
+int run_log(const CommandLine& line, const LogOptions& options) {
   struct Verb {
     const char* name;
     int (*run)(const LogOptions&);
@@ -225,13 +212,25 @@ int run_log(const CLI::App& app, const LogOptions& options) {
                                               {"plot", log_plot},
                                               {"diff", log_diff},
                                               {"cut", log_cut}}};
-  (void)std::signal(SIGPIPE, SIG_IGN);  // a reader that stops reading is no error
-  catch_interrupts();
-  const CLI::App* log = app.get_subcommand("log");
+  catch_interrupts();  // a reader that stops reading is no error
+  const CLI::App* log = line.app.get_subcommand("log");
   for (const Verb& verb : verbs) {
     if (log->got_subcommand(verb.name)) return verb.run(options);
   }
   return exit_usage;
+}
+
+}  // namespace
+
+void add_log(CommandLine& line) {
+  const auto [log, options] =
+      line.add<LogOptions>("log", "Examine a record: info, cat, csv, observations, plot, diff, cut", run_log);
+  log->require_subcommand(1);
+  add_reading(*log, options);
+  add_making(*log, options);
+  log->footer(
+      "Times are seconds of the record's own clock, as `log info` shows them.\n"
+      "Exit codes: 0 done (diff: the same), 1 diff: not the same, 2 wrong usage or input.");
 }
 
 }  // namespace kadans

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t shown = 12;
+constexpr std::size_t shown_max = 12;
 
 struct DiffFindings {
   const RecordOutline &a, &b;
@@ -61,12 +61,12 @@ void print_first(const RecordDiff& diff) {
   const auto there = std::ranges::count(diff.partings, first.first_ns, &SignalParting::first_ns);
   std::printf("they part at %.3f s, in %s:\n  %-50s %18s %18s %12s\n", seconds(first.first_ns),
               plural(static_cast<std::uint64_t>(there), "signal").c_str(), "", "first", "second", "by");
-  for (std::size_t i = 0; i < std::min(shown, static_cast<std::size_t>(there)); ++i) {
+  for (std::size_t i = 0; i < std::min(shown_max, static_cast<std::size_t>(there)); ++i) {
     const SignalParting& p = diff.partings[i];
     std::printf("  %-50s %18.12g %18.12g %12.3g\n", name_of(p).c_str(), p.first_a, p.first_b, p.first_b - p.first_a);
   }
-  if (static_cast<std::size_t>(there) > shown)
-    std::printf("  ... and %zu more\n", static_cast<std::size_t>(there) - shown);
+  if (static_cast<std::size_t>(there) > shown_max)
+    std::printf("  ... and %zu more\n", static_cast<std::size_t>(there) - shown_max);
 }
 
 // Units cannot be compared, so signals are sorted by their difference relative to their own size.
@@ -78,18 +78,18 @@ void print_greatest(const RecordDiff& diff) {
   std::ranges::stable_sort(all, std::ranges::greater{}, share);
   std::printf("the greatest differences, by their share of the value (%s differ):\n  %-50s %18s %18s %12s\n",
               plural(all.size(), "signal").c_str(), "", "first", "second", "at");
-  for (std::size_t i = 0; i < std::min(shown, all.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(shown_max, all.size()); ++i) {
     const SignalParting& p = all[i];
     std::printf("  %-50s %18.9g %18.9g %10.3f s\n", name_of(p).c_str(), p.most_a, p.most_b, seconds(p.most_ns));
   }
-  if (all.size() > shown) std::printf("  ... and %zu more; --json lists all\n", all.size() - shown);
+  if (all.size() > shown_max) std::printf("  ... and %zu more; --json lists all\n", all.size() - shown_max);
 }
 
 void print_list(const char* what, const std::string& where, const std::vector<std::string>& list) {
   if (list.empty()) return;
   std::printf("%s only in %s (%zu):\n", what, where.c_str(), list.size());
-  for (std::size_t i = 0; i < std::min(shown, list.size()); ++i) std::printf("  %s\n", list[i].c_str());
-  if (list.size() > shown) std::printf("  ... and %zu more\n", list.size() - shown);
+  for (std::size_t i = 0; i < std::min(shown_max, list.size()); ++i) std::printf("  %s\n", list[i].c_str());
+  if (list.size() > shown_max) std::printf("  ... and %zu more\n", list.size() - shown_max);
 }
 
 void print_diff(const DiffFindings& found) {

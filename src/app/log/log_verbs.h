@@ -13,6 +13,18 @@
 
 namespace kadans {
 
+// `kadans log`: shows what is in a record, without running anything.
+struct LogOptions {
+  std::string file, other;           // other: the second record of diff
+  std::vector<std::string> signals;  // names or patterns
+  std::vector<std::string> topics;
+  std::optional<double> from_s, to_s, every_s;
+  std::string out;
+  double tolerance = 0;
+  bool json = false;
+  bool force = false, inputs = false;  // replaces an existing output file; a cut can be repeated
+};
+
 int log_info(const LogOptions& options);
 int log_diff(const LogOptions& options);
 

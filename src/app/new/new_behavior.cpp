@@ -115,13 +115,6 @@ end)
 
 std::string lua_number(double value) { return printed("%.6g", value); }
 
-}  // namespace
-
-void add_new_behavior(CLI::App& made, NewPartOptions& options) {
-  CLI::App* behavior = made.add_subcommand("behavior", "Write a behavior with its test, and run the test");
-  add_part_options(*behavior, options, "Its name, for example nod", "Do not run its test");
-}
-
 int run_new_behavior(const NewPartOptions& options) {
   refuse_bad_name(options.name, "a behavior", "nod");
   const NewSubject subject = read_subject(options);
@@ -158,6 +151,14 @@ int run_new_behavior(const NewPartOptions& options) {
                    " --live    or let `kadans new scenario NAME --play " + options.name + "` write what it must do");
   if (options.no_run) return exit_passed;
   return run_kadans({"behavior", "test", fs::absolute(subject.project / test).string()});
+}
+
+}  // namespace
+
+void add_new_behavior(CLI::App& made, CommandLine& line) {
+  const auto [behavior, options] =
+      line.add<NewPartOptions>(made, "behavior", "Write a behavior with its test, and run the test", run_new_behavior);
+  add_part_options(*behavior, options, "Its name, for example nod", "Do not run its test");
 }
 
 }  // namespace kadans

@@ -5,8 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commands.h"
 #include "app/terminal.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/output_file.h"
 #include "kadans/signal/shell_word.h"
 #include "new_files.h"
@@ -36,9 +36,8 @@ void refuse_bad_name(const std::string& name, const std::string& what, const std
       name[0] >= 'a' && name[0] <= 'z' &&
       std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
   if (good) return;
-  throw InputError({.message = "'" + name + "': the name of " + what +
-                               " is words of a-z and 0-9 joined by _, at most " + std::to_string(name_max) +
-                               " letters, for example " + example});
+  refuse("'" + name + "': the name of " + what + " is words of a-z and 0-9 joined by _, at most " +
+         std::to_string(name_max) + " letters, for example " + example);
 }
 
 std::string source_text(std::string_view text) {
@@ -83,25 +82,12 @@ int run_kadans(std::vector<std::string> arguments) {
   return run.exit_code() < 0 ? exit_failed : run.exit_code();
 }
 
-void add_new(CLI::App& app, NewOptions& options) {
-  CLI::App* made = app.add_subcommand("new", "Write the first version of a new part of your project");
+void add_new(CommandLine& line) {
+  CLI::App* made = line.app.add_subcommand("new", "Write the first version of a new part of your project");
   made->require_subcommand(1);
-  add_new_robot(*made, options.robot);
-  add_new_behavior(*made, options.behavior);
-  add_new_scenario(*made, options.scenario);
-  add_new_sweep(*made, options.sweep);
-  add_new_control_object(*made, options.object);
-  add_new_plant(*made, options.plant);
-}
-
-int run_new(const CLI::App& app, const NewOptions& options) {
-  const CLI::App* made = app.get_subcommand("new");
-  if (made->got_subcommand("robot")) return run_new_robot(options.robot);
-  if (made->got_subcommand("behavior")) return run_new_behavior(options.behavior);
-  if (made->got_subcommand("scenario")) return run_new_scenario(options.scenario);
-  if (made->got_subcommand("sweep")) return run_new_sweep(options.sweep);
-  if (made->got_subcommand("plant")) return run_new_plant(options.plant);
-  return run_new_control_object(options.object);
+  for (void (*const put)(CLI::App&, CommandLine&) :
+       {add_new_robot, add_new_behavior, add_new_scenario, add_new_sweep, add_new_control_object, add_new_plant})
+    put(*made, line);
 }
 
 }  // namespace kadans

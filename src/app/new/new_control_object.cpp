@@ -230,19 +230,7 @@ std::string class_name_of(const std::string& name) {
   return result;
 }
 
-void add_new_control_object(CLI::App& made, NewControlObjectOptions& options) {
-  CLI::App* object = made.add_subcommand("control-object", "Write a control object: source, test and build files");
-  object->add_option("name", options.name, "Name of its type, for example knee_damper")->required()->type_name("NAME");
-  object->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
-      ->type_name("FOLDER");
-  object
-      ->add_option("--from-c", options.from_c,
-                   "Wrap the C code in this folder, made by 20-sim, Simulink Coder or OpenModelica")
-      ->type_name("FOLDER");
-  add_number(*object, "--period", options.period_s, 1e-5, 10.0, "S",
-             "Time between two steps of that code (default: what it says)");
-  object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
-}
+namespace {
 
 // A folder with a control object, its test, and a program or a plug-in that contains it. It builds and its test passes
 // without changes, on its own (find_package(kadans)) and as a subdirectory of a project that already contains Kadans.
@@ -266,6 +254,23 @@ int run_new_control_object(const NewControlObjectOptions& options) {
                     filled(cmake_template) + filled(plugin ? cmake_plugin_template : cmake_program_template)}});
   tell_build(folder, type);
   return exit_passed;
+}
+
+}  // namespace
+
+void add_new_control_object(CLI::App& made, CommandLine& line) {
+  const auto [object, options] = line.add<NewControlObjectOptions>(
+      made, "control-object", "Write a control object: source, test and build files", run_new_control_object);
+  object->add_option("name", options.name, "Name of its type, for example knee_damper")->required()->type_name("NAME");
+  object->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
+      ->type_name("FOLDER");
+  object
+      ->add_option("--from-c", options.from_c,
+                   "Wrap the C code in this folder, made by 20-sim, Simulink Coder or OpenModelica")
+      ->type_name("FOLDER");
+  add_number(*object, "--period", options.period_s, 1e-5, 10.0, "S",
+             "Time between two steps of that code (default: what it says)");
+  object->add_flag("--plugin", options.plugin, "Write a plug-in instead of a program");
 }
 
 }  // namespace kadans

@@ -3,12 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "new_options.h"
+#include "app/command_line.h"
 
 namespace kadans {
 
@@ -40,20 +41,22 @@ void tell_command(const std::string& what, const std::filesystem::path& project,
 // Runs this program with these arguments. Returns its exit code.
 int run_kadans(std::vector<std::string> arguments);
 
-void add_new_control_object(CLI::App& made, NewControlObjectOptions& options);
-int run_new_control_object(const NewControlObjectOptions& options);
-// The same around C code that a tool has made; `main_template` is its main.cpp or plugin.cpp.
+struct NewControlObjectOptions {
+  std::string name;
+  std::string folder = ".";  // the object's folder is made in this folder
+  bool plugin = false;
+  std::string from_c;                // folder of C code that a tool has made; "": an example law
+  std::optional<double> period_s{};  // of a step of that code
+};
+// A control object around C code that a tool has made; `main_template` is its main.cpp or plugin.cpp.
 int run_new_from_c(const NewControlObjectOptions& options, std::string_view main_template);
-void add_new_robot(CLI::App& made, NewRobotOptions& options);
-// The exit code of its scenario.
-int run_new_robot(const NewRobotOptions& options);
-void add_new_behavior(CLI::App& made, NewPartOptions& options);
-int run_new_behavior(const NewPartOptions& options);
-void add_new_scenario(CLI::App& made, NewPartOptions& options);
-int run_new_scenario(const NewPartOptions& options);
-void add_new_sweep(CLI::App& made, NewPartOptions& options);
-int run_new_sweep(const NewPartOptions& options);
-void add_new_plant(CLI::App& made, NewPlantOptions& options);
-int run_new_plant(const NewPlantOptions& options);
+
+// Each puts a command into the group `new`. They throw InputError, and then nothing is written.
+void add_new_control_object(CLI::App& made, CommandLine& line);
+void add_new_robot(CLI::App& made, CommandLine& line);
+void add_new_behavior(CLI::App& made, CommandLine& line);
+void add_new_scenario(CLI::App& made, CommandLine& line);
+void add_new_sweep(CLI::App& made, CommandLine& line);
+void add_new_plant(CLI::App& made, CommandLine& line);
 
 }  // namespace kadans

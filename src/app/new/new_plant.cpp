@@ -15,11 +15,18 @@
 #include "new_files.h"
 #include "new_subject.h"
 #include "plant_wire.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct NewPlantOptions {
+  std::string name;
+  std::string robot;
+  std::string folder = ".";  // the plant's folder is made in this folder
+};
 
 constexpr std::string_view plant_header_template =
     R"(// Type of plant "@name@": drives behind a bus. What stands here is a working example whose bus is UDP; replace its wire
@@ -479,24 +486,12 @@ target_link_libraries(@name@_test PRIVATE kadans::testing kadans::plant_ideal ka
 add_test(NAME @name@ COMMAND @name@_test)
 )";
 
-}  // namespace
-
-void add_new_plant(CLI::App& made, NewPlantOptions& options) {
-  CLI::App* plant = made.add_subcommand(
-      "plant", "Write a type of plant as a plug-in: drives behind a bus, their emulator, a test and build files");
-  plant->add_option("name", options.name, "Name of the type, for example can_drives")->required()->type_name("NAME");
-  plant->add_option("--robot", options.robot, "Robot that it drives (default: the project's only one)")
-      ->type_name("FILE");
-  plant->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
-      ->type_name("FOLDER");
-}
-
 int run_new_plant(const NewPlantOptions& options) {
   refuse_bad_name(options.name, "a type of plant", "can_drives");
   const NewSubject subject = read_subject({.robot = options.robot});
   const std::string& name = options.name;
   for (const std::string& known : plant_type_names(subject.robot.config.plant_types)) {
-    if (known == name) throw InputError({.message = "'" + name + "': there is such a type of plant already"});
+    if (known == name) refuse("'" + name + "': there is such a type of plant already");
   }
   const std::vector<std::pair<std::string, std::string>> names{{"@name@", name}, {"@Class@", class_name_of(name)}};
   const fs::path folder = fs::path(options.folder) / name;
@@ -524,6 +519,19 @@ int run_new_plant(const NewPlantOptions& options) {
   tell_command("Serve its drives", subject.project, "plant " + shown + " --as " + name + " --listen 127.0.0.1:7300");
   tell_command("Drive them      ", subject.project, "run " + shown + " --plant " + name);
   return exit_passed;
+}
+
+}  // namespace
+
+void add_new_plant(CLI::App& made, CommandLine& line) {
+  const auto [plant, options] = line.add<NewPlantOptions>(
+      made, "plant", "Write a type of plant as a plug-in: drives behind a bus, their emulator, a test and build files",
+      run_new_plant);
+  plant->add_option("name", options.name, "Name of the type, for example can_drives")->required()->type_name("NAME");
+  plant->add_option("--robot", options.robot, "Robot that it drives (default: the project's only one)")
+      ->type_name("FILE");
+  plant->add_option("--in", options.folder, "Folder in which its folder is created (default: this one)")
+      ->type_name("FOLDER");
 }
 
 }  // namespace kadans

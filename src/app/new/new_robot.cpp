@@ -33,6 +33,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+struct NewRobotOptions {
+  std::string urdf, srdf, name;
+  std::vector<std::string> packages;  // NAME=FOLDER
+  std::string folder = ".";           // the project
+  bool no_run = false;
+};
+
 constexpr std::string_view sway_template =
     R"(-- Goes from one pose to another and back, a few times. Change it and run it again.
 local k = require "kadans"
@@ -456,9 +463,8 @@ Json scenario_json(const std::string& name, const StandingPose& stance) {
 void tell(const RobotModel& model, const StandingPose& stance, const std::vector<JointHold>& holds) {
   std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
   if (!stance.wheels.empty()) {
-    std::string wheels;
-    for (const StandingWheel& wheel : stance.wheels)
-      wheels += (wheels.empty() ? "" : ", ") + model.links[wheel.joint + 1].name;
+    const std::string wheels =
+        listed(stance.wheels, [&](const StandingWheel& wheel) { return model.links[wheel.joint + 1].name; });
     std::fprintf(stderr, "It rolls on %s, its base %.3g m high.\n", wheels.c_str(), stance.height_m);
   } else if (stance.feet.empty()) {
     std::fprintf(stderr, "No two links at its ends are the lowest of all: it is bolted down (plant.fixed_base).\n");
@@ -468,8 +474,7 @@ void tell(const RobotModel& model, const StandingPose& stance, const std::vector
                  "(plant.fixed_base).\n",
                  1000 * stance.width_m);
   } else {
-    std::string feet;
-    for (const StandingFoot& foot : stance.feet) feet += (feet.empty() ? "" : ", ") + model.links[foot.link].name;
+    const std::string feet = listed(stance.feet, [&](const StandingFoot& foot) { return model.links[foot.link].name; });
     std::fprintf(stderr, "It stands on %s, its base %.3g m high.\n", feet.c_str(), stance.height_m);
   }
   for (std::size_t i = 0; i < holds.size(); ++i) {
@@ -492,21 +497,6 @@ int run_and_draw(const fs::path& scenario, const fs::path& picture) {
   return code;
 }
 
-}  // namespace
-
-void add_new_robot(CLI::App& made, NewRobotOptions& options) {
-  CLI::App* robot = made.add_subcommand("robot", "Write the files of a robot from its URDF or MJCF, and see it stand");
-  robot->add_option("urdf", options.urdf, "URDF, xacro or MJCF of the robot")->required()->type_name("FILE");
-  robot->add_option("--srdf", options.srdf, "SRDF of the robot: its pairs of links pass through each other")
-      ->type_name("FILE");
-  robot->add_option("--package", options.packages, package_help)->type_name("NAME=FOLDER")->allow_extra_args(false);
-  robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: that of the file)")
-      ->type_name("NAME");
-  robot->add_option("--in", options.folder, "Project to which its files are added (default: this folder)")
-      ->type_name("FOLDER");
-  robot->add_flag("--no-run", options.no_run, "Do not run its scenario");
-}
-
 int run_new_robot(const NewRobotOptions& options) {
   const UrdfPackages packages = packages_of(options.packages);
   std::vector<InputProblem> warnings;
@@ -515,7 +505,7 @@ int run_new_robot(const NewRobotOptions& options) {
   const RobotModel& model = description.model;
   const std::string name = options.name.empty() ? name_from(model.name) : options.name;
   if (name.empty() || name != name_from(name))
-    throw InputError({.message = "'" + name + "': a robot's name is words of a-z and 0-9 joined by _: --name NAME"});
+    refuse("'" + name + "': a robot's name is words of a-z and 0-9 joined by _: --name NAME");
   const fs::path project = options.folder;
   const fs::path models = project / "models" / name, config = project / "config" / name,
                  behaviors = project / "behaviors" / name,
@@ -560,6 +550,22 @@ int run_new_robot(const NewRobotOptions& options) {
                rolls ? "roll" : "sway");
   if (options.no_run) return exit_passed;
   return run_and_draw(scenario, models / (name + ".png"));
+}
+
+}  // namespace
+
+void add_new_robot(CLI::App& made, CommandLine& line) {
+  const auto [robot, options] = line.add<NewRobotOptions>(
+      made, "robot", "Write the files of a robot from its URDF or MJCF, and see it stand", run_new_robot);
+  robot->add_option("urdf", options.urdf, "URDF, xacro or MJCF of the robot")->required()->type_name("FILE");
+  robot->add_option("--srdf", options.srdf, "SRDF of the robot: its pairs of links pass through each other")
+      ->type_name("FILE");
+  robot->add_option("--package", options.packages, package_help)->type_name("NAME=FOLDER")->allow_extra_args(false);
+  robot->add_option("--name", options.name, "Its name, words of a-z and 0-9 joined by _ (default: that of the file)")
+      ->type_name("NAME");
+  robot->add_option("--in", options.folder, "Project to which its files are added (default: this folder)")
+      ->type_name("FOLDER");
+  robot->add_flag("--no-run", options.no_run, "Do not run its scenario");
 }
 
 }  // namespace kadans

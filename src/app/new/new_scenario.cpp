@@ -16,7 +16,6 @@
 #include "app/assembly/assembly.h"
 #include "app/terminal.h"
 #include "config/json/foreign_json.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/shell_word.h"
 #include "new_files.h"
 #include "new_subject.h"
@@ -202,28 +201,16 @@ WrittenScenario played(const NewSubject& subject, Json json, const fs::path& fil
   json["duration_s"] = played_most_s;
   const TriedRun first = try_run(json, file, {}, false, true);
   if (!first.seen->over_s)
-    throw InputError({.message = "'" + list + "' does not end within " +
-                                 std::to_string(static_cast<int>(played_most_s)) +
-                                 " s, so there is no end to check; write its scenario by hand (docs/scenarios.md)"});
+    refuse("'" + list + "' does not end within " + std::to_string(static_cast<int>(played_most_s)) +
+           " s, so there is no end to check; write its scenario by hand (docs/scenarios.md)");
   json["duration_s"] = std::ceil(*first.seen->over_s + 1);
   json["checks"] = checks_json(subject, {}, *first.seen, true);
   const TriedRun whole = try_run(json, file, {}, false, false);
   if (!whole.result.passed)
-    throw InputError({.message = "'" + list + "' does not do what its scenario would check: " + whole.failed_check() +
-                                 "; `kadans run " + subject.robot_file + " --play ... --live` shows it"});
+    refuse("'" + list + "' does not do what its scenario would check: " + whole.failed_check() + "; `kadans run " +
+           subject.robot_file + " --play ... --live` shows it");
   const TriedRun limp = try_run(json, file, {}, true, false);
   return {std::move(json), limp.failed_check()};
-}
-
-}  // namespace
-
-void add_new_scenario(CLI::App& made, NewPartOptions& options) {
-  CLI::App* scenario =
-      made.add_subcommand("scenario", "Write a scenario with checks that hold, and that fail without torque; run it");
-  add_part_options(*scenario, options, "Its name, for example nudged", "Do not run it at the end");
-  scenario
-      ->add_option("--play", options.play, "Behaviors to play: \"squat, wave\" (default: none, the robot is pushed)")
-      ->type_name("LIST");
 }
 
 int run_new_scenario(const NewPartOptions& options) {
@@ -248,6 +235,18 @@ int run_new_scenario(const NewPartOptions& options) {
   tell_command("Run it  ", subject.project, "sim " + shown);
   tell_command("Break it", subject.project, "sim " + shown + " --set 'joint.*.torque_scale=0'");
   return options.no_run ? exit_passed : run_kadans({"sim", fs::absolute(file).string(), "--no-record"});
+}
+
+}  // namespace
+
+void add_new_scenario(CLI::App& made, CommandLine& line) {
+  const auto [scenario, options] = line.add<NewPartOptions>(
+      made, "scenario", "Write a scenario with checks that hold, and that fail without torque; run it",
+      run_new_scenario);
+  add_part_options(*scenario, options, "Its name, for example nudged", "Do not run it at the end");
+  scenario
+      ->add_option("--play", options.play, "Behaviors to play: \"squat, wave\" (default: none, the robot is pushed)")
+      ->type_name("LIST");
 }
 
 }  // namespace kadans

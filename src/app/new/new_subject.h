@@ -6,9 +6,18 @@
 #include <string>
 
 #include "app/assembly/robot.h"
-#include "new_options.h"
 
 namespace kadans {
+
+// Of a behavior, a scenario or a sweep.
+struct NewPartOptions {
+  std::string name;
+  std::string robot;     // configuration; "": the project's only robot
+  std::string folder;    // the project; "": the robot's
+  std::string play;      // of a scenario: a list; "": nothing plays
+  std::string scenario;  // of a sweep; "": the one of its name, else the robot's only one
+  bool no_run = false;
+};
 
 struct NewSubject {
   std::filesystem::path project;  // its root

@@ -92,17 +92,6 @@ Json varied(const NewSubject& subject, const std::vector<std::string>& names) {
   return vary;
 }
 
-}  // namespace
-
-void add_new_sweep(CLI::App& made, NewPartOptions& options) {
-  CLI::App* sweep = made.add_subcommand("sweep", "Write a sweep over a scenario, and run its first cases");
-  add_part_options(*sweep, options, "Its name, for example nudged", "Do not run its first cases");
-  sweep
-      ->add_option("--scenario", options.scenario,
-                   "The scenario (default: the one of the same name, or else the robot's only one)")
-      ->type_name("FILE");
-}
-
 int run_new_sweep(const NewPartOptions& options) {
   refuse_bad_name(options.name, "a sweep", "nudged");
   const fs::path scenario_file = scenario_for(options);
@@ -144,6 +133,18 @@ int run_new_sweep(const NewPartOptions& options) {
   if (options.no_run) return exit_passed;
   return run_kadans({"sweep", fs::absolute(file).string(), "--cases", std::to_string(cases_run), "--out",
                      fs::proximate(out).string()});
+}
+
+}  // namespace
+
+void add_new_sweep(CLI::App& made, CommandLine& line) {
+  const auto [sweep, options] =
+      line.add<NewPartOptions>(made, "sweep", "Write a sweep over a scenario, and run its first cases", run_new_sweep);
+  add_part_options(*sweep, options, "Its name, for example nudged", "Do not run its first cases");
+  sweep
+      ->add_option("--scenario", options.scenario,
+                   "The scenario (default: the one of the same name, or else the robot's only one)")
+      ->type_name("FILE");
 }
 
 }  // namespace kadans

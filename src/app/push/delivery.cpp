@@ -18,7 +18,6 @@
 #include "config/robot/robot_config.h"
 #include "config/scenario/based_on.h"
 #include "kadans/signal/content_hash.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/shell_word.h"
 #include "signal/durable_file.h"
 #include "signal/input_file.h"
@@ -131,8 +130,7 @@ void write_delivery(const Delivery& delivery, const fs::path& file) {
   const RunInputs inputs{.run = {{"robot", delivery.robot}, {"name", delivery.name}, {"kadans", version}},
                          .program = {},
                          .files = delivery.files};
-  if (!writer.open(file.string()) || !write_inputs(writer, inputs) || !writer.close())
-    throw InputError({.message = writer.error()});
+  if (!writer.open(file.string()) || !write_inputs(writer, inputs) || !writer.close()) refuse(writer.error());
 }
 
 Delivery read_delivery(const fs::path& file) {

@@ -36,6 +36,21 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+// `kadans push`: brings a robot's files to its computer.
+struct PushOptions {
+  std::string host;
+  std::string robot;           // its configuration; "": the only one of the project
+  std::string folder, socket;  // on the other computer; "": the usual ones
+  bool undo = false, tested = false, check = false;
+};
+
+// `kadans receive`: what `push` starts there.
+struct ReceiveOptions {
+  std::string robot;  // its name
+  std::string folder, socket;
+  bool undo = false, check = false;
+};
+
 constexpr const char* state_folder = "/var/lib/kadans";
 constexpr const char* delivered_folder = "robot";
 constexpr std::uint64_t incoming_max_bytes = std::uint64_t{128} << 20U;
@@ -57,32 +72,6 @@ void refuse_untested(const Delivery& delivery, const fs::path& root) {
          "was pushed");
 }
 
-}  // namespace
-
-void add_push(CLI::App& app, PushOptions& options) {
-  CLI::App* push = app.add_subcommand(
-      "push", "Bring a robot's configuration and behaviors to its computer, over ssh, as one change");
-  push->add_option("host", options.host, "The computer, as ssh takes it: kadans@robot.local")
-      ->required()
-      ->type_name("HOST");
-  push->add_option("robot", options.robot, "The robot's configuration (default: the only one of the project)")
-      ->type_name("FILE");
-  CLI::Option* undo = push->add_flag("--undo", options.undo, "Take the last push back; again: take that back");
-  push->add_flag("--tested", options.tested, "Refuse files with which the whole suite (kadans test) has not passed")
-      ->excludes(undo);
-  push->add_flag("--check", options.check, "Check there, and say what would change, but change nothing")
-      ->excludes(undo);
-  push->add_option("--folder", options.folder, "Folder there (default: /var/lib/kadans/ROBOT/robot)")
-      ->type_name("FOLDER");
-  push->add_option("--socket", options.socket, "Folder of the sockets of the run there (default: the usual ones)")
-      ->type_name("PATH");
-  push->footer(
-      "docs/robot_computer.md tells what happens there. Exit codes: 0 done, 1 the run there refused it, 2 a "
-      "mistake in a file, or no such computer; unless 0, nothing has changed.");
-}
-
-namespace {
-
 // Throws InputError where there is no memory for them.
 MemoryFile packed_files(const Delivery& delivery) {
   try {
@@ -90,29 +79,11 @@ MemoryFile packed_files(const Delivery& delivery) {
     write_delivery(delivery, "/proc/self/fd/" + std::to_string(packed.descriptor()));
     return packed;
   } catch (const InputError& error) {
-    throw InputError({.message = "the files cannot be packed: " + error.problems().front().message});
+    refuse("the files cannot be packed: " + error.problems().front().message);
   } catch (const std::system_error& error) {
-    throw InputError({.message = std::string("the files cannot be packed: ") + error.what()});
+    refuse(std::string("the files cannot be packed: ") + error.what());
   }
 }
-
-}  // namespace
-
-int run_push(const PushOptions& options) {
-  const RemoteHost host(options.host);
-  const fs::path robot =
-      options.robot.empty() ? only_robot(fs::current_path(), "kadans push HOST FILE") : fs::path(options.robot);
-  if (options.undo) {
-    const MemoryFile nothing;
-    return host.run(words_for_there(options, read_robot_config(robot, {}).name), nothing.descriptor(), false);
-  }
-  const Delivery delivery = gather_delivery(robot);
-  if (options.tested) refuse_untested(delivery, project_root(robot));
-  const MemoryFile packed = packed_files(delivery);
-  return host.run(words_for_there(options, delivery.name), packed.descriptor(), false);
-}
-
-namespace {
 
 // Copies what comes in on stdin. Throws InputError when it is too much, and when the disk does not take it.
 void take_in(const fs::path& file) {
@@ -175,7 +146,7 @@ class RunThere {
   Json ask(const Json& request) {
     link_->send(json_text(request));
     const std::optional<std::string> line = link_->receive(answer_patience_ms);
-    if (!line) throw InputError({.message = "the run here does not answer"});
+    if (!line) refuse("the run here does not answer");
     return parse_foreign_json(*line);
   }
 
@@ -234,21 +205,23 @@ void print_changes(const std::vector<DeliveryFolder::Change>& changes) {
   if (changes.empty()) std::puts("  nothing has changed");
 }
 
-}  // namespace
-
-// A hidden command, which `push` starts on the robot's computer.
-void add_receive(CLI::App& app, ReceiveOptions& options) {
-  CLI::App* receive = app.add_subcommand("receive", "")->group("");
-  receive->add_option("robot", options.robot)->required();
-  receive->add_option("--folder", options.folder);
-  receive->add_option("--socket", options.socket);
-  receive->add_flag("--undo", options.undo);
-  receive->add_flag("--check", options.check);
+int run_push(const PushOptions& options) {
+  const RemoteHost host(options.host);
+  const fs::path robot =
+      options.robot.empty() ? only_robot(fs::current_path(), "kadans push HOST FILE") : fs::path(options.robot);
+  if (options.undo) {
+    const MemoryFile nothing;
+    return host.run(words_for_there(options, read_robot_config(robot, {}).name), nothing.descriptor(), false);
+  }
+  const Delivery delivery = gather_delivery(robot);
+  if (options.tested) refuse_untested(delivery, project_root(robot));
+  const MemoryFile packed = packed_files(delivery);
+  return host.run(words_for_there(options, delivery.name), packed.descriptor(), false);
 }
 
 int run_receive(const ReceiveOptions& options) {
   if (options.robot.empty() || options.robot.find('/') != std::string::npos || options.robot.front() == '.')
-    throw InputError({.message = in_quotes(options.robot) + " is no name of a robot"});
+    refuse(in_quotes(options.robot) + " is no name of a robot");
   catch_interrupts();
   DeliveryFolder place(options.folder.empty() ? fs::path(state_folder) / options.robot / delivered_folder
                                               : fs::path(options.folder));
@@ -276,6 +249,41 @@ int run_receive(const ReceiveOptions& options) {
   return bring_up(run, changes, [&] {
     if (!first) place.undo();
   });
+}
+
+}  // namespace
+
+void add_push(CommandLine& line) {
+  const auto [push, options] = line.add<PushOptions>(
+      "push", "Bring a robot's configuration and behaviors to its computer, over ssh, as one change", run_push);
+  push->add_option("host", options.host, "The computer, as ssh takes it: kadans@robot.local")
+      ->required()
+      ->type_name("HOST");
+  push->add_option("robot", options.robot, "The robot's configuration (default: the only one of the project)")
+      ->type_name("FILE");
+  CLI::Option* undo = push->add_flag("--undo", options.undo, "Take the last push back; again: take that back");
+  push->add_flag("--tested", options.tested, "Refuse files with which the whole suite (kadans test) has not passed")
+      ->excludes(undo);
+  push->add_flag("--check", options.check, "Check there, and say what would change, but change nothing")
+      ->excludes(undo);
+  push->add_option("--folder", options.folder, "Folder there (default: /var/lib/kadans/ROBOT/robot)")
+      ->type_name("FOLDER");
+  push->add_option("--socket", options.socket, "Folder of the sockets of the run there (default: the usual ones)")
+      ->type_name("PATH");
+  push->footer(
+      "docs/robot_computer.md tells what happens there. Exit codes: 0 done, 1 the run there refused it, 2 a "
+      "mistake in a file, or no such computer; unless 0, nothing has changed.");
+}
+
+// A hidden command, which `push` starts on the robot's computer.
+void add_receive(CommandLine& line) {
+  const auto [receive, options] = line.add<ReceiveOptions>("receive", "", run_receive);
+  receive->group("");
+  receive->add_option("robot", options.robot)->required();
+  receive->add_option("--folder", options.folder);
+  receive->add_option("--socket", options.socket);
+  receive->add_flag("--undo", options.undo);
+  receive->add_flag("--check", options.check);
 }
 
 }  // namespace kadans

@@ -6,9 +6,9 @@
 
 #include "app/terminal.h"
 #include "config/json/problems.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/shell_word.h"
 #include "realtime/machine/child_process.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -23,8 +23,7 @@ RemoteHost::RemoteHost(std::string name) : name_(std::move(name)) {
                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                          "-._@:%[]/") == std::string::npos;
   if (name_.empty() || name_.front() == '-' || !whole)
-    throw InputError(
-        {.message = in_quotes(name_) + " is no name of a computer, such as robot.local or kadans@10.0.0.2"});
+    refuse(in_quotes(name_) + " is no name of a computer, such as robot.local or kadans@10.0.0.2");
 }
 
 int RemoteHost::run(const std::vector<std::string>& words, int input, bool terminal) const {
@@ -40,7 +39,7 @@ int RemoteHost::run(const std::vector<std::string>& words, int input, bool termi
     if (process.exit_code() == ssh_failed) return exit_usage;
     return process.signal() != 0 ? exit_interrupted : process.exit_code();
   } catch (const std::system_error& error) {
-    throw InputError({.message = std::string(error.what()) + "; install an ssh client, such as openssh-client"});
+    refuse(std::string(error.what()) + "; install an ssh client, such as openssh-client");
   }
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "app/assembly/assembly.h"
+#include "app/option_checks.h"
 #include "app/terminal.h"
 #include "config/robot/project_root.h"
 #include "estimate/estimator.h"
@@ -90,6 +91,8 @@ std::unique_ptr<ProcessHost> start_decision_process(const RunOptions& options, B
   return std::make_unique<ProcessHost>(std::move(settings), log);
 }
 
+namespace {
+
 int run_behavior_process(const RunOptions& options) {
   die_with_parent();
   be_first_victim();
@@ -129,6 +132,17 @@ int run_behavior_process(const RunOptions& options) {
       make_script_host(scenario, robot.config, system->catalog, scenario.seed, log, bytes);
   settle(link.setup);
   return BehaviorServer(link, bell, *host, log, lines, system->catalog, sets).serve();
+}
+
+}  // namespace
+
+// A hidden command that `run` starts, under another name for each process, for those who list processes.
+void add_behavior_process(CommandLine& line) {
+  const auto [process, options] = line.add<RunOptions>("behavior-process", "", run_behavior_process);
+  process->alias("decision-process")->group("");
+  process->add_option("robot", options.robot)->required();
+  process->add_option("--play", options.play);
+  process->add_option("--seed", options.seed)->check(any_seed());
 }
 
 }  // namespace kadans

@@ -30,6 +30,20 @@
 namespace kadans {
 namespace {
 
+struct PlantOptions {
+  std::string robot;                // or a scenario
+  std::vector<std::string> listen;  // for each robot
+  std::string imu;                  // link to the IMU's terminal; "": none is served
+  std::string plant, as = "udp";    // plant types: of the served model ("": as the file says), of the protocol
+  std::optional<std::uint64_t> seed;
+  bool soft = false;                // also without the rights for real time
+  bool once = false;                // ends with the first session
+  std::vector<std::string> faults;  // "KIND:OF@FROM+FOR=SIZE"
+  bool in_step = false;             // time passes with the peer's ticks
+  int cpu = -1;                     // -1: the CPU that `kadans run` takes
+  bool json = false;
+};
+
 constexpr int look_every_ms = 50;  // interval of checks for signals and the end of a session
 constexpr std::uint32_t catch_up_max = 10;
 
@@ -221,13 +235,21 @@ class PlantService {
   std::unique_ptr<WorldServer> server_;
 };
 
+int run_plant(const PlantOptions& options) {
+  if (!rights_suffice(plant_priority, options.soft)) return exit_usage;
+  PlantService service(options);
+  catch_interrupts();
+  return service.run();
+}
+
 }  // namespace
 
-void add_plant(CLI::App& app, PlantOptions& options) {
-  CLI::App* plant = app.add_subcommand(
+void add_plant(CommandLine& line) {
+  const auto [plant, options] = line.add<PlantOptions>(
       "plant",
       "Serve a model of a robot, or the robots of a scenario, to programs that speak a protocol of drives, such as "
-      "`kadans run --plant udp`");
+      "`kadans run --plant udp`",
+      run_plant);
   plant->add_option("robot", options.robot, "The robot's configuration, or a scenario with one or several (JSON)")
       ->required()
       ->type_name("FILE");
@@ -270,13 +292,6 @@ void add_plant(CLI::App& app, PlantOptions& options) {
   add_whole(*plant, "--cpu", options.cpu, 0, 1023,
             "CPU of the model's thread (default: an isolated one, else the last)");
   plant->add_flag("--json", options.json, "Print each session as one JSON object on a line of its own");
-}
-
-int run_plant(const PlantOptions& options) {
-  if (!rights_suffice(plant_priority, options.soft)) return exit_usage;
-  PlantService service(options);
-  catch_interrupts();
-  return service.run();
 }
 
 }  // namespace kadans

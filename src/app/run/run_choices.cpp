@@ -22,11 +22,6 @@ std::vector<std::string> split(const std::string& text) {
   return lines;
 }
 
-std::string fact(const TextMap& facts, const char* name) {
-  const auto found = facts.find(name);
-  return found == facts.end() ? "" : found->second;
-}
-
 }  // namespace
 
 std::string exact_text(double number) {
@@ -93,21 +88,21 @@ void put_facts(const RunBranch& branch, TextMap& facts) {
 
 RunChoices choices_of(const TextMap& facts, const std::string& record) {
   RunChoices choices;
-  choices.seed = number_of<std::uint64_t>(fact(facts, "seed"));
-  choices.duration_s = number_of<double>(fact(facts, "duration_s"));
+  choices.seed = number_of<std::uint64_t>(fact_in(facts, "seed"));
+  choices.duration_s = number_of<double>(fact_in(facts, "duration_s"));
   if (!choices.seed || !choices.duration_s ||
       !(*choices.duration_s > 0 && *choices.duration_s <= scenario_duration_max_s))
     refuse(record, "does not say with which seed and for how long it was recorded");
-  choices.play = fact(facts, "play");
-  choices.set = split(fact(facts, "set"));
+  choices.play = fact_in(facts, "play");
+  choices.set = split(fact_in(facts, "set"));
   return choices;
 }
 
 RunBranch branch_of(const TextMap& facts) {
-  return {.name = fact(facts, "branch"),
-          .set = split(fact(facts, "branch_set")),
-          .play = fact(facts, "branch_play"),
-          .push = split(fact(facts, "branch_push"))};
+  return {.name = fact_in(facts, "branch"),
+          .set = split(fact_in(facts, "branch_set")),
+          .play = fact_in(facts, "branch_play"),
+          .push = split(fact_in(facts, "branch_push"))};
 }
 
 }  // namespace kadans

@@ -7,6 +7,7 @@
 #include "plant/world_server.h"
 #include "realtime/posix_wait.h"
 #include "served_world.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -17,8 +18,8 @@ std::vector<std::unique_ptr<PlantEmulator>> emulators_of(const ServedWorld& worl
                                                          const std::vector<std::string>& listen) {
   const std::vector<ServedWorld::Site>& sites = world.sites();
   if (listen.size() != sites.size())
-    throw InputError({.message = std::to_string(sites.size()) + " robots are served, but there are " +
-                                 std::to_string(listen.size()) + " addresses to listen on"});
+    refuse(std::to_string(sites.size()) + " robots are served, but there are " + std::to_string(listen.size()) +
+           " addresses to listen on");
   std::vector<std::unique_ptr<PlantEmulator>> emulators;
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const RobotConfig& robot = sites[i].robot;

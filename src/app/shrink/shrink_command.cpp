@@ -15,6 +15,7 @@
 #include "app/terminal.h"
 #include "campaign/shrink/delta_search.h"
 #include "config/json/foreign_json.h"
+#include "config/plan/experiment_plans.h"
 #include "config/robot/project_root.h"
 #include "config/scenario/based_on.h"
 #include "failing_case.h"
@@ -22,6 +23,7 @@
 #include "reduced_scenario.h"
 #include "signal/durable_file.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 #include "trial_runs.h"
 
 namespace kadans {
@@ -312,9 +314,7 @@ class Shrinking {
   // "It falls because of a push of 3.4 Ns on torso at 1 s and ground.friction = 0.3."
   std::string sentence() const {
     const std::vector<std::string> needed = scenario_.told(best_);
-    std::string text = falls() ? "It falls because of " : "It fails because of ";
-    for (std::size_t i = 0; i < needed.size(); ++i)
-      text += (i == 0 ? "" : i + 1 < needed.size() ? ", " : " and ") + needed[i];
+    std::string text = (falls() ? "It falls because of " : "It fails because of ") + listed(needed, {}, ", ", " and ");
     if (needed.empty()) text += "what it plays: no push, no fault, no event and no other quantity is needed";
     return text + "." + moment();
   }
@@ -397,8 +397,6 @@ std::string out_of(const ShrinkOptions& options, const ScenarioConfig& scenario)
   return out.string();
 }
 
-}  // namespace
-
 int run_shrink(const ShrinkOptions& options) {
   Shrinking shrinking(options, failing_case(options));
   const std::string out = out_of(options, shrinking.config());
@@ -416,8 +414,11 @@ int run_shrink(const ShrinkOptions& options) {
   return exit_passed;
 }
 
-void add_shrink(CLI::App& app, ShrinkOptions& options) {
-  CLI::App* shrink = app.add_subcommand("shrink", "Reduce a failing run to the least that still fails in the same way");
+}  // namespace
+
+void add_shrink(CommandLine& line) {
+  const auto [shrink, options] = line.add<ShrinkOptions>(
+      "shrink", "Reduce a failing run to the least that still fails in the same way", run_shrink);
   shrink
       ->add_option("scenario", options.scenario,
                    "Scenario that fails (JSON), or the folder of a sweep's results, or the file of one case in it")

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "app/assembly/assembly.h"
-#include "kadans/signal/input_error.h"
 #include "signal/input_file.h"
 #include "signal/number_text.h"
 
@@ -15,9 +14,7 @@ constexpr const char* objects_name = "control_objects";
 
 template <typename Number>
 Number fact_of(const TextMap& facts, const char* name, int base, const std::string& file) {
-  const auto found = facts.find(name);
-  const std::optional<Number> number = found == facts.end() ? std::nullopt : number_of<Number>(found->second, base);
-  if (number) return *number;
+  if (const std::optional<Number> number = number_of<Number>(fact_in(facts, name), base)) return *number;
   refuse(file, std::string("is a damaged checkpoint: no ") + name);
 }
 
@@ -32,7 +29,7 @@ void write_checkpoint(const Checkpoint& checkpoint, const std::string& file) {
   const bool written = writer.open(file) && write_inputs(writer, checkpoint.inputs) &&
                        writer.add_metadata(metadata_name, facts) &&
                        writer.add_metadata(objects_name, checkpoint.objects);
-  if (!writer.close() || !written) throw InputError({.message = writer.error()});
+  if (!writer.close() || !written) refuse(writer.error());
 }
 
 Checkpoint read_checkpoint(const std::string& file) {
@@ -50,7 +47,7 @@ Checkpoint read_checkpoint(const std::string& file) {
   checkpoint.inputs = read_inputs(reader, file);
   checkpoint.at = {fact_of<std::uint64_t>(facts, "tick", 10, file), fact_of<std::int64_t>(facts, "time_ns", 10, file),
                    fact_of<std::uint64_t>(facts, "state_hash", 16, file)};
-  if (const auto hashes = facts.find("hashes"); hashes != facts.end()) checkpoint.trail = marks_of(hashes->second);
+  checkpoint.trail = marks_of(fact_in(facts, "hashes"));
   if (const auto objects = reader.metadata().find(objects_name); objects != reader.metadata().end())
     checkpoint.objects = objects->second;
   return checkpoint;

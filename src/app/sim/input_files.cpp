@@ -353,9 +353,7 @@ std::string bullet_build() {
 }
 
 std::string change_text(const std::vector<InputChange>& changes) {
-  std::string text;
-  for (const InputChange& change : changes) text += (text.empty() ? "" : ", ") + change.what + " " + change.how;
-  return text;
+  return listed(changes, [](const InputChange& change) { return change.what + " " + change.how; });
 }
 
 fs::path find_scenario(const RunInputs& recorded, const fs::path& record) {

@@ -30,8 +30,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t shown_differences = 12;
 
 std::optional<std::uint64_t> number_in(const TextMap& facts, const char* name) {
-  const auto found = facts.find(name);
-  return found == facts.end() ? std::nullopt : number_of<std::uint64_t>(found->second);
+  return number_of<std::uint64_t>(fact_in(facts, name));
 }
 
 ScenarioConfig repeated_scenario(const std::string& record, const RunInputs& inputs, const RunChoices& choices) {
@@ -194,39 +193,6 @@ std::vector<std::string> notes_of(const Replay& replay, const RunInputs& inputs)
   return notes;
 }
 
-}  // namespace
-
-void add_replay(CLI::App& app, ReplayOptions& options) {
-  CLI::App* replay = app.add_subcommand("replay", "Run a record again, and report where and why it differs");
-  replay->add_option("record", options.record, "Record of kadans sim or kadans run (MCAP)")
-      ->required()
-      ->type_name("FILE");
-  replay->add_flag("--from-record", options.from_record, "Use the files inside the record, not those on the disk");
-  replay->add_flag("--allow-plugins", options.allow_plugins,
-                   "Load the project's plug-ins, even if they differ from the record's");
-  replay
-      ->add_option("--with", options.with,
-                   "Of a run on threads: files of this project that take the place of the record's")
-      ->type_name("FILE");
-  CLI::Option* then =
-      replay
-          ->add_option("--then-simulate", options.then_simulate,
-                       "Of a run on threads: from --at on, its engines go on in this scenario's world, with its checks")
-          ->type_name("SCENARIO");
-  CLI::Option* at = add_number(*replay, "--at", options.at_s, 0.001, scenario_duration_max_s, "S",
-                               "Second of the record from which that is simulated")
-                        ->needs(then);
-  then->needs(at);
-  replay
-      ->add_option("--record", options.written,
-                   "Of a run on threads: write all signals, as they are computed again, into this record")
-      ->type_name("FILE")
-      ->excludes(then);
-  replay->add_flag("--json", options.json, "Print one JSON object instead of text");
-}
-
-namespace {
-
 std::vector<std::string> notes_of(const RepeatedRun& run, const RunInputs& inputs, bool with) {
   std::vector<std::string> notes;
   if (!run.parting().empty()) notes.push_back(run.parting());
@@ -318,7 +284,7 @@ class RepetitionRecord final : public RunObserver {
       : recorder_(run.assembly().catalog().signals,
                   {.subjects = viewer_subjects(run.assembly()), .parameters = &run.assembly().catalog().parameters}, {},
                   Recorder::Wait::in_place) {
-    if (!recorder_.open(file)) throw InputError({.message = recorder_.error()});
+    if (!recorder_.open(file)) refuse(recorder_.error());
     describe_robots(recorder_.file(), robot_texts(run.assembly()), 0);
     run.log().add(recorder_.events());
   }
@@ -331,7 +297,7 @@ class RepetitionRecord final : public RunObserver {
   }
   // Throws InputError when the file is not whole.
   void close() {
-    if (!recorder_.close()) throw InputError({.message = recorder_.error()});
+    if (!recorder_.close()) refuse(recorder_.error());
   }
 
  private:
@@ -367,8 +333,6 @@ int repeat_run(const ReplayOptions& options, const RunInputs& inputs) {
   options.json ? print_json(findings) : print_comparison(findings);
   return findings.same ? exit_passed : exit_failed;
 }
-
-}  // namespace
 
 int run_replay(const ReplayOptions& options) {
   const RunInputs inputs = read_front(options.record);
@@ -407,6 +371,38 @@ int run_replay(const ReplayOptions& options) {
     if (!changed.empty()) print_error(options.record + " cannot be run again; since it was recorded: " + changed);
     throw;
   }
+}
+
+}  // namespace
+
+void add_replay(CommandLine& line) {
+  const auto [replay, options] =
+      line.add<ReplayOptions>("replay", "Run a record again, and report where and why it differs", run_replay);
+  replay->add_option("record", options.record, "Record of kadans sim or kadans run (MCAP)")
+      ->required()
+      ->type_name("FILE");
+  replay->add_flag("--from-record", options.from_record, "Use the files inside the record, not those on the disk");
+  replay->add_flag("--allow-plugins", options.allow_plugins,
+                   "Load the project's plug-ins, even if they differ from the record's");
+  replay
+      ->add_option("--with", options.with,
+                   "Of a run on threads: files of this project that take the place of the record's")
+      ->type_name("FILE");
+  CLI::Option* then =
+      replay
+          ->add_option("--then-simulate", options.then_simulate,
+                       "Of a run on threads: from --at on, its engines go on in this scenario's world, with its checks")
+          ->type_name("SCENARIO");
+  CLI::Option* at = add_number(*replay, "--at", options.at_s, 0.001, scenario_duration_max_s, "S",
+                               "Second of the record from which that is simulated")
+                        ->needs(then);
+  then->needs(at);
+  replay
+      ->add_option("--record", options.written,
+                   "Of a run on threads: write all signals, as they are computed again, into this record")
+      ->type_name("FILE")
+      ->excludes(then);
+  replay->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
 }  // namespace kadans

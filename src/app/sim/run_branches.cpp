@@ -128,9 +128,10 @@ void BranchActions::between_ticks(const RunMark& mark) const {
 }
 
 RecordedBranch::RecordedBranch(const TextMap& facts, const ScenarioConfig& scenario, Assembly& assembly)
-    : facts_(facts), scenario_(scenario), assembly_(assembly) {
-  if (const auto tick = facts.find("branch_tick"); tick != facts.end()) tick_ = number_of<std::uint64_t>(tick->second);
-}
+    : facts_(facts),
+      scenario_(scenario),
+      assembly_(assembly),
+      tick_(number_of<std::uint64_t>(fact_in(facts, "branch_tick"))) {}
 
 void RecordedBranch::between_ticks(const RunMark& mark) {
   if (tick_ && mark.ticks == *tick_) {

@@ -41,8 +41,7 @@ int go_on(const SimOptions& options) {
 }
 
 void refuse_wrong_mixtures(const SimOptions& options) {
-  if (options.from.empty() && options.scenario.empty())
-    throw InputError({.message = "name a scenario, or a checkpoint with --from"});
+  if (options.from.empty() && options.scenario.empty()) refuse("name a scenario, or a checkpoint with --from");
   if (!options.from.empty() && !options.scenario.empty())
     refuse("--from", "a checkpoint has its own scenario: name one of the two");
   if (options.from.empty()) {
@@ -78,10 +77,24 @@ void refuse_simulation(const SimOptions& options) {
   refuse_option(options.ros2.wanted(), "--ros2");
 }
 
+int run_sim(const SimOptions& options) {
+  refuse_wrong_mixtures(options);
+  if (!options.from.empty()) return go_on(options);
+  require_kind(options.scenario, JsonKind::scenario);
+  if (const ScenarioConfig test = read_tested_scenario(options.scenario); !test.record.empty()) {
+    refuse_simulation(options);
+    return run_record_test(options, test);
+  }
+  SimRun sim(options, options);
+  catch_interrupts();
+  return sim.run();
+}
+
 }  // namespace
 
-void add_sim(CLI::App& app, SimOptions& options) {
-  CLI::App* sim = app.add_subcommand("sim", "Run a scenario in simulation, as fast as the machine allows");
+void add_sim(CommandLine& line) {
+  const auto [sim, options] =
+      line.add<SimOptions>("sim", "Run a scenario in simulation, as fast as the machine allows", run_sim);
   sim->add_option("scenario", options.scenario, "Scenario file (JSON)")->type_name("FILE");
   add_seed(*sim, options.seed, "Seed of all random numbers (default: the scenario's)");
   add_number(*sim, "--duration", options.duration_s, 0.001, scenario_duration_max_s, "S",
@@ -122,19 +135,6 @@ void add_sim(CLI::App& app, SimOptions& options) {
              "With --live or --ros2: speed as a multiple of the wall clock's");
   sim->add_flag("--json", options.json, "Print one JSON object instead of text");
   sim->add_flag("-v,--verbose", options.verbose, "Show what the behaviors log");
-}
-
-int run_sim(const SimOptions& options) {
-  refuse_wrong_mixtures(options);
-  if (!options.from.empty()) return go_on(options);
-  require_kind(options.scenario, JsonKind::scenario);
-  if (const ScenarioConfig test = read_tested_scenario(options.scenario); !test.record.empty()) {
-    refuse_simulation(options);
-    return run_record_test(options, test);
-  }
-  SimRun sim(options, options);
-  catch_interrupts();
-  return sim.run();
 }
 
 }  // namespace kadans

@@ -13,6 +13,7 @@
 #include "input_files.h"
 #include "kadans/signal/shell_word.h"
 #include "played_behaviors.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -209,7 +210,7 @@ bool SimRun::open_record() {
   if (recorder_->open(record_)) return true;
   const std::string why = recorder_->error();
   record_.clear();
-  if (!options_.record.empty()) throw InputError({.message = why});
+  if (!options_.record.empty()) refuse(why);
   print_error(why + "; this run leaves no record");
   return false;
 }

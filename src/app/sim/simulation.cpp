@@ -105,7 +105,7 @@ class Simulation::Stepped {
     RecordPlan plan = record_plan(assembly, {.signals = asked.signals, .flight_s = {}, .folder_MB = {}}, false);
     recorder = std::make_unique<Recorder>(assembly.catalog().signals, plan.settings, FlightSettings{},
                                           Recorder::Wait::in_place);
-    if (!recorder->open(asked.file.string())) throw InputError({.message = recorder->error()});
+    if (!recorder->open(asked.file.string())) refuse(recorder->error());
     RunChoices choices;
     choices.scenario = scenario.file;
     choices.seed = run_seed;

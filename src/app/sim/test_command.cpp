@@ -39,6 +39,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct TestOptions {
+  std::vector<std::string> selectors;  // files, folders, tags, names
+  std::string folder;                  // where scenarios are searched; "": config/scenarios of the project
+  unsigned jobs = 0;                   // 0: one for each core
+  std::optional<std::uint32_t> repeat;
+  std::optional<std::uint64_t> seed;
+  bool fail_fast = false, rerun_failed = false, list = false, json = false;
+  bool golden = false;        // state hashes must equal those of the golden file
+  bool renew_golden = false;  // write them to the golden file instead
+  std::string junit;
+  ReportOptions report;
+};
+
 // One run to be made.
 struct PlannedRun {
   const ScenarioConfig* scenario = nullptr;
@@ -266,30 +279,6 @@ std::vector<fs::path> robots_of(const std::vector<ScenarioConfig>& scenarios) {
   return {robots.begin(), robots.end()};
 }
 
-}  // namespace
-
-void add_test(CLI::App& app, TestOptions& options) {
-  CLI::App* test = app.add_subcommand("test", "Run scenarios in parallel, and report which failed and why");
-  test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
-      ->type_name("PATH|TAG|NAME...");
-  test->add_option("--in", options.folder, "Folder of scenarios (default: config/scenarios)")->type_name("FOLDER");
-  add_jobs(*test, options.jobs);
-  add_whole(*test, "--repeat", options.repeat, 1, 1'000'000, "Runs of each scenario, each with the next seed");
-  add_seed(*test, options.seed, "First seed (default: each scenario's)");
-  test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
-  test->add_flag("--rerun-failed", options.rerun_failed, "Run only the scenarios that failed the last time");
-  test->add_flag("--list", options.list, "List the scenarios, but do not run them");
-  CLI::Option* golden =
-      test->add_flag("--golden", options.golden, "Fail scenarios that end in another state than in FOLDER.golden.json");
-  CLI::Option* renew =
-      test->add_flag("--renew-golden", options.renew_golden, "Write the states into that file, and print the changes");
-  renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
-  test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
-  add_report_options(*test, options.report,
-                     "Write a page about each run into a folder, and index.html about all of them", "failed");
-  test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
-}
-
 int run_test(const TestOptions& options) {
   const fs::path root = project_root(fs::current_path() / "kadans");
   const fs::path folder = options.folder.empty() ? root / "config" / "scenarios" : fs::path(options.folder);
@@ -313,6 +302,31 @@ int run_test(const TestOptions& options) {
   // Whoever changes a file meanwhile has tested neither the one nor the other.
   if (code == exit_passed && delivery_hashes(robots) == contents) keep_passed(root, contents);
   return code;
+}
+
+}  // namespace
+
+void add_test(CommandLine& line) {
+  const auto [test, options] =
+      line.add<TestOptions>("test", "Run scenarios in parallel, and report which failed and why", run_test);
+  test->add_option("selectors", options.selectors, "Files, folders, tags, or names of scenarios (default: all)")
+      ->type_name("PATH|TAG|NAME...");
+  test->add_option("--in", options.folder, "Folder of scenarios (default: config/scenarios)")->type_name("FOLDER");
+  add_jobs(*test, options.jobs);
+  add_whole(*test, "--repeat", options.repeat, 1, 1'000'000, "Runs of each scenario, each with the next seed");
+  add_seed(*test, options.seed, "First seed (default: each scenario's)");
+  test->add_flag("--fail-fast", options.fail_fast, "Stop at the first failure");
+  test->add_flag("--rerun-failed", options.rerun_failed, "Run only the scenarios that failed the last time");
+  test->add_flag("--list", options.list, "List the scenarios, but do not run them");
+  CLI::Option* golden =
+      test->add_flag("--golden", options.golden, "Fail scenarios that end in another state than in FOLDER.golden.json");
+  CLI::Option* renew =
+      test->add_flag("--renew-golden", options.renew_golden, "Write the states into that file, and print the changes");
+  renew->excludes(golden)->excludes(test->get_option("--seed"))->excludes(test->get_option("--repeat"));
+  test->add_option("--junit", options.junit, "Write the results as JUnit XML")->type_name("FILE");
+  add_report_options(*test, options.report,
+                     "Write a page about each run into a folder, and index.html about all of them", "failed");
+  test->add_flag("--json", options.json, "Print one JSON object a run instead of text");
 }
 
 }  // namespace kadans

@@ -26,6 +26,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// `kadans margin`: how far quantities may go from their nominal values until a scenario of the robot fails, by
+// bisection over the same seeds.
+struct MarginOptions {
+  std::string robot;
+  std::vector<std::string> scenarios;   // files, folders, tags, names; none: those with the tag "margin"
+  std::vector<std::string> quantities;  // "delay", "ground.friction=0.02"; none: the usual ones
+  std::uint32_t seeds = 8;
+  std::uint64_t seed = 1;
+  unsigned jobs = 0;  // 0: one for each core
+  std::string out;    // "": margins in the working directory
+  bool json = false;
+};
+
 // What is measured without --quantity. An end that a quantity's own range does not reach is that range's end.
 struct KnownMargin {
   const char* name;
@@ -266,8 +279,6 @@ std::vector<ScenarioConfig> scenarios_of(const MarginOptions& options) {
   return own;
 }
 
-}  // namespace
-
 int run_margin(const MarginOptions& options) {
   (void)read_robot(options.robot);
   const std::vector<ScenarioConfig> scenarios = scenarios_of(options);
@@ -282,8 +293,11 @@ int run_margin(const MarginOptions& options) {
   return held ? exit_passed : exit_failed;
 }
 
-void add_margin(CLI::App& app, MarginOptions& options) {
-  CLI::App* margin = app.add_subcommand("margin", "Measure how far quantities may go until a scenario fails");
+}  // namespace
+
+void add_margin(CommandLine& line) {
+  const auto [margin, options] =
+      line.add<MarginOptions>("margin", "Measure how far quantities may go until a scenario fails", run_margin);
   margin->add_option("robot", options.robot, "The robot's configuration (JSON)")->required()->type_name("FILE");
   margin
       ->add_option("scenarios", options.scenarios,

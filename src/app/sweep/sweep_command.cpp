@@ -21,6 +21,25 @@
 namespace kadans {
 namespace {
 
+// `kadans sweep` runs the cases of a plan, each in a process of its own. `kadans merge` makes one table of the results
+// of several sweeps of the same plan.
+struct SweepOptions {
+  std::string plan;
+  std::optional<std::uint32_t> cases;
+  std::optional<std::uint64_t> seed;
+  unsigned jobs = 0;  // 0: one for each core
+  std::string shard;  // "0/4"; "": the shard of a Slurm array, else all cases
+  std::string out;    // "": sweeps/NAME-HASH in the working directory
+  bool json = false;
+};
+
+struct MergeOptions {
+  std::vector<std::string> folders;
+  std::string sqlite, csv, heat_map;  // files, or ""
+  std::string x, y, metric;           // of the heat map; "": the plan's
+  bool json = false;
+};
+
 HeatMapOptions map_of(const MergeOptions& options, const SweepManifest& manifest) {
   const auto chosen = [](const std::string& given, const std::string& planned) {
     return given.empty() ? planned : given;
@@ -32,42 +51,6 @@ HeatMapOptions map_of(const MergeOptions& options, const SweepManifest& manifest
     refuse("--heat-map", "the plan names no heat_map; name two quantities with --x and --y");
   return map;
 }
-
-}  // namespace
-
-int run_merge(const MergeOptions& options) {
-  std::vector<SweepResults> parts;
-  for (const std::string& folder : options.folders) parts.emplace_back(folder);
-  const MergedSweep sweep = merge(parts);
-  if (!options.heat_map.empty()) write_durably(options.heat_map, heat_map_svg(sweep, map_of(options, sweep.manifest)));
-  if (!options.csv.empty()) write_durably(options.csv, csv_table(sweep));
-  if (!options.sqlite.empty()) write_sqlite(sweep, options.sqlite);
-  std::fputs(options.json ? (sweep_json(sweep) + "\n").c_str() : sweep_summary(sweep).c_str(), stdout);
-  return passed(sweep) ? exit_passed : exit_failed;
-}
-
-void add_merge(CLI::App& app, MergeOptions& options) {
-  CLI::App* merge = app.add_subcommand("merge", "Join the results of a sweep's parts in one table");
-  merge->add_option("folders", options.folders, "Folders of results")->required()->type_name("FOLDER...");
-  merge->add_option("--sqlite", options.sqlite, "Write a database with the table cases")->type_name("FILE");
-  merge->add_option("--csv", options.csv, "Write the table as text")->type_name("FILE");
-  CLI::Option* map = merge->add_option("--heat-map", options.heat_map, "Draw the results over two quantities (SVG)")
-                         ->type_name("FILE");
-  merge->add_option("--x", options.x, "Quantity on the horizontal axis (default: the plan's)")
-      ->type_name("NAME")
-      ->needs(map);
-  merge->add_option("--y", options.y, "Quantity on the vertical axis (default: the plan's)")
-      ->type_name("NAME")
-      ->needs(map);
-  merge
-      ->add_option("--metric", options.metric,
-                   "Metric that is drawn (default: the plan's, else the share of runs that passed)")
-      ->type_name("NAME")
-      ->needs(map);
-  merge->add_flag("--json", options.json, "Print one JSON object instead of text");
-}
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -99,6 +82,16 @@ void tell(const MergedSweep& part, const SweepResults& results, const Shard& sha
 
 }  // namespace
 
+std::string check_sweep_plan(const std::string& file, const PluginGate& gate) {
+  const SweepPlan plan = read_sweep_plan(file);
+  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan, gate);
+  const std::size_t cases = sweep_cases(plan, subjects, "").size();
+  return "sweep: " + std::to_string(cases) + " cases, " + std::to_string(subjects.size()) + " scenarios, " +
+         std::to_string(plan.metrics.size()) + " metrics";
+}
+
+namespace {
+
 int run_sweep(const SweepOptions& options) {
   require_kind(options.plan, JsonKind::sweep);
   const SweepPlan plan = read_plan(options);
@@ -119,16 +112,22 @@ int run_sweep(const SweepOptions& options) {
   return passed(part) ? exit_passed : exit_failed;
 }
 
-std::string check_sweep_plan(const std::string& file, const PluginGate& gate) {
-  const SweepPlan plan = read_sweep_plan(file);
-  const std::vector<SweepSubject> subjects = read_sweep_subjects(plan, gate);
-  const std::size_t cases = sweep_cases(plan, subjects, "").size();
-  return "sweep: " + std::to_string(cases) + " cases, " + std::to_string(subjects.size()) + " scenarios, " +
-         std::to_string(plan.metrics.size()) + " metrics";
+int run_merge(const MergeOptions& options) {
+  std::vector<SweepResults> parts;
+  for (const std::string& folder : options.folders) parts.emplace_back(folder);
+  const MergedSweep sweep = merge(parts);
+  if (!options.heat_map.empty()) write_durably(options.heat_map, heat_map_svg(sweep, map_of(options, sweep.manifest)));
+  if (!options.csv.empty()) write_durably(options.csv, csv_table(sweep));
+  if (!options.sqlite.empty()) write_sqlite(sweep, options.sqlite);
+  std::fputs(options.json ? (sweep_json(sweep) + "\n").c_str() : sweep_summary(sweep).c_str(), stdout);
+  return passed(sweep) ? exit_passed : exit_failed;
 }
 
-void add_sweep(CLI::App& app, SweepOptions& options) {
-  CLI::App* sweep = app.add_subcommand("sweep", "Run scenarios over a sample of their quantities");
+}  // namespace
+
+void add_sweep(CommandLine& line) {
+  const auto [sweep, options] =
+      line.add<SweepOptions>("sweep", "Run scenarios over a sample of their quantities", run_sweep);
   sweep->add_option("plan", options.plan, "Plan: what is run, and what varies (JSON)")->required()->type_name("PLAN");
   add_whole(*sweep, "--cases", options.cases, 1, sweep_cases_max, "Number of runs (default: the plan's)");
   add_seed(*sweep, options.seed, "Seed of the sample (default: the plan's)");
@@ -142,6 +141,28 @@ void add_sweep(CLI::App& app, SweepOptions& options) {
                    "Folder of the results; cases that have a result there are not run again (default: in sweeps/)")
       ->type_name("FOLDER");
   sweep->add_flag("--json", options.json, "Print one JSON object a case, and one for the sweep at the end");
+}
+
+void add_merge(CommandLine& line) {
+  const auto [merge, options] =
+      line.add<MergeOptions>("merge", "Join the results of a sweep's parts in one table", run_merge);
+  merge->add_option("folders", options.folders, "Folders of results")->required()->type_name("FOLDER...");
+  merge->add_option("--sqlite", options.sqlite, "Write a database with the table cases")->type_name("FILE");
+  merge->add_option("--csv", options.csv, "Write the table as text")->type_name("FILE");
+  CLI::Option* map = merge->add_option("--heat-map", options.heat_map, "Draw the results over two quantities (SVG)")
+                         ->type_name("FILE");
+  merge->add_option("--x", options.x, "Quantity on the horizontal axis (default: the plan's)")
+      ->type_name("NAME")
+      ->needs(map);
+  merge->add_option("--y", options.y, "Quantity on the vertical axis (default: the plan's)")
+      ->type_name("NAME")
+      ->needs(map);
+  merge
+      ->add_option("--metric", options.metric,
+                   "Metric that is drawn (default: the plan's, else the share of runs that passed)")
+      ->type_name("NAME")
+      ->needs(map);
+  merge->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
 }  // namespace kadans

@@ -28,36 +28,42 @@ void verify(const TunedAxis& axis, const Parameter& parameter, Problems& problem
                             ", outside min and max; widen them or say where to start");
 }
 
+// Replaces this process by kadans-tune with the same arguments.
+int run_tune(const CommandLine& line, const TuneOptions&) {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "kadans-tune";
+  execv(program.c_str(), line.arguments().data());
+  refuse(program, std::string("cannot be started (") + std::strerror(errno) +
+                      "): tuning is a program of its own, built where libpagmo-dev is installed");
+}
+
 }  // namespace
 
-void add_tune(CLI::App& app, TuneOptions& options) {
-  CLI::App* tune = app.add_subcommand("tune", "Search for the parameters with the best score in scenarios");
-  tune->add_option("plan", options.plan, "Plan: the parameters and the score (JSON)")->required()->type_name("PLAN");
-  add_seed(*tune, options.seed, "Seed of the search and of its runs (default: the plan's)");
-  add_whole(*tune, "--generations", options.generations, 1, 10'000, "Number of generations (default: the plan's)");
-  add_whole(*tune, "--runs", options.runs, 1, 10'000, "Runs of each candidate (default: the plan's)");
-  add_jobs(*tune, options.jobs);
-  tune->add_option("--shard", options.shard,
-                   "Run only this part of each generation; all parts share the folder of results")
+void add_tune_options(CLI::App& tune, TuneOptions& options) {
+  tune.description("Search for the parameters with the best score in scenarios");
+  tune.add_option("plan", options.plan, "Plan: the parameters and the score (JSON)")->required()->type_name("PLAN");
+  add_seed(tune, options.seed, "Seed of the search and of its runs (default: the plan's)");
+  add_whole(tune, "--generations", options.generations, 1, 10'000, "Number of generations (default: the plan's)");
+  add_whole(tune, "--runs", options.runs, 1, 10'000, "Runs of each candidate (default: the plan's)");
+  add_jobs(tune, options.jobs);
+  tune.add_option("--shard", options.shard,
+                  "Run only this part of each generation; all parts share the folder of results")
       ->type_name("PART/PARTS");
-  add_number(*tune, "--wait", options.wait_s, 0.0, 1e9, "S",
+  add_number(tune, "--wait", options.wait_s, 0.0, 1e9, "S",
              "Seconds to wait for the other parts of a generation (default: 600)");
-  tune->add_option("--out", options.out,
-                   "Folder of the results; runs that have a result there are not run again (default: in tunings/)")
+  tune.add_option("--out", options.out,
+                  "Folder of the results; runs that have a result there are not run again (default: in tunings/)")
       ->type_name("FOLDER");
-  tune->add_option(
+  tune.add_option(
           "--write", options.write,
           "File of the tuned configuration (default: robot.json in that folder), or of the values for a program")
       ->type_name("FILE");
-  tune->add_flag("--overwrite", options.overwrite, "Overwrite that file if it exists");
-  tune->add_flag("--json", options.json, "Print one JSON object instead of text");
+  tune.add_flag("--overwrite", options.overwrite, "Overwrite that file if it exists");
+  tune.add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
-int start_tune_program(char** argv) {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "kadans-tune";
-  execv(program.c_str(), argv);
-  refuse(program, std::string("cannot be started (") + std::strerror(errno) +
-                      "): tuning is a program of its own, built where libpagmo-dev is installed");
+void add_tune(CommandLine& line) {
+  const auto [tune, options] = line.add<TuneOptions>("tune", "", run_tune);
+  add_tune_options(*tune, options);
 }
 
 Robot tuned_robot(const TunePlan& plan, const PluginGate& gate) {

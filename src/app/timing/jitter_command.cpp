@@ -30,6 +30,18 @@
 namespace kadans {
 namespace {
 
+struct JitterOptions {
+  double seconds = 60;  // of our own samples; cyclictest takes the same time again
+  bool load = false;
+  bool sleep_only = false;
+  bool keep_awake = true;
+  bool json = false;
+  int cpu = -1;  // -1: the CPU that `kadans run` takes
+  int priority = 90;
+  double spin_us = 0;  // 0: the default of `kadans run`
+  std::string svg;     // "" = none
+};
+
 // The result of a timing test, for people and for programs.
 
 struct JitterRun {
@@ -288,23 +300,6 @@ void measure(JitterRun& run) {
   if (run.yardstick.size() < run.own.size()) run.yardstick.clear();
 }
 
-}  // namespace
-
-void add_jitter(CLI::App& app, JitterOptions& options) {
-  CLI::App* jitter = app.add_subcommand("jitter", "Measure the timing of this machine, and compare it with cyclictest");
-  add_number(*jitter, "--seconds", options.seconds, 0.1, 1000.0, "S", "Seconds of samples at 1 kHz (default: 60)");
-  jitter->add_flag("--load", options.load,
-                   "Load the machine meanwhile: processes that compute, fill memory, write, switch, set timers");
-  CLI::Option* sleep =
-      jitter->add_flag("--sleep-only", options.sleep_only, "Sleep until the next tick, without spinning");
-  add_number(*jitter, "--spin-us", options.spin_us, 1.0, 900.0, "US", "Time to spin after sleeping")->excludes(sleep);
-  jitter->add_flag("!--no-keep-awake", options.keep_awake, "Let the CPU idle between the beats");
-  add_whole(*jitter, "--cpu", options.cpu, 0, 1023, "CPU to measure on (default: an isolated one, else the last)");
-  add_whole(*jitter, "--priority", options.priority, 1, 99, "Priority of SCHED_FIFO (default: 90)");
-  jitter->add_option("--svg", options.svg, "Draw the histogram into a file")->type_name("FILE");
-  jitter->add_flag("--json", options.json, "Print one JSON object instead of text");
-}
-
 int run_jitter(const JitterOptions& options) {
   JitterRun run{.settings = settings_of(options), .load = options.load, .keep_awake = options.keep_awake};
   for (const std::string& missing : missing_rights(read_rights("/"), options.priority)) {
@@ -326,6 +321,24 @@ int run_jitter(const JitterOptions& options) {
   if (!options.svg.empty()) write_durably(options.svg, jitter_svg(run));
   std::fputs(options.json ? (jitter_json(run) + "\n").c_str() : jitter_text(run).c_str(), stdout);
   return interrupted() ? exit_interrupted : exit_passed;
+}
+
+}  // namespace
+
+void add_jitter(CommandLine& line) {
+  const auto [jitter, options] = line.add<JitterOptions>(
+      "jitter", "Measure the timing of this machine, and compare it with cyclictest", run_jitter);
+  add_number(*jitter, "--seconds", options.seconds, 0.1, 1000.0, "S", "Seconds of samples at 1 kHz (default: 60)");
+  jitter->add_flag("--load", options.load,
+                   "Load the machine meanwhile: processes that compute, fill memory, write, switch, set timers");
+  CLI::Option* sleep =
+      jitter->add_flag("--sleep-only", options.sleep_only, "Sleep until the next tick, without spinning");
+  add_number(*jitter, "--spin-us", options.spin_us, 1.0, 900.0, "US", "Time to spin after sleeping")->excludes(sleep);
+  jitter->add_flag("!--no-keep-awake", options.keep_awake, "Let the CPU idle between the beats");
+  add_whole(*jitter, "--cpu", options.cpu, 0, 1023, "CPU to measure on (default: an isolated one, else the last)");
+  add_whole(*jitter, "--priority", options.priority, 1, 99, "Priority of SCHED_FIFO (default: 90)");
+  jitter->add_option("--svg", options.svg, "Draw the histogram into a file")->type_name("FILE");
+  jitter->add_flag("--json", options.json, "Print one JSON object instead of text");
 }
 
 }  // namespace kadans

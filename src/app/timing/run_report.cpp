@@ -150,10 +150,8 @@ nlohmann::ordered_json tick_json(const TickStatistics& statistics, std::span<con
 }
 
 std::string link_text(const std::vector<PlantCount>& counts) {
-  std::string text;
-  for (const PlantCount& count : counts)
-    text += (text.empty() ? "" : ", ") + std::to_string(count.value) + " " + std::string(count.name);
-  return text;
+  return listed(counts,
+                [](const PlantCount& count) { return std::to_string(count.value) + " " + std::string(count.name); });
 }
 
 nlohmann::ordered_json link_json(const std::vector<PlantCount>& counts) {

@@ -12,7 +12,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
 #include "app/sweep/sweep_run.h"
 #include "app/sweep/sweep_subjects.h"
 #include "app/terminal.h"
@@ -247,7 +246,7 @@ int run(int argc, char** argv) {
   CLI::App app("Kadans: the program behind `kadans tune`", "kadans");
   app.require_subcommand(1);
   TuneOptions options;
-  add_tune(app, options);
+  add_tune_options(*app.add_subcommand("tune"), options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
+#include "app/sweep/sweep_subjects.h"
 #include "campaign/tuning/cma_es.h"
 
 namespace kadans {

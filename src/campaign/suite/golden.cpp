@@ -11,6 +11,7 @@
 #include "kadans/signal/machine_name.h"
 #include "signal/durable_file.h"
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -128,8 +129,7 @@ void GoldenHashes::write() const {
   if (!bullet_.empty()) text += "  \"bullet\": \"" + bullet_ + "\",\n";
   text += "  \"runs\": [\n";
   for (const GoldenRun& run : runs_) {
-    std::string each_s;
-    for (const std::string& hash : run.each_s) each_s += (each_s.empty() ? "" : " ") + hash;
+    const std::string each_s = listed(run.each_s, {}, " ");
     const Json json{{"scenario", run.scenario}, {"seed", run.seed}, {"hash", run.hash}, {"each_s", each_s}};
     text += "    " + json_text(json) + (&run == &runs_.back() ? "\n" : ",\n");
   }

@@ -5,6 +5,7 @@
 
 #include "config/json/json_value.h"
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -38,8 +39,8 @@ bool chooses(const std::string& selector, const ScenarioConfig& scenario) {
     names.push_back(scenario.name);
     std::ranges::copy(scenario.tags, std::back_inserter(names));
   }
-  throw InputError({.message = "no file, tag or name of a scenario in " + folder.string() + " is '" + selector + "'" +
-                               did_you_mean(selector, names)});
+  refuse("no file, tag or name of a scenario in " + folder.string() + " is '" + selector + "'" +
+         did_you_mean(selector, names));
 }
 
 // All in a folder and below it, sorted by path.

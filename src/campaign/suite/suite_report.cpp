@@ -2,6 +2,7 @@
 #include "suite_report.h"
 
 #include <algorithm>
+#include <array>
 
 #include <tinyxml2.h>
 
@@ -14,10 +15,6 @@ namespace kadans {
 namespace {
 
 constexpr std::size_t transitions_shown = 6;
-
-std::string painted(const ReportStyle& style, const char* code, const std::string& text) {
-  return style.color ? "\033[" + std::string(code) + "m" + text + "\033[0m" : text;
-}
 
 std::string title(const RunOutcome& run) {
   return run.scenario + printed(" (seed %llu)", static_cast<unsigned long long>(run.seed));
@@ -41,7 +38,7 @@ std::string checks_of(const RunOutcome& run, const ReportStyle& style) {
   std::string text;
   for (const CheckResult& check : run.checks) {
     if (check.passed) continue;
-    text += "    " + painted(style, "31", check.name) + printed(": %g at %.3f s", check.value, check.at_s) +
+    text += "    " + style.painted("31", check.name) + printed(": %g at %.3f s", check.value, check.at_s) +
             wanted_clause(check) + '\n';
     for (const EvidenceTrace& trace : run.traces) {
       if (trace.check == check.name && !trace.values.empty()) text += plotted(trace, style);
@@ -80,15 +77,15 @@ std::string row(const RunOutcome& run, const std::filesystem::path& folder) {
 
 std::string suite_line(const RunOutcome& run, const ReportStyle& style) {
   const bool passed = run.status == RunStatus::passed;
-  const std::string mark = passed ? painted(style, "32", style.unicode ? "✓" : "ok")
-                                  : painted(style, "31;1", style.unicode ? "✗" : "FAILED");
+  const std::string mark =
+      passed ? style.painted("32", style.unicode ? "✓" : "ok") : style.painted("31;1", style.unicode ? "✗" : "FAILED");
   std::string text = "  " + mark + " " + title(run) + printed("  %.2f s", run.wall_s);
   if (run.simulated_s > 0 && run.wall_s > 0) text += printed(", %.1f times real time", run.simulated_s / run.wall_s);
   return text + (passed ? "" : std::string("  ") + name(run.status)) + '\n';
 }
 
 std::string failure_report(const RunOutcome& run, const ReportStyle& style) {
-  std::string text = "  " + painted(style, "31;1", title(run)) + ": " + name(run.status) + '\n';
+  std::string text = "  " + style.painted("31;1", title(run)) + ": " + name(run.status) + '\n';
   text += checks_of(run, style);
   for (const std::string& error : run.errors) text += indented(error, "    ") + '\n';
   const std::size_t first = run.transitions.size() > transitions_shown ? run.transitions.size() - transitions_shown : 0;
@@ -113,7 +110,7 @@ std::string suite_summary(const std::vector<RunOutcome>& runs, double wall_s, co
     text += (failed++ == 0 ? "\n" : "") + failure_report(run, style);
   }
   text += printed("\n%zu runs, ", runs.size());
-  text += failed == 0 ? painted(style, "32", "all passed") : painted(style, "31;1", printed("%zu failed", failed));
+  text += failed == 0 ? style.painted("32", "all passed") : style.painted("31;1", printed("%zu failed", failed));
   return text + printed(": %.1f s simulated in %.1f s, %.1f s of work\n", simulated_s, wall_s, run_s);
 }
 
@@ -157,18 +154,9 @@ void add_case(tinyxml2::XMLElement& suite, const JunitCase& one) {
   why->SetText(xml_characters(one.text).c_str());
 }
 
-Verdict verdict_of(RunStatus status) {
-  switch (status) {
-    case RunStatus::passed:
-      return Verdict::passed;
-    case RunStatus::failed:
-      return Verdict::failed;
-    case RunStatus::cancelled:
-      return Verdict::skipped;
-    default:
-      return Verdict::error;
-  }
-}
+// By RunStatus: passed, failed, refused, crashed, timed out, cancelled.
+constexpr std::array<Verdict, 6> verdicts{Verdict::passed, Verdict::failed, Verdict::error,
+                                          Verdict::error,  Verdict::error,  Verdict::skipped};
 
 }  // namespace
 
@@ -201,7 +189,7 @@ std::string junit_xml(const std::vector<RunOutcome>& runs, double wall_s) {
     JunitCase one{.file = run.file,
                   .name = run.scenario + " seed " + std::to_string(run.seed),
                   .wall_s = run.wall_s,
-                  .verdict = verdict_of(run.status),
+                  .verdict = verdicts.at(static_cast<std::size_t>(run.status)),
                   .type = name(run.status),
                   .message = name(run.status),
                   .text = failure_report(run, {.color = false, .unicode = false})};

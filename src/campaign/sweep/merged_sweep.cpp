@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "signal/input_file.h"
+#include "signal/number_text.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -83,8 +84,7 @@ std::vector<std::string> table_columns(const MergedSweep& sweep) {
 }
 
 std::string csv_table(const MergedSweep& sweep) {
-  std::string text;
-  for (const std::string& column : table_columns(sweep)) text += (text.empty() ? "" : ",") + csv_field(column);
+  std::string text = listed(table_columns(sweep), csv_field, ",");
   for (const CaseRow& row : sweep.rows) {
     text += "\r\n" + std::to_string(row.index) + ',' + row.id + ',' + csv_field(row.scenario) + ',' +
             std::to_string(row.seed) + ',' + name(row.status) + ',' + csv_field(row.failed);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "json_value.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "signal/utf8.h"
 
@@ -29,8 +30,7 @@ std::size_t too_deep_at(std::string_view text) noexcept {
 [[noreturn]] void refuse_at(std::string_view text, std::size_t at, const std::string& file, const std::string& what) {
   const TextPlace place = place_in(text, at);
   if (!file.empty()) refuse(file, place, what);
-  throw InputError(
-      {.message = what + " (line " + std::to_string(place.line) + ", column " + std::to_string(place.column) + ")"});
+  refuse(what + " (line " + std::to_string(place.line) + ", column " + std::to_string(place.column) + ")");
 }
 
 // "\u009b" of a character of one to three bytes.
@@ -76,7 +76,7 @@ Json parse_foreign_json(std::string_view text, const std::string& file) {
   } catch (const Json::parse_error& error) {
     refuse_at(text, error.byte > 0 ? error.byte - 1 : 0, file, "this is no JSON");
   } catch (const Json::exception&) {
-    throw InputError({.file = file, .message = "this JSON holds a number beyond what a double can hold"});
+    refuse(file, "this JSON holds a number beyond what a double can hold");
   }
 }
 

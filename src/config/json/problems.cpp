@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "kadans/signal/nearest_name.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -14,10 +15,8 @@ constexpr std::size_t name_length_max = 80;
 
 std::string first_names(std::span<const std::string> known) {
   if (known.empty()) return " (none is known)";
-  std::string text = " (known: ";
   const std::size_t shown = std::min(known.size(), names_shown_max);
-  for (std::size_t i = 0; i < shown; ++i) text += (i == 0 ? "" : ", ") + known[i];
-  return text + (shown < known.size() ? ", ...)" : ")");
+  return " (known: " + listed(known.first(shown)) + (shown < known.size() ? ", ...)" : ")");
 }
 
 // "rotor_inertia" for rotor_inertia_kg_m2: the commonest mistake is too far away for an edit distance.

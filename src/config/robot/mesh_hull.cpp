@@ -13,10 +13,10 @@
 
 #include "config/json/foreign_json.h"
 #include "kadans/signal/content_hash.h"
-#include "kadans/signal/input_error.h"
 #include "project_root.h"
 #include "realtime/machine/child_process.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -61,10 +61,10 @@ std::string read_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-[[noreturn]] void refuse(const std::string& file, const ProgramOutput& made) {
+[[noreturn]] void refuse_mesh(const std::string& file, const ProgramOutput& made) {
   std::string why = shown_text(std::string_view(made.err).substr(0, made.err.find('\n')));
   if (why.empty()) why = "its reader ended without a word";
-  throw InputError({.file = file, .message = "cannot be read as a mesh: " + why});
+  refuse(file, "cannot be read as a mesh: " + why);
 }
 
 void keep(const fs::path& file, std::string_view text) {
@@ -93,7 +93,7 @@ std::vector<Vec3> mesh_hull(const std::string& file) {
   const ProgramOutput made =
       run_program({program.string(), fs::absolute(file).string(), std::to_string(mesh_corners_max)});
   const auto corners = made.exit_code == 0 ? corners_in(made.out) : std::nullopt;
-  if (!corners) refuse(file, made);
+  if (!corners) refuse_mesh(file, made);
   if (!folder.empty()) keep(kept, made.out);
   return *corners;
 }
@@ -102,12 +102,12 @@ std::vector<MeshTriangle> mesh_triangles(const std::string& file) {
   const fs::path program = hull_program();
   if (program.empty()) return {};
   const ProgramOutput made = run_program({program.string(), fs::absolute(file).string(), "triangles"});
-  if (made.exit_code != 0 || made.out.empty() || made.out.size() % sizeof(MeshTriangle) != 0) refuse(file, made);
+  if (made.exit_code != 0 || made.out.empty() || made.out.size() % sizeof(MeshTriangle) != 0) refuse_mesh(file, made);
   std::vector<MeshTriangle> triangles(made.out.size() / sizeof(MeshTriangle));
   std::memcpy(triangles.data(), made.out.data(), made.out.size());
   for (const MeshTriangle& triangle : triangles) {
     for (const float part : triangle)
-      if (!std::isfinite(part)) refuse(file, made);
+      if (!std::isfinite(part)) refuse_mesh(file, made);
   }
   return triangles;
 }

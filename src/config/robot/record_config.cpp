@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -93,12 +94,11 @@ SignalChoice parse_signal_choice(const std::string& text, const std::string& opt
     NumberEntry entry{.key = trimmed(item.substr(0, at)), .value = each_tick, .place = {}, .value_place = {}};
     const auto rate_Hz = at == std::string::npos ? each_tick : number_of<double>(trimmed(item.substr(at + 1)));
     if (entry.key.empty() || !rate_Hz || !(*rate_Hz >= 0))
-      throw InputError(
-          {.file = option, .message = in_quotes(item) + " must be PATTERN or PATTERN@HZ, such as base.*@100"});
+      refuse(option, in_quotes(item) + " must be PATTERN or PATTERN@HZ, such as base.*@100");
     entry.value = *rate_Hz;
     choice.rates_Hz.push_back(entry);
   }
-  if (choice.rates_Hz.empty()) throw InputError({.file = option, .message = "names no signals, such as joint.*"});
+  if (choice.rates_Hz.empty()) refuse(option, "names no signals, such as joint.*");
   return choice;
 }
 

@@ -7,6 +7,7 @@
 
 #include "config/robot/project_root.h"
 #include "event_text.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -172,7 +173,7 @@ std::vector<PlayArgument> read_play_arguments(std::string_view text, std::size_t
     if (items.size() != 1) throw Mistake{head.size(), "wanted name=value,name=value"};
     for (const auto& [argument, at] : items.front().arguments) arguments.push_back(argument);
   } catch (const Mistake& mistake) {
-    throw InputError({.file = source, .message = mistake.message});
+    refuse(source, mistake.message);
   }
   return arguments;
 }

@@ -11,6 +11,8 @@
 #include "config/robot/robot_config.h"
 #include "event_text.h"
 #include "kadans/plant/plant_type.h"
+#include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -178,9 +180,7 @@ void plant_fields(Fields& f, ScenarioConfig& scenario) {
   f.choice("plant", chosen, models, doc);
   scenario.plant = models[chosen];
   if (plant_type(plant_types(), scenario.plant).has_objects()) return;
-  std::string others;
-  for (const std::string& name : plant_type_names(&PlantType::has_objects))
-    others += (others.empty() ? "" : ", ") + name;
+  const std::string others = listed(plant_type_names(&PlantType::has_objects));
   for (const std::string key : {"world", "robots"}) {
     if (!f.has(key)) continue;
     f.refuse(key, ": only the " + others + " plant has one, this scenario's plant is " + scenario.plant);
@@ -445,8 +445,7 @@ ScenarioConfig read_tested_scenario(const std::filesystem::path& file) {
 ScenarioConfig read_scenario_config(const std::filesystem::path& file) {
   ScenarioConfig scenario = read_tested_scenario(file);
   if (!scenario.record.empty())
-    throw InputError({.file = file.string(),
-                      .message = "repeats a record, so it cannot be simulated: kadans test and kadans sim repeat it"});
+    refuse(file, "repeats a record, so it cannot be simulated: kadans test and kadans sim repeat it");
   return scenario;
 }
 

@@ -52,8 +52,7 @@ void MjcfSource::add_text(std::string_view text, std::size_t file, int& line) {
     if (c != '\n') continue;
     lines_.push_back({file, ++line});
   }
-  if (text_.size() > description_max_bytes)
-    throw InputError({.file = files_[0], .message = "the file has more than 2 MiB with what it includes"});
+  if (text_.size() > description_max_bytes) refuse(files_[0], "the file has more than 2 MiB with what it includes");
 }
 
 void MjcfSource::add(const std::string& text, const std::string& file, std::vector<std::string>& open) {

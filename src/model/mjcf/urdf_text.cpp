@@ -15,9 +15,7 @@ std::string attribute(const char* name, const std::string& value) {
 std::string attribute(const char* name, double value) { return attribute(name, number_text(value)); }
 template <std::size_t n>
 std::string attribute(const char* name, const std::array<double, n>& values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : " ") + number_text(value);
-  return attribute(name, text);
+  return attribute(name, listed(values, number_text, " "));
 }
 
 // Exact also where pitch is a quarter turn: roll is what is left when yaw and pitch are taken away.

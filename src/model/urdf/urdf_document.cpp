@@ -14,6 +14,7 @@
 
 #include "kadans/signal/nearest_name.h"
 #include "model/xml_scan.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -62,10 +63,10 @@ Defect read_numbers(std::string_view text, std::span<double> values);
 // ", did you mean '0 1 0'?" when commas or semicolons between the numbers were all that is wrong.
 std::string spaces_meant(std::string_view text, std::size_t count) {
   if (text.size() > 4 * longest_number || text.find_first_of(",;") == std::string_view::npos) return {};
-  std::string spaced(text), better;
+  std::string spaced(text);
   std::replace_if(
       spaced.begin(), spaced.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
-  for (const std::string_view piece : split(spaced, enough)) better += (better.empty() ? "" : " ") + std::string(piece);
+  const std::string better = listed(split(spaced, enough), {}, " ");
   std::vector<double> values(count);
   return read_numbers(better, values) ? "" : ", did you mean '" + better + "'?";
 }

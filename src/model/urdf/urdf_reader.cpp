@@ -12,6 +12,7 @@
 #include "kadans/model/kinematics.h"
 #include "kadans/signal/capacity.h"
 #include "kadans/signal/nearest_name.h"
+#include "signal/number_text.h"
 #include "urdf_description.h"
 #include "urdf_document.h"
 
@@ -408,10 +409,9 @@ class UrdfReader {
     const std::string what = "the axis of joint " + shown_quoted(to.name);
     if (!(norm > 0)) return document_.refuse(e.at_value("xyz"), what + " is zero: it has no direction");
     if (!(std::abs(norm - 1) <= tolerance)) {
-      std::array<char, 160> meant{};
-      std::snprintf(meant.data(), meant.size(), " has the length %.6g instead of 1: '%.6g %.6g %.6g' is used", norm,
-                    v[0] / norm, v[1] / norm, v[2] / norm);
-      document_.warn(e.at_value("xyz"), what + meant.data(), "axis length");
+      const std::string meant = printed(" has the length %.6g instead of 1: '%.6g %.6g %.6g' is used", norm,
+                                        v[0] / norm, v[1] / norm, v[2] / norm);
+      document_.warn(e.at_value("xyz"), what + meant, "axis length");
     }
     const Quat unit = normalized({0, v[0], v[1], v[2]});
     to.joint.axis = {unit[1], unit[2], unit[3]};

@@ -10,16 +10,16 @@
 namespace kadans::bullet {
 namespace {
 
-[[noreturn]] void refuse(const std::string& name, double value, const std::string& must) {
+[[noreturn]] void reject(const std::string& name, double value, const std::string& must) {
   throw std::invalid_argument(name + " = " + printed("%g", value) + " must be " + must);
 }
 
 void require_at_least_zero(const std::string& name, double value) {
-  if (!(value >= 0 && std::isfinite(value))) refuse(name, value, "at least 0");
+  if (!(value >= 0 && std::isfinite(value))) reject(name, value, "at least 0");
 }
 
 void require_count(const std::string& name, std::size_t count, std::size_t joints) {
-  if (count != joints) refuse(name + " entries", static_cast<double>(count), "one a joint, " + std::to_string(joints));
+  if (count != joints) reject(name + " entries", static_cast<double>(count), "one a joint, " + std::to_string(joints));
 }
 
 void check_drive(const std::string& joint, const DriveSettings& drive) {
@@ -39,13 +39,13 @@ void check_drive(const std::string& joint, const DriveSettings& drive) {
   require_at_least_zero(name + "enable_s", drive.enable_s);
   require_at_least_zero(name + "brake_Nm", drive.brake_Nm);
   if (drive.spring_Nm_per_rad > 0 && !(drive.rotor_inertia_kg_m2 > 0)) {
-    refuse(name + "rotor_inertia_kg_m2", drive.rotor_inertia_kg_m2, "above 0 with a series spring");
+    reject(name + "rotor_inertia_kg_m2", drive.rotor_inertia_kg_m2, "above 0 with a series spring");
   }
 }
 
 void check_coupling(const std::vector<DriveSettings>& drives, const Transmission& transmission) {
   for (const std::size_t i : transmission.joints()) {
-    if (i >= drives.size()) refuse("transmission of joint number", static_cast<double>(i), "one of the robot's");
+    if (i >= drives.size()) reject("transmission of joint number", static_cast<double>(i), "one of the robot's");
   }
 }
 
@@ -56,17 +56,17 @@ void require_link(const RobotModel& model, const std::string& what, const std::s
 constexpr double slope_max_rad = 1.2;
 
 void require_above_zero(const std::string& name, double value) {
-  if (!(value > 0 && std::isfinite(value))) refuse(name, value, "above 0");
+  if (!(value > 0 && std::isfinite(value))) reject(name, value, "above 0");
 }
 
 void require_finite(const std::string& name, std::span<const double> values) {
   for (const double value : values) {
-    if (!std::isfinite(value)) refuse(name, value, "finite");
+    if (!std::isfinite(value)) reject(name, value, "finite");
   }
 }
 
 void require_slope(const std::string& name, double value) {
-  if (!(std::abs(value) <= slope_max_rad)) refuse(name, value, "at most 1.2 rad either way");
+  if (!(std::abs(value) <= slope_max_rad)) reject(name, value, "at most 1.2 rad either way");
 }
 
 struct ShapeCheck {
@@ -84,7 +84,7 @@ struct ShapeCheck {
   }
   void operator()(const WorldStairs& stairs) const {
     if (!(stairs.count >= 1 && stairs.count <= max_stairs))
-      refuse(of + "count", stairs.count, "1.." + std::to_string(max_stairs));
+      reject(of + "count", stairs.count, "1.." + std::to_string(max_stairs));
     require_above_zero(of + "rise_m", stairs.rise_m);
     require_above_zero(of + "run_m", stairs.run_m);
     require_above_zero(of + "width_m", stairs.width_m);
@@ -98,7 +98,7 @@ struct ShapeCheck {
     require_above_zero(of + "radius_m", ball.radius_m);
     require_above_zero(of + "mass_kg", ball.mass_kg);
     require_at_least_zero(of + "rolling_friction_m", ball.rolling_friction_m);
-    if (!(ball.restitution >= 0 && ball.restitution <= 1)) refuse(of + "restitution", ball.restitution, "0..1");
+    if (!(ball.restitution >= 0 && ball.restitution <= 1)) reject(of + "restitution", ball.restitution, "0..1");
     require_finite(of + "velocity_m_s", ball.velocity_m_s);
   }
   void operator()(const WorldPendulum& pendulum) const {
@@ -107,7 +107,7 @@ struct ShapeCheck {
     require_above_zero(of + "mass_kg", pendulum.mass_kg);
     require_at_least_zero(of + "release_s", pendulum.release_s);
     if (!(pendulum.distance_m >= 0 && pendulum.distance_m < pendulum.length_m))
-      refuse(of + "distance_m", pendulum.distance_m, "at least 0 and less than length_m");
+      reject(of + "distance_m", pendulum.distance_m, "at least 0 and less than length_m");
   }
 };
 
@@ -115,7 +115,7 @@ void check_motion(const std::string& of, const MotionSettings& motion) {
   double last_s = -1;
   for (const MotionSettings::Knot& knot : motion.knots) {
     if (!(knot.time_s > last_s && knot.time_s >= 0 && std::isfinite(knot.time_s)))
-      refuse(of + "motion: time_s", knot.time_s, "at least 0 and later than the one before");
+      reject(of + "motion: time_s", knot.time_s, "at least 0 and later than the one before");
     require_finite(of + "motion: velocity_m_s", knot.velocity_m_s);
     last_s = knot.time_s;
   }
@@ -140,8 +140,8 @@ void check_payload(const RobotModel& model, const PayloadSettings& payload) {
   if (!model.find_link(payload.link)) throw std::invalid_argument(of + "the robot has no link '" + payload.link + "'");
   require_finite(of + "point_m", payload.point_m);
   require_above_zero(of + "mass_kg", payload.mass_kg);
-  if (!(payload.from_s >= 0 && std::isfinite(payload.from_s))) refuse(of + "from_s", payload.from_s, "at least 0");
-  if (!(payload.until_s > payload.from_s)) refuse(of + "until_s", payload.until_s, "later than from_s");
+  if (!(payload.from_s >= 0 && std::isfinite(payload.from_s))) reject(of + "from_s", payload.from_s, "at least 0");
+  if (!(payload.until_s > payload.from_s)) reject(of + "until_s", payload.until_s, "later than from_s");
 }
 
 template <typename Named>
@@ -156,7 +156,7 @@ void require_names(const std::string& what, const std::vector<Named>& all) {
 
 void check_world(const RobotModel& model, const WorldSettings& world) {
   if (world.objects.size() > max_world_objects) {
-    refuse("objects", static_cast<double>(world.objects.size()), "at most " + std::to_string(max_world_objects));
+    reject("objects", static_cast<double>(world.objects.size()), "at most " + std::to_string(max_world_objects));
   }
   require_names("object", world.objects);
   require_names("payload", world.payloads);
@@ -171,18 +171,18 @@ void check_world(const RobotModel& model, const WorldSettings& world) {
 
 void check_settings(const RobotModel& model, const PlantSettings& settings) {
   const std::size_t joints = model.joints.size();
-  if (joints > max_joints) refuse("joints", static_cast<double>(joints), "at most " + std::to_string(max_joints));
+  if (joints > max_joints) reject("joints", static_cast<double>(joints), "at most " + std::to_string(max_joints));
   require_count("drives", settings.drives.size(), joints);
   require_count("encoders", settings.encoders.size(), joints);
   require_count("position_rad", settings.position_rad.size(), joints);
   if (settings.feet.size() > max_feet)
-    refuse("feet", static_cast<double>(settings.feet.size()), "at most " + std::to_string(max_feet));
-  if (settings.solver_iterations < 1) refuse("solver_iterations", settings.solver_iterations, "at least 1");
+    reject("feet", static_cast<double>(settings.feet.size()), "at most " + std::to_string(max_feet));
+  if (settings.solver_iterations < 1) reject("solver_iterations", settings.solver_iterations, "at least 1");
   require_at_least_zero("ground_friction", settings.ground_friction);
   require_at_least_zero("ground_stiffness_N_per_m", settings.ground_stiffness_N_per_m);
   require_at_least_zero("ground_damping_Ns_per_m", settings.ground_damping_Ns_per_m);
   if (!(settings.ground_restitution >= 0 && settings.ground_restitution <= 1))
-    refuse("ground_restitution", settings.ground_restitution, "0..1");
+    reject("ground_restitution", settings.ground_restitution, "0..1");
   for (const double g : settings.gravity_m_s2) {
     if (!std::isfinite(g)) throw std::invalid_argument("gravity_m_s2 must be finite");
   }
@@ -192,7 +192,7 @@ void check_settings(const RobotModel& model, const PlantSettings& settings) {
     require_at_least_zero("encoder of joint '" + name + "': resolution_rad", settings.encoders[i].resolution_rad);
     require_at_least_zero("encoder of joint '" + name + "': noise_rad", settings.encoders[i].noise_rad);
     if (!std::isfinite(settings.position_rad[i]))
-      refuse("position_rad of '" + name + "'", settings.position_rad[i], "finite");
+      reject("position_rad of '" + name + "'", settings.position_rad[i], "finite");
   }
   for (const Transmission& transmission : model.transmissions) check_coupling(settings.drives, transmission);
   for (const FootSettings& foot : settings.feet) require_link(model, "foot", foot.link);

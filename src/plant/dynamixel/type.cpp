@@ -3,7 +3,7 @@
 #include "dynamixel_plant.h"
 #include "emulator/servo_server.h"
 #include "emulator/servo_world.h"
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -58,12 +58,9 @@ class DynamixelType final : public PlantType {
   dynamixel::DynamixelSettings settings_at(const PlantSite& site, const std::string& device) const {
     dynamixel::DynamixelSettings settings = settings_;
     if (settings.servos.empty())
-      throw InputError(
-          {.file = site.file,
-           .message = "says no plant.dynamixel.servos: which servo moves which joint (docs/dynamixel.md)"});
+      refuse(site.file, "says no plant.dynamixel.servos: which servo moves which joint (docs/dynamixel.md)");
     if (!device.empty() && settings.ports.size() > 1)
-      throw InputError(
-          {.file = "--peer", .message = "the robot has several serial ports: write their devices in " + site.file});
+      refuse("--peer", "the robot has several serial ports: write their devices in " + site.file);
     if (!device.empty()) {
       settings.ports.front().device = device;
       settings.ports.front().place = {.file = "--peer"};

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans::hostmot2 {
 namespace {
@@ -33,12 +34,9 @@ HostMot2Plant::HostMot2Plant(HostMot2Settings settings, PlantSite site, std::vec
   const double bus_period_s = settings_.period_s > 0 ? settings_.period_s : period_s;
   divisor_ = settings_.bus_divisor(site_.layout.period_ns);
   if (std::abs(bus_period_s - divisor_ * period_s) > 1e-9)
-    throw InputError(
-        {.file = site_.file, .message = "plant.hm2-eth.period_s must be a whole multiple of the control period"});
+    refuse(site_.file, "plant.hm2-eth.period_s must be a whole multiple of the control period");
   if (!(settings_.watchdog_s >= 2 * bus_period_s))
-    throw InputError(
-        {.file = site_.file,
-         .message = "plant.hm2-eth.watchdog_s must be at least two periods of the bus, each of which pets it"});
+    refuse(site_.file, "plant.hm2-eth.watchdog_s must be at least two periods of the bus, each of which pets it");
   silent_ticks_max_ = std::max(5U, static_cast<std::uint32_t>(std::ceil(settings_.watchdog_s / bus_period_s)));
 }
 
@@ -48,11 +46,8 @@ std::size_t HostMot2Plant::place_in(const std::vector<std::string>& names, const
                                     const char* what) const {
   const auto found = std::ranges::find(names, name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  std::string all;
-  for (const std::string& one : names) all += (all.empty() ? "" : ", ") + one;
-  throw InputError({.file = site_.file,
-                    .message = "plant.hm2-eth." + std::string(what) + "." + name +
-                               ": the robot has no such name; it has " + (all.empty() ? "none" : all)});
+  refuse(site_.file, "plant.hm2-eth." + std::string(what) + "." + name + ": the robot has no such name; it has " +
+                         (names.empty() ? "none" : listed(names)));
 }
 
 void HostMot2Plant::wire() {

@@ -10,16 +10,14 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 #include "signal/owned_descriptor.h"
 
 namespace kadans::hostmot2 {
 
 MappedLink::MappedLink(const std::string& path) {
   const OwnedDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_SYNC));
-  const auto fail = [&](const std::string& why) {
-    throw InputError({.message = "the board's registers " + path + ": " + why});
-  };
+  const auto fail = [&](const std::string& why) { refuse("the board's registers " + path + ": " + why); };
   if (!file) fail(std::system_category().message(errno) + "; root may open a PCI resource, and who it lets");
   struct stat is {};
   if (fstat(file.number(), &is) != 0 || is.st_size < static_cast<off_t>(bytes)) fail("has no 64 KiB of registers");

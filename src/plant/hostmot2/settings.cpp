@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans::hostmot2 {
@@ -17,22 +18,16 @@ constexpr std::array<const char*, 4> output_names{"pwm_dir", "dir_pwm", "up_down
 constexpr std::array<const char*, 4> home_names{"power_on", "index", "probe", "switch"};
 constexpr std::array<const char*, 3> amplifier_names{"current", "voltage", "velocity"};
 
-std::string one_of(std::span<const char* const> names) {
-  std::string all;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    all += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + std::string(names[i]);
-  return all;
-}
-
 // A word among several.
 template <typename T, std::size_t N>
 void choice(PlantFields& f, std::string_view name, T& value, const std::array<const char*, N>& names,
             const std::string& doc) {
+  const std::string one_of = listed(names, {}, ", ", " or ");
   std::string word = names[static_cast<std::size_t>(value)];
-  f.string(name, word, doc + ": " + one_of(names));
+  f.string(name, word, doc + ": " + one_of);
   if (!f.reading()) return;
   const auto found = std::ranges::find(names, word);
-  if (found == names.end()) return f.refuse(name, "'" + word + "' must be " + one_of(names));
+  if (found == names.end()) return f.refuse(name, "'" + word + "' must be " + one_of);
   value = static_cast<T>(found - names.begin());
 }
 
@@ -243,7 +238,7 @@ std::string board_place(const std::string& address) {
   const std::size_t colon = address.find(':');
   const std::string host = address.substr(0, colon);
   const bool digits = !host.empty() && host.find_first_not_of("0123456789.") == std::string::npos;
-  if (!digits) throw InputError({.message = "'" + address + "' must be an address such as 192.168.1.121"});
+  if (!digits) refuse("'" + address + "' must be an address such as 192.168.1.121");
   return colon == std::string::npos ? host + ":" + std::to_string(lbp_udp_port) : address;
 }
 
@@ -257,7 +252,7 @@ std::uint32_t HostMot2Settings::bus_divisor(std::int64_t control_period_ns) cons
 
 void HostMot2Settings::require_ethernet() const {
   for (const BoardSettings& board : boards) {
-    if (!board.resource.empty()) throw InputError({.message = "board '" + board.name + "' is no board on Ethernet"});
+    if (!board.resource.empty()) refuse("board '" + board.name + "' is no board on Ethernet");
   }
 }
 
@@ -270,7 +265,7 @@ void HostMot2Settings::move_boards(const std::string& first_address) {
   const bool good = dot != std::string::npos && !board_place(first_address).empty() &&
                     std::from_chars(host.data() + dot + 1, host.data() + host.size(), last).ec == std::errc() &&
                     last + boards.size() <= 256;
-  if (!good) throw InputError({.message = "'" + first_address + "' must be an address such as 192.168.1.121"});
+  if (!good) refuse("'" + first_address + "' must be an address such as 192.168.1.121");
   for (BoardSettings& board : boards) board.address = host.substr(0, dot + 1) + std::to_string(last++) + port;
 }
 

@@ -6,6 +6,7 @@
 #include "hostmot2_plant.h"
 #include "lbp_link.h"
 #include "mapped_link.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -78,12 +79,11 @@ class HostMot2EthernetType final : public PlantType {
   hostmot2::HostMot2Settings settings_at(const PlantSite& site, const char* option, const std::string& address) const {
     hostmot2::HostMot2Settings settings = settings_;
     if (settings.drives.empty())
-      throw InputError({.file = site.file,
-                        .message = "says no plant.hm2-eth.drives: which modules move which joint (docs/hostmot2.md)"});
+      refuse(site.file, "says no plant.hm2-eth.drives: which modules move which joint (docs/hostmot2.md)");
     try {
       if (!address.empty()) settings.move_boards(address);
     } catch (const InputError& error) {
-      throw InputError({.file = option, .message = error.problems().front().message});
+      refuse(option, error.problems().front().message);
     }
     return settings;
   }

@@ -10,7 +10,7 @@
 #include <linux/input.h>
 #include <sys/ioctl.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -56,14 +56,14 @@ bool read_ranges(int descriptor, StickRanges& ranges) noexcept {
 
 Stick open_stick(const JoystickSettings& settings, OwnedDescriptor& descriptor) {
   descriptor = open_device(settings.device);
-  if (!descriptor) throw InputError({.file = settings.device, .message = why_not(errno)});
+  if (!descriptor) refuse(settings.device, why_not(errno));
   try {
     StickRanges ranges{};
     if (!read_ranges(descriptor.number(), ranges))
       throw std::invalid_argument("is no event device of Linux" + joysticks_here());
     return {settings, ranges};
   } catch (const std::exception& error) {
-    throw InputError({.file = settings.device, .message = error.what()});
+    refuse(settings.device, error.what());
   }
 }
 
@@ -136,7 +136,7 @@ std::unique_ptr<JoystickSource> make_joystick(const JoystickSettings& settings, 
     try {
       return std::make_unique<JoystickPlayer>(settings, path);
     } catch (const std::invalid_argument& error) {
-      throw InputError({.file = path, .message = error.what()});
+      refuse(path, error.what());
     }
   }
   JoystickSettings of_device = settings;

@@ -107,18 +107,17 @@ StickRecording read_bytes(const std::string& content, const std::string& file) {
   StickRecording recording;
   const std::size_t whole = content.size() / sizeof(input_event);
   if (whole * sizeof(input_event) != content.size())
-    throw InputError({.file = file,
-                      .message = "is no recording of input events: " + std::to_string(content.size()) +
-                                 " bytes are not a multiple of the " + std::to_string(sizeof(input_event)) +
-                                 " that an event has on this machine"});
+    refuse(file, "is no recording of input events: " + std::to_string(content.size()) +
+                     " bytes are not a multiple of the " + std::to_string(sizeof(input_event)) +
+                     " that an event has on this machine");
   recording.events.resize(whole);
   decode_stick_events(std::as_bytes(std::span(content)), recording.events);
   std::int64_t before_ns = 0;
   for (std::size_t i = 0; i < whole; ++i) {
     const std::int64_t time_ns = recording.events[i].time_ns;
     const std::string event = "event " + std::to_string(i + 1);
-    if (time_ns < 0) throw InputError({.file = file, .message = event + " has a time that none can have"});
-    if (time_ns < before_ns) throw InputError({.file = file, .message = "goes back in time at " + event});
+    if (time_ns < 0) refuse(file, event + " has a time that none can have");
+    if (time_ns < before_ns) refuse(file, "goes back in time at " + event);
     before_ns = time_ns;
   }
   return recording;
@@ -140,7 +139,7 @@ StickRecording read_stick_recording(const std::string& content, const std::strin
   // Text has no zeros, events are full of them.
   const bool text = content.find('\0') == std::string::npos;
   StickRecording recording = text ? read_text(content, file) : read_bytes(content, file);
-  if (recording.events.empty()) throw InputError({.file = file, .message = "holds no event of a joystick"});
+  if (recording.events.empty()) refuse(file, "holds no event of a joystick");
   const std::int64_t first_ns = recording.events.front().time_ns;
   for (StickEvent& event : recording.events) event.time_ns -= first_ns;
   return recording;

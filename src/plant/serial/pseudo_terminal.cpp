@@ -9,14 +9,14 @@
 #include <fcntl.h>
 #include <sys/ioctl.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
 namespace fs = std::filesystem;
 
 PseudoTerminal::PseudoTerminal(const std::string& link, const char* option) : link_(link) {
-  const auto fail = [&](const std::string& why) { throw InputError({.file = option, .message = link_ + ": " + why}); };
+  const auto fail = [&](const std::string& why) { refuse(option, link_ + ": " + why); };
   master_ = OwnedDescriptor(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   const int master = master_.number();
   if (!master_ || grantpt(master) != 0 || unlockpt(master) != 0)

@@ -16,12 +16,13 @@
 
 #include "kadans/signal/input_error.h"
 #include "serial_port.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
 
 [[noreturn]] void refuse_device(const std::string& device, const std::string& why) {
-  throw InputError({.message = "the serial port " + device + ": " + why});
+  refuse("the serial port " + device + ": " + why);
 }
 
 std::string words_of(int error) { return std::system_category().message(error); }

@@ -1,8 +1,8 @@
 #include <random>
 
 #include "kadans/plant/plant_type.h"
-#include "kadans/signal/input_error.h"
 #include "plant_server.h"
+#include "signal/input_file.h"
 #include "udp_plant.h"
 #include "udp_world.h"
 
@@ -30,9 +30,7 @@ class UdpType final : public PlantType {
     UdpSettings settings = settings_;
     if (!site.peer.empty()) settings.peer = site.peer;
     if (settings.peer.empty()) {
-      throw InputError(
-          {.file = site.file,
-           .message = "says no plant.udp.peer: name the machine that serves the plant with --peer HOST:PORT"});
+      refuse(site.file, "says no plant.udp.peer: name the machine that serves the plant with --peer HOST:PORT");
     }
     std::random_device random;
     const std::uint64_t session = (std::uint64_t{random()} << 32U) | random();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int greet_every_ms = 20;
 
-[[noreturn]] void fail_with(const std::string& message) { throw InputError({.message = message}); }
+[[noreturn]] void fail_with(const std::string& message) { refuse(message); }
 
 std::string shape(std::string_view robot, std::uint32_t joints, std::uint32_t feet) {
   return "'" + std::string(robot) + "' with " + std::to_string(joints) + " joints and " + std::to_string(feet) +

@@ -5,14 +5,13 @@
 
 #include <sys/socket.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
 UdpWorld::Ends::Ends() {
   std::array<int, 2> pair{};
-  if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, pair.data()) != 0)
-    throw InputError({.message = "the system gives no sockets"});
+  if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0, pair.data()) != 0) refuse("the system gives no sockets");
   control = pair[0];
   plant = pair[1];
 }
@@ -27,7 +26,7 @@ UdpWorld::UdpWorld(std::unique_ptr<World> model, UdpSettings settings, const Pla
 
 bool UdpWorld::open(bool (*)() noexcept) {
   const bool there = plant_.greet() && server_.await(0) && server_.beat(world_, 1) && plant_.welcomed();
-  if (!there) throw InputError({.message = "both ends of the plant's socket do not find each other"});
+  if (!there) refuse("both ends of the plant's socket do not find each other");
   return true;
 }
 

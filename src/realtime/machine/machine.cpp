@@ -13,6 +13,8 @@
 #include <string>
 #include <system_error>
 
+#include "signal/number_text.h"
+
 namespace kadans {
 namespace {
 
@@ -144,8 +146,7 @@ MachineFinding governor(const fs::path& root) {
     const std::string name = first_line_of(cpu / "cpufreq/scaling_governor");
     if (!name.empty()) governors.insert(name);
   }
-  std::string is = governors.empty() ? "no frequency scaling" : "";
-  for (const std::string& name : governors) is += (is.empty() ? "" : ", ") + name;
+  const std::string is = governors.empty() ? "no frequency scaling" : listed(governors);
   const bool good = governors.empty() || governors == std::set<std::string>{"performance"};
   return finding("governor", good, is, "performance",
                  "cpupower frequency-set -g performance, or write it to cpu*/cpufreq/scaling_governor");

@@ -18,7 +18,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -49,9 +49,7 @@ fs::path of_user() {
   return fs::path(home) / ".cache/kadans";
 }
 
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-  throw InputError({.file = path.string(), .message = what});
-}
+[[noreturn]] void fail(const fs::path& path, const std::string& what) { refuse(path, what); }
 [[noreturn]] void fail_as_system(const fs::path& path, const std::string& what) {
   fail(path, what + ": " + std::generic_category().message(errno));
 }
@@ -75,7 +73,7 @@ bool is_own(const fs::path& folder) {
 
 gid_t group_named(const std::string& name) {
   const group* found = getgrnam(name.c_str());  // NOLINT(concurrency-mt-unsafe): before any thread is started
-  if (found == nullptr) throw InputError({.message = "there is no group '" + name + "' (getent group lists them)"});
+  if (found == nullptr) refuse("there is no group '" + name + "' (getent group lists them)");
   return found->gr_gid;
 }
 
@@ -186,14 +184,11 @@ CtlLink::CtlLink(const fs::path& where, Role needed) {
     }
   }
   if (!denied_.empty())
-    throw InputError({.file = denied_,
-                      .message = std::string("the role ") + name(needed) + " is for " + owners(denied_) +
-                                 " (ls -l shows it, chgrp and chmod change it)"});
-  if (!stale_.empty())
-    throw InputError(
-        {.file = stale_, .message = "nobody listens: its instance died; the next one takes the place over"});
-  throw InputError({.message = "no running instance found; looked in " + looked +
-                               ". 'kadans run ROBOT.json' starts one; --socket FOLDER names another place"});
+    refuse(denied_, std::string("the role ") + name(needed) + " is for " + owners(denied_) +
+                        " (ls -l shows it, chgrp and chmod change it)");
+  if (!stale_.empty()) refuse(stale_, "nobody listens: its instance died; the next one takes the place over");
+  refuse("no running instance found; looked in " + looked +
+         ". 'kadans run ROBOT.json' starts one; --socket FOLDER names another place");
 }
 
 bool CtlLink::connect_to(const fs::path& path) {
@@ -232,7 +227,7 @@ std::optional<std::string> CtlLink::receive(int timeout_ms) {
     std::array<char, 16384> bytes;
     const ssize_t count = recv(socket_.number(), bytes.data(), bytes.size(), 0);
     if (count < 0 && errno == EINTR) return std::nullopt;
-    if (count <= 0) throw InputError({.message = "the instance is gone"});
+    if (count <= 0) refuse("the instance is gone");
     in_.append(bytes.data(), static_cast<std::size_t>(count));
   }
 }

@@ -12,6 +12,7 @@
 
 #include "config/json/problems.h"
 #include "remote/order/order_json.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -204,7 +205,7 @@ std::string CtlRequests::get(const std::string& name, const Answer& report) {
   const Catalog& catalog = instance_.catalog();
   if (const auto id = catalog.signals.find(name)) {
     const auto row = port_.signals();
-    if (row->values.empty()) throw InputError({.message = "no tick was seen yet"});
+    if (row->values.empty()) refuse("no tick was seen yet");
     const double value = row->values[*id];
     const Signal& info = catalog.signals.info(*id);
     Json json{{"ok", true},        {"kind", "signal"}, {"name", name},
@@ -219,7 +220,7 @@ std::string CtlRequests::get(const std::string& name, const Answer& report) {
     one.update({{"ok", true}, {"kind", "parameter"}});
     return json_text(one);
   }
-  throw InputError({.message = unknown_name("parameter or signal", name, names)});
+  refuse(unknown_name("parameter or signal", name, names));
 }
 
 std::string CtlRequests::save(const CtlSession& session, const std::string& preset, const Answer& answer) {
@@ -241,11 +242,11 @@ std::string CtlRequests::watch(CtlSession& session, const OrderRequest& request)
   Json signals = Json::array();
   for (const Json& name : request.json["signals"]) {
     const auto id = table.find(name.get<std::string>());
-    if (!id) throw InputError({.message = unknown_name("signal", name.get<std::string>(), table.names())});
+    if (!id) refuse(unknown_name("signal", name.get<std::string>(), table.names()));
     ids.push_back(*id);
     signals.push_back({{"name", name}, {"unit", table.info(*id).unit}});
   }
-  if (ids.empty()) throw InputError({.message = "watch what? \"signals\" is empty"});
+  if (ids.empty()) refuse("watch what? \"signals\" is empty");
   session.watched = std::move(ids);
   const double every = 1 / (rate_hz * instance_.facts().control_period_s);
   session.every_ticks = static_cast<std::uint32_t>(std::max(1.0, std::round(std::min(every, 1e9))));

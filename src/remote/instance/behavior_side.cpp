@@ -15,6 +15,7 @@
 #include "config/scenario/event_text.h"
 #include "engine/refusal_text.h"
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -208,9 +209,9 @@ bool BehaviorSide::begin(Pending& pending) {
       return set_parameter(pending, order.text, order.value), false;
     case Order::Kind::undo: {
       const ParameterChange* last = tuning_.newest();
-      if (last == nullptr) throw InputError({.message = "there is nothing to undo"});
+      if (last == nullptr) refuse("there is nothing to undo");
       const auto is_undo = [](const Pending& other) { return other.order->order.kind == Order::Kind::undo; };
-      if (std::ranges::any_of(pending_, is_undo)) throw InputError({.message = "somebody else's undo is under way"});
+      if (std::ranges::any_of(pending_, is_undo)) refuse("somebody else's undo is under way");
       return set_parameter(pending, last->name, last->before), false;
     }
     case Order::Kind::changes:
@@ -228,8 +229,7 @@ bool BehaviorSide::begin(Pending& pending) {
     case Order::Kind::reset_odometry:
       return send(pending, std::array{Command{.kind = CommandKind::reset_odometry}}), false;
     case Order::Kind::mark:
-      if (order.text.size() > mark_bytes_max)
-        throw InputError({.message = "a mark has at most " + std::to_string(mark_bytes_max) + " bytes"});
+      if (order.text.size() > mark_bytes_max) refuse("a mark has at most " + std::to_string(mark_bytes_max) + " bytes");
       return say(order.who, "marks: " + order.text), true;
     case Order::Kind::enable_drives:
     case Order::Kind::disable_drives:
@@ -395,7 +395,7 @@ bool BehaviorSide::ask(Pending& pending, const BehaviorQuestion& question) {
 
 bool BehaviorSide::ask_why(Pending& pending) {
   if (std::exchange(why_tick_, p_.engine.ticks()) == p_.engine.ticks())  // it costs a reload
-    throw InputError({.message = "somebody else asked why in the same tick: ask again"});
+    refuse("somebody else asked why in the same tick: ask again");
   return ask(pending, {.kind = BehaviorQuestion::Kind::why, .text = pending.order->order.text});
 }
 
@@ -434,8 +434,7 @@ void BehaviorSide::give(Pending& pending, PlayOrder::Kind kind) {
   pending.given = kind;
   const bool plays = kind == PlayOrder::Kind::play || kind == PlayOrder::Kind::replace;
   if ((plays || kind == PlayOrder::Kind::resume) && stopped_)
-    throw InputError(
-        {.message = "the emergency stop keeps the robot down: clear the faults first (kadans ctl fault clear)"});
+    refuse("the emergency stop keeps the robot down: clear the faults first (kadans ctl fault clear)");
   PlayOrder given{.kind = kind, .behavior = {kind == PlayOrder::Kind::reload ? order.text : "", {}}};
   if (plays) given.list = read_play_items(order.text, "LIST", p_.instance.facts().folders);
   if (kind == PlayOrder::Kind::emit) {
@@ -475,7 +474,7 @@ void BehaviorSide::send(Pending& pending, std::span<const Command> commands) {
   sender.begin(time_ns_);
   for (const Command& command : commands) (void)sender.add(command);
   pending.sequence = sender.commit();
-  if (pending.sequence == 0) throw InputError({.message = "the command queue is full"});
+  if (pending.sequence == 0) refuse("the command queue is full");
 }
 
 // Those with a drive. Throws where there is none.
@@ -487,9 +486,8 @@ JointMask BehaviorSide::joints_of(const Order& order) const {
     if (!model.joints[i].passive()) joints |= joint_bit(i);
   }
   if (joints != 0) return joints;
-  if (const auto i = model.find_joint(order.text))
-    throw InputError({.message = "joint '" + order.text + "' is passive: it has no drive"});
-  throw InputError({.message = unknown_name("joint", order.text, names)});
+  if (const auto i = model.find_joint(order.text)) refuse("joint '" + order.text + "' is passive: it has no drive");
+  refuse(unknown_name("joint", order.text, names));
 }
 
 void BehaviorSide::order_drives(Pending& pending) {
@@ -508,7 +506,7 @@ void BehaviorSide::order_drives(Pending& pending) {
 std::vector<Command> BehaviorSide::set_points_of(const Order& order) const {
   const SetpointTable& table = p_.instance.catalog().setpoints;
   if (!(order.value >= 0 && order.value <= motion_duration_max_s))
-    throw InputError({.message = "a set-point is reached in 0.." + number_text(motion_duration_max_s) + " s"});
+    refuse("a set-point is reached in 0.." + number_text(motion_duration_max_s) + " s");
   std::vector<Command> commands;
   std::istringstream entries(order.text);
   for (std::string entry; std::getline(entries, entry, ',');) {
@@ -516,26 +514,24 @@ std::vector<Command> BehaviorSide::set_points_of(const Order& order) const {
     const std::string name = entry.substr(0, equals);
     const std::optional<double> value =
         number_of<double>(std::string_view(entry).substr(std::min(equals + 1, entry.size())));
-    if (!value) throw InputError({.message = "'" + entry + "' must be NAME=NUMBER, such as gaze.x_m=1.2"});
+    if (!value) refuse("'" + entry + "' must be NAME=NUMBER, such as gaze.x_m=1.2");
     const auto id = table.find(name);
-    if (!id) throw InputError({.message = unknown_name("set-point", name, table.names())});
+    if (!id) refuse(unknown_name("set-point", name, table.names()));
     const Setpoint& info = table[*id];
-    if (!table.accepts(*id, *value))
-      throw InputError({.message = outside_range(name, *value, info.min, info.max, info.unit)});
+    if (!table.accepts(*id, *value)) refuse(outside_range(name, *value, info.min, info.max, info.unit));
     commands.push_back({.kind = CommandKind::set_point, .index = *id, .value = *value, .duration_s = order.value});
   }
-  if (commands.empty()) throw InputError({.message = "there is no set-point in it"});
+  if (commands.empty()) refuse("there is no set-point in it");
   return commands;
 }
 
 // Of the control layer: one command. Of a behavior: at once.
 void BehaviorSide::set_parameter(Pending& pending, const std::string& name, double value) {
-  if (!std::isfinite(value)) throw InputError({.message = "a number is needed"});
+  if (!std::isfinite(value)) refuse("a number is needed");
   const ParameterTable& table = p_.instance.catalog().parameters;
   if (const auto id = table.find(name)) {
     const Parameter& info = table.info(*id);
-    if (!table.accepts(*id, value))
-      throw InputError({.message = outside_range(name, value, info.min, info.max, info.unit)});
+    if (!table.accepts(*id, value)) refuse(outside_range(name, value, info.min, info.max, info.unit));
     pending.change = {name, table.newest(*id), value, {}};
     for (const Pending& other : pending_) {
       if (other.change.name == name) pending.change.before = other.change.now;
@@ -549,11 +545,10 @@ void BehaviorSide::set_parameter(Pending& pending, const std::string& name, doub
 // Consoles of clients have a smaller budget than that of a simulation, because the robot waits for them.
 Console& BehaviorSide::console_of(const Order& order) {
   if (p_.host == nullptr)
-    throw InputError(
-        {.message = "there is no console while behaviors play in a process of their own: run with --behaviors thread"});
+    refuse("there is no console while behaviors play in a process of their own: run with --behaviors thread");
   const auto found = consoles_.find(order.client);
   if (found != consoles_.end()) return *found->second;
-  if (consoles_.size() == consoles_max) throw InputError({.message = "all consoles are taken"});
+  if (consoles_.size() == consoles_max) refuse("all consoles are taken");
   const Instance::Facts& facts = p_.instance.facts();
   return *(consoles_[order.client] = std::make_unique<Console>(
                Console::Settings{.root = facts.root, .folders = facts.folders, .limits = console_limits},

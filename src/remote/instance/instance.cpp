@@ -6,6 +6,7 @@
 
 #include "config/json/problems.h"
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -29,7 +30,7 @@ bool InstancePort::next(Answer& answer) {
 std::uint32_t Instance::set_named(const std::string& name) const {
   const std::vector<std::string> names = names_of(catalog_.sets);
   const auto found = std::ranges::find(names, name);
-  if (found == names.end()) throw InputError({.message = unknown_name("control set", name, names)});
+  if (found == names.end()) refuse(unknown_name("control set", name, names));
   return static_cast<std::uint32_t>(found - names.begin());
 }
 

@@ -7,6 +7,7 @@
 #include "config/json/fields.h"
 #include "config/json/json_value.h"
 #include "signal/durable_file.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -53,8 +54,8 @@ const ObjectInfo* owner_of(const std::string& name, const Catalog& catalog) {
 ParameterEdit edit_of(const ParameterChange& change, const Catalog& catalog, const std::string& preset = {}) {
   const ObjectInfo* const owner = owner_of(change.name, catalog);
   if (owner == nullptr)
-    throw InputError({.message = change.name + " belongs to no control object, so it has no place in the file; 'kadans "
-                                               "ctl undo' takes the change back"});
+    refuse(change.name +
+           " belongs to no control object, so it has no place in the file; 'kadans ctl undo' takes the change back");
   const std::string pattern = change.name.substr(owner->name.size() + 1);
   return {.object = owner->name, .pattern = pattern, .matched = {pattern}, .value = change.now, .preset = preset};
 }
@@ -89,10 +90,8 @@ ConfigurationText::ConfigurationText(std::filesystem::path file, std::string rob
 std::string ConfigurationText::behavior_of(const ParameterChange& change) const {
   const std::filesystem::path chunk = change.chunk;
   if (chunk.parent_path() != std::filesystem::path("behaviors") / robot_ || chunk.extension() != ".lua")
-    throw InputError({.message = change.name + " is declared in " + change.chunk +
-                                 ", and a robot's file names behaviors "
-                                 "of behaviors/" +
-                                 robot_ + " alone: change it there, or 'kadans ctl undo'"});
+    refuse(change.name + " is declared in " + change.chunk + ", and a robot's file names behaviors of behaviors/" +
+           robot_ + " alone: change it there, or 'kadans ctl undo'");
   return chunk.stem().string();
 }
 
@@ -115,7 +114,7 @@ ConfigurationText::Edits ConfigurationText::edits_of(const std::vector<Parameter
     }
   }
   if (edits.parameters.size() == before)
-    throw InputError({.message = "preset '" + also.preset + "' sets none of what was changed; nothing was saved"});
+    refuse("preset '" + also.preset + "' sets none of what was changed; nothing was saved");
   return edits;
 }
 
@@ -123,9 +122,8 @@ std::vector<PresetOverride> ConfigurationText::save(const std::vector<ParameterC
                                                     const PresetSave& also) {
   const std::lock_guard lock(mutex_);
   const std::string name = file_.string();
-  if (file_.empty()) throw InputError({.message = "this instance was not made from a configuration file"});
-  if (read_input_file(file_) != text_)
-    throw InputError({.file = name, .message = "was changed since this instance read it; nothing was saved"});
+  if (file_.empty()) refuse("this instance was not made from a configuration file");
+  if (read_input_file(file_) != text_) refuse(name, "was changed since this instance read it; nothing was saved");
   const Edits edits = edits_of(changes, catalog, also);
   std::string text = edit_behaviors(edit_parameters(text_, name, edits.parameters), name, edits.behaviors);
   write_durably(std::filesystem::canonical(file_), text);  // not over a link to it

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -54,7 +54,7 @@ void RecordSide::start(const std::string& file) {
   unnamed_ = file.empty();
   if (unnamed_) (void)folder_.make_room(plan_.file_bytes, {});
   const std::string whole = unnamed_ ? folder_.next("").string() : file;
-  if (!recorder_->open(whole)) throw InputError({.message = recorder_->error()});
+  if (!recorder_->open(whole)) refuse(recorder_->error());
   describe(recorder_->file(), time_ns_);
   file_ = whole;
   events_.store(&recorder_->events(), std::memory_order_release);
@@ -170,7 +170,7 @@ void RecordSide::fly(const fs::path& file) {
 void RecordSide::carry_out(OrderCase& order) {
   Answer& answer = order.answer;
   if (order.order.kind == Order::Kind::record_start) {
-    if (!file_.empty()) throw InputError({.message = "a record goes on already: " + file_});
+    if (!file_.empty()) refuse("a record goes on already: " + file_);
     start(order.order.text.empty() ? "" : file_for(order.order.text, "").string());
     answer.text = file_;
     answer.done = true;
@@ -178,15 +178,15 @@ void RecordSide::carry_out(OrderCase& order) {
   }
   if (order.order.kind == Order::Kind::record_dump) {
     FlightRecorder* flight = recorder_ ? recorder_->flight() : nullptr;
-    if (flight == nullptr) throw InputError({.message = "there is no flight recorder: this run has --flight 0"});
-    if (flight->busy()) throw InputError({.message = flight->file() + " is being written"});
+    if (flight == nullptr) refuse("there is no flight recorder: this run has --flight 0");
+    if (flight->busy()) refuse(flight->file() + " is being written");
     fly(file_for(order.order.text, "_flight"));
     answer.text = flight->busy() ? flight->file() : flight->error();
     answer.done = flight->busy();
     return;
   }
-  if (file_.empty()) throw InputError({.message = "there is no record to stop"});
-  if (others_) throw InputError({.message = file_ + " was begun with this run and ends with it"});
+  if (file_.empty()) refuse("there is no record to stop");
+  if (others_) refuse(file_ + " was begun with this run and ends with it");
   const std::string file = file_;
   answer.done = stop();
   answer.text = file + (answer.done ? "" : " is not complete: " + recorder_->error());
@@ -196,11 +196,9 @@ fs::path RecordSide::file_for(const std::string& name, const char* suffix) const
   if (name.empty()) return folder_.next(suffix);
   const fs::path file = name;
   if (file.has_parent_path() || file.extension() != ".mcap" || file.stem().empty())
-    throw InputError({.message = "a record's name ends with .mcap and names no folder; records lie in " +
-                                 instance_.facts().records.string()});
+    refuse("a record's name ends with .mcap and names no folder; records lie in " + instance_.facts().records.string());
   const fs::path whole = instance_.facts().records / file;
-  if (fs::symlink_status(whole).type() != fs::file_type::not_found)
-    throw InputError({.message = whole.string() + " is there already"});
+  if (fs::symlink_status(whole).type() != fs::file_type::not_found) refuse(whole.string() + " is there already");
   return whole;
 }
 

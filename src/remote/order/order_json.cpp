@@ -10,6 +10,7 @@
 #include "config/json/problems.h"
 #include "kadans/control/set_partition.h"
 #include "remote/instance/run_description.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -227,14 +228,14 @@ Json list_json(const std::string& what, const Instance& instance, const Instance
   if (what == "sets") return sets_json(catalog, status.control_sets);
   if (what == "joints") return joints_json(*catalog.model);
   if (what == "events") return events_json(report);
-  throw InputError({.message = unknown_name("kind of list", what, list_kinds())});
+  refuse(unknown_name("kind of list", what, list_kinds()));
 }
 
 namespace {
 
 using enum OrderArgument::Kind;
 
-[[noreturn]] void fail(const std::string& why) { throw InputError({.message = why}); }
+[[noreturn]] void fail(const std::string& why) { refuse(why); }
 
 // As it is shown to whoever said it.
 std::string shown(const std::string& verb) { return "'" + verb.substr(0, 64) + "'"; }

@@ -10,6 +10,7 @@
 #include "kadans/signal/input_error.h"
 #include "live_protocol.h"
 #include "remote/order/order_json.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::size_t id_max_bytes = 256;
 // Numbers of subscriptions and requests. Throws InputError.
 std::uint32_t whole_number(const Json& json) {
   if (json.is_number_unsigned() && json.get<std::uint64_t>() <= UINT32_MAX) return json.get<std::uint32_t>();
-  throw InputError({.message = "an id is a whole number from 0 to 4294967295"});
+  refuse("an id is a whole number from 0 to 4294967295");
 }
 
 // What the client knows the answer by; "": it gave none. Throws InputError.
@@ -28,7 +29,7 @@ std::string request_id(const Json& json) {
   const auto id = json.find("id");
   if (id == json.end()) return "";
   if (id->is_string() && id->get_ref<const std::string&>().size() <= id_max_bytes) return *id;
-  throw InputError({.message = "the id of a request is a string of at most 256 bytes"});
+  refuse("the id of a request is a string of at most 256 bytes");
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include "live_client.h"
 #include "live_protocol.h"
 #include "remote/order/order_json.h"
+#include "signal/input_file.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 namespace {
@@ -34,7 +36,7 @@ void LivePace::obey(const OrderRequest& request) {
   if (request.is("go")) held = false;
   if (request.is("step")) steps += 1;
   if (request.is("speed")) speed = request.number("times", 1);
-  if (request.is("push") && !push(request.text("push"))) throw InputError({.message = "too many pushes wait"});
+  if (request.is("push") && !push(request.text("push"))) refuse("too many pushes wait");
 }
 
 std::vector<std::string> LivePace::take_pushes() {
@@ -79,9 +81,7 @@ void LiveHub::beat() {
 }
 
 const std::string& LiveHub::introduction(bool writes) {
-  std::string plays;
-  for (const std::string& name : playable_names(p_.instance.facts().folders))
-    plays += (plays.empty() ? "" : " ") + name;
+  const std::string plays = listed(playable_names(p_.instance.facts().folders), {}, " ");
   if (plays != plays_) introductions_ = {};
   plays_ = plays;
   std::string& text = introductions_[writes ? 1 : 0];

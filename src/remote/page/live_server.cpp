@@ -18,8 +18,8 @@
 #include <unistd.h>
 
 #include "config/json/problems.h"
-#include "kadans/signal/input_error.h"
 #include "live_connection.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "signal/quiet_thread.h"
 
@@ -42,15 +42,15 @@ struct LiveServer::Parts {
   void listen() {
     Error error;
     const auto address = asio::ip::make_address(settings.address, error);
-    if (error) throw InputError({.message = "'" + settings.address + "' is no address to listen on"});
+    if (error) refuse("'" + settings.address + "' is no address to listen on");
     const Tcp::endpoint endpoint(address, settings.port);
     acceptor.open(endpoint.protocol(), error);
     if (!error) acceptor.set_option(Tcp::acceptor::reuse_address(true), error);
     if (!error) acceptor.bind(endpoint, error);
     if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
     if (error)
-      throw InputError({.message = "cannot listen on " + settings.address + " port " + std::to_string(settings.port) +
-                                   ": " + error.message()});
+      refuse("cannot listen on " + settings.address + " port " + std::to_string(settings.port) + ": " +
+             error.message());
     port = acceptor.local_endpoint().port();
   }
 
@@ -137,12 +137,11 @@ void refuse_unusable(const LiveSettings& settings) {
       return (c < 0x80U && std::isalnum(c) != 0) || more.find(static_cast<char>(c)) != std::string_view::npos;
     });
   };
-  if (!only(settings.token, "-._~"))
-    throw InputError({.message = "a token stands in addresses: letters, digits and any of -._~"});
+  if (!only(settings.token, "-._~")) refuse("a token stands in addresses: letters, digits and any of -._~");
   for (const std::string& host : settings.hosts) {
     in6_addr ignored{};
     if (!host.empty() && (only(host, "-._") || inet_pton(AF_INET6, host.c_str(), &ignored) == 1)) continue;
-    throw InputError({.message = in_quotes(host) + " is no name of a machine: it goes without a port or brackets"});
+    refuse(in_quotes(host) + " is no name of a machine: it goes without a port or brackets");
   }
 }
 

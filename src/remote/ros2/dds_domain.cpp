@@ -12,6 +12,7 @@
 
 #include "engine/behavior_log.h"
 #include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 #include "signal/quiet_thread.h"
 
 namespace kadans {
@@ -64,16 +65,14 @@ void tell(void*, const dds_log_data_t* data) {
 template <typename Function>
 void find(void* library, const char* name, Function& function) {
   function = reinterpret_cast<Function>(dlsym(library, name));
-  if (function == nullptr)
-    throw InputError(InputProblem{.file = KADANS_DDS_LIBRARY, .message = std::string("has no ") + name});
+  if (function == nullptr) refuse(KADANS_DDS_LIBRARY, std::string("has no ") + name);
 }
 
 DdsApi load() {
   void* const library = dlopen(KADANS_DDS_LIBRARY, RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr)
-    throw InputError(InputProblem{.file = "--ros2",
-                                  .message = std::string("needs Cyclone DDS (apt-get install libddsc0debian): ") +
-                                             dlerror()});  // NOLINT(concurrency-mt-unsafe): before any thread
+    refuse("--ros2", std::string("needs Cyclone DDS (apt-get install libddsc0debian): ") +
+                         dlerror());  // NOLINT(concurrency-mt-unsafe): before any thread
   DdsApi api{};
 #define KADANS_FIND(name) find(library, #name, api.name)
   KADANS_FIND(dds_create_domain);

@@ -1,15 +1,14 @@
 // In place of the bridge where Cyclone DDS was not found.
-#include "kadans/signal/input_error.h"
 #include "ros2_bridge.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
 struct Ros2Bridge::Inside {};
 
 Ros2Bridge::Ros2Bridge(const Ros2Settings&, const Parts&) {
-  throw InputError(InputProblem{.file = "--ros2",
-                                .message = "this program was built without it: apt-get install cyclonedds-dev "
-                                           "cyclonedds-tools, and build it again"});
+  refuse("--ros2",
+         "this program was built without it: apt-get install cyclonedds-dev cyclonedds-tools, and build it again");
 }
 
 Ros2Bridge::~Ros2Bridge() = default;

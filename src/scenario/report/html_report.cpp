@@ -163,9 +163,9 @@ class HtmlRun {
     if (!report_.run.record.empty()) fact("record", report_.run.record);
     add("</dl>\n");
     if (report_.run.quantities.empty()) return;
-    std::string drawn;
-    for (const QuantityValue& quantity : report_.run.quantities)
-      drawn += (drawn.empty() ? "" : ", ") + quantity.name + printed(" = %.6g", quantity.value);
+    const std::string drawn = listed(report_.run.quantities, [](const QuantityValue& quantity) {
+      return quantity.name + printed(" = %.6g", quantity.value);
+    });
     add("<p class=\"dim\">Set or drawn for this run: " + html_text(drawn) + "</p>\n");
   }
 

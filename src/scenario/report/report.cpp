@@ -29,12 +29,9 @@ class TextReport {
   }
 
  private:
-  std::string painted(const char* code, const std::string& text) const {
-    return style_.color ? "\033[" + std::string(code) + "m" + text + "\033[0m" : text;
-  }
-  std::string green(const std::string& text) const { return painted("32", text); }
-  std::string red(const std::string& text) const { return painted("31;1", text); }
-  std::string dim(const std::string& text) const { return painted("2", text); }
+  std::string green(const std::string& text) const { return style_.painted("32", text); }
+  std::string red(const std::string& text) const { return style_.painted("31;1", text); }
+  std::string dim(const std::string& text) const { return style_.painted("2", text); }
 
   // By time; what a behavior says when it enters a state stands behind the transition to it.
   void timeline() {

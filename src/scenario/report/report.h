@@ -44,6 +44,11 @@ struct ReportStyle {
   bool color = false;
   bool unicode = true;
   bool verbose = false;  // with all log lines
+
+  // The text, with `color` in the colors of this code for terminals: "31;1".
+  std::string painted(const char* code, const std::string& text) const {
+    return color ? "\033[" + std::string(code) + "m" + text + "\033[0m" : text;
+  }
 };
 
 std::string text_report(const RunReport& report, const ReportStyle& style);

@@ -69,9 +69,7 @@ class Graph {
     const Chart::State& s = chart_.states[state];
     if (s.kind == Chart::Kind::history) return s.deep ? "H*" : "H";
     if (s.kind == Chart::Kind::final_state && s.outcome_name != s.name) return s.name + ": " + s.outcome_name;
-    std::string sets;
-    for (const std::string& set : s.controls) sets += (sets.empty() ? " [" : ", ") + set;
-    return sets.empty() ? s.name : s.name + sets + "]";
+    return s.controls.empty() ? s.name : s.name + " [" + listed(s.controls) + "]";
   }
   // Graphviz draws arrows between leaves; one that belongs to a compound state starts or ends at its border.
   StateIndex leaf(StateIndex state) const {

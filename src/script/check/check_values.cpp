@@ -10,6 +10,7 @@
 #include "script/bindings/api.h"
 #include "script/bindings/bindings.h"
 #include "script/motion/motion_options.h"
+#include "signal/number_text.h"
 #include "signal/status_fields.h"
 
 namespace kadans {
@@ -40,13 +41,6 @@ std::string as_written(const Tokens& tokens, std::size_t from, std::size_t to) {
   std::string text;
   for (std::size_t i = from; i < to; ++i) text += tokens[i].text;
   return text;
-}
-
-std::string all_of_them(const std::vector<std::string>& texts) {
-  std::string all;
-  for (std::size_t i = 0; i < texts.size(); ++i)
-    all += (i == 0 ? "" : i + 1 == texts.size() ? " or " : ", ") + texts[i];
-  return all;
 }
 
 // The texts of a field whose type is written as 'moving'|'done'.
@@ -192,12 +186,12 @@ class ValueCheck {
     if (type.kind == Kind::flag && !is_truth(other))
       return name + " is true or false, it is compared with " + what + ": write " + name + " or not " + name;
     if (type.kind != Kind::choice) return "";
-    const std::string choices = name + " is " + all_of_them(type.texts);
+    const std::string choices = name + " is " + listed(type.texts, {}, ", ", " or ");
     if (!text) return choices + ", it is compared with " + what;
     if (!sign.is("==") && !sign.is("~=")) return choices + ": texts are compared with == or ~=";
     if (std::ranges::find(type.texts, other.text) != type.texts.end()) return "";
     return name + " is never \"" + other.text + "\"" + did_you_mean(other.text, type.texts) + "; it is " +
-           all_of_them(type.texts);
+           listed(type.texts, {}, ", ", " or ");
   }
 
   void operands(const SourceUse& use, const Type& type, Mistakes& found) const {

@@ -10,6 +10,7 @@
 
 #include "kadans/signal/nearest_name.h"
 #include "script/lua/lua_core.h"
+#include "signal/number_text.h"
 
 namespace kadans {
 
@@ -23,10 +24,7 @@ inline std::string hint_text(const std::string& wrong, const std::vector<std::st
     const bool begins = name.size() >= 4 && wrong.starts_with(name + "_");  // move_to
     if (begins || (wrong.size() >= 3 && name.starts_with(wrong))) return ", did you mean '" + name + "'?";
   }
-  if (names.size() > 8) return "";
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "; there is: " : ", ") + name;
-  return all;
+  return names.empty() || names.size() > 8 ? "" : "; there is: " + listed(names);
 }
 
 // For a number that is outside its range in rad, but inside it when it was meant in degrees.

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/nearest_name.h"
 #include "script/bindings/bindings.h"
 #include "script/bindings/snapshot_tables.h"
 #include "script/check/source_lexer.h"
 #include "script/lua/lua_state.h"
 #include "script/sandbox/sandbox.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -458,7 +458,7 @@ Console::Console(const Settings& settings, const Catalog& catalog, ScriptHost& h
     : parts_(std::make_unique<Parts>(settings, catalog, host)) {
   const auto open = [this](lua_State* state) { open_console(state, *parts_); };
   if (!parts_->lua.call(open, settings.limits.load_instructions, settings.limits.load_wall_ns))
-    throw InputError({.message = "the console: " + parts_->lua.error().text()});
+    refuse("the console: " + parts_->lua.error().text());
 }
 
 Console::~Console() = default;

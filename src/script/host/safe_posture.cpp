@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "kadans/signal/input_error.h"
 #include "script/check/hint.h"
 #include "signal/byte_order.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 
@@ -17,7 +17,7 @@ SafePosture::SafePosture(Settings settings, const Catalog& catalog)
     if (pose.name == settings_.pose) pose_ = &pose;
   }
   if (pose_ != nullptr || settings_.pose.empty()) return;
-  throw InputError({.message = "unknown pose '" + settings_.pose + "' in 'safe'" + hint_text(settings_.pose, names)});
+  refuse("unknown pose '" + settings_.pose + "' in 'safe'" + hint_text(settings_.pose, names));
 }
 
 void SafePosture::failed(std::int64_t now_ns, ObjectMask objects) noexcept {

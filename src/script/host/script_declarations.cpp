@@ -44,11 +44,7 @@ const char* type_text(Field::Type type) noexcept {
   return texts[static_cast<std::size_t>(type)];
 }
 
-std::string fields_text(const ScriptEvent& event) {
-  std::string text;
-  for (const Field& field : event.fields) text += (text.empty() ? "" : "; ") + field_text(field);
-  return text;
-}
+std::string fields_text(const ScriptEvent& event) { return listed(event.fields, field_text, "; "); }
 
 WrongData wrong_data(const ScriptEvent& declared, const PlayedEvent& event) {
   const std::string of = "event '" + declared.name + "': ";

@@ -9,6 +9,7 @@
 #include "kadans/signal/state_hash.h"
 #include "script/bindings/machine_sets.h"
 #include "signal/byte_order.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -232,13 +233,13 @@ void ScriptHost::order(const PlayOrder& order) {
   Due due{0, order, load(order.list, false, problems)};
   if (!problems.empty()) throw InputError(problems);
   if (order.kind == PlayOrder::Kind::play) {
-    if (const std::string why = clash(due.loaded); !why.empty()) throw InputError({.message = why});
+    if (const std::string why = clash(due.loaded); !why.empty()) refuse(why);
   }
   if (order.kind == PlayOrder::Kind::emit) check_event(order);
   const std::vector<std::string> known = names();
   const std::string& named = order.behavior.name;
   if (order.kind == PlayOrder::Kind::reload && !named.empty() && std::ranges::find(known, named) == known.end())
-    throw InputError({.message = unknown_name("behavior", named, known)});
+    refuse(unknown_name("behavior", named, known));
   orders_.push_back(std::move(due));
 }
 
@@ -252,7 +253,7 @@ void ScriptHost::check_event(const PlayOrder& order) {
     why = std::to_string(EventDelivery::ordered_max) + " events wait for the next tick already";
   if (why.empty()) return;
   list_.count_event(false);
-  throw InputError({.message = std::move(why)});
+  refuse(why);
 }
 
 void ScriptHost::take_orders(const Snapshot& snapshot, CommandSender& commands) noexcept {
@@ -342,10 +343,10 @@ BehaviorReply ScriptHost::reply(const BehaviorQuestion& question, const Snapshot
     case BehaviorQuestion::Kind::why:
       return {.reasons = why(question.text, snapshot)};
     case BehaviorQuestion::Kind::describe:
-      if (settings_.describe == nullptr) throw InputError({.message = "nobody describes these behaviors"});
+      if (settings_.describe == nullptr) refuse("nobody describes these behaviors");
       return {.text = settings_.describe(this)};
     case BehaviorQuestion::Kind::reload:
-      throw InputError({.message = "behaviors are reloaded by an order"});
+      refuse("behaviors are reloaded by an order");
     case BehaviorQuestion::Kind::set_parameter:
       break;
   }
@@ -391,11 +392,11 @@ BehaviorReply ScriptHost::set_parameter(const std::string& name, double value) {
       names.push_back(entry.behavior->name() + "." + own.name);
       if (names.back() != name) continue;
       if (!entry.behavior->set_parameter(own.name, value))
-        throw InputError({.message = outside_range(name, value, own.min, own.max, own.unit)});
+        refuse(outside_range(name, value, own.min, own.max, own.unit));
       return {.before = own.value, .chunk = own.chunk};
     }
   }
-  throw InputError({.message = unknown_name("parameter", name, names)});
+  refuse(unknown_name("parameter", name, names));
 }
 
 std::vector<BehaviorReasons> ScriptHost::why(const std::string& name, const Snapshot& snapshot) const {
@@ -406,7 +407,7 @@ std::vector<BehaviorReasons> ScriptHost::why(const std::string& name, const Snap
     known.push_back(entry.behavior->name());
     if (name.empty() || name == known.back()) all.push_back({known.back(), entry.behavior->why(snapshot)});
   }
-  if (!name.empty() && all.empty()) throw InputError({.message = unknown_name("behavior", name, known)});
+  if (!name.empty() && all.empty()) refuse(unknown_name("behavior", name, known));
   return all;
 }
 

@@ -9,6 +9,7 @@
 #include "behavior_link.h"
 #include "kadans/signal/state_hash.h"
 #include "signal/byte_order.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -291,13 +292,13 @@ std::uint32_t ProcessHost::send(const PlayOrder& order) {
   ByteWriter bytes;
   bytes.put(sent_ + 1);
   put_order(order, bytes);
-  if (bytes.size() > BehaviorLink::order_bytes) throw InputError({.message = "the order is too long"});
-  if (phase_ == Phase::down) throw InputError({.message = process_name() + " is down"});
+  if (bytes.size() > BehaviorLink::order_bytes) refuse("the order is too long");
+  if (phase_ == Phase::down) refuse(process_name() + " is down");
   const bool event = order.kind == PlayOrder::Kind::emit;
   if (event) {
-    if (paused()) throw InputError({.message = "the behaviors are paused; the event would be old when they go on"});
+    if (paused()) refuse("the behaviors are paused; the event would be old when they go on");
     if (std::ranges::count(orders_.sent, true, &Sent::shares) >= static_cast<std::ptrdiff_t>(EventQueue::sent_max))
-      throw InputError({.message = std::to_string(EventQueue::sent_max) + " events wait for the next tick already"});
+      refuse(std::to_string(EventQueue::sent_max) + " events wait for the next tick already");
   }
   orders_.sent.push_back({++sent_, {bytes.bytes().begin(), bytes.bytes().end()}, event});
   stopping_ = order.kind == PlayOrder::Kind::stop;
@@ -313,14 +314,14 @@ std::uint32_t ProcessHost::ask(const PlayOrder& order) {
 std::uint32_t ProcessHost::ask(const BehaviorQuestion& question) {
   const bool report = question.kind == BehaviorQuestion::Kind::report;
   if (phase_ == Phase::down) {
-    if (!report) throw InputError({.message = process_name() + " is down"});
+    if (!report) refuse(process_name() + " is down");
     asked_for_[++sent_] = last_report();
     return sent_;
   }
   ByteWriter bytes;
   bytes.put(sent_ + 1);
   put_question(question, bytes);
-  if (bytes.size() > BehaviorLink::question_bytes) throw InputError({.message = "the question is too long"});
+  if (bytes.size() > BehaviorLink::question_bytes) refuse("the question is too long");
   asked_for_[++sent_];
   questions_.sent.push_back({sent_, {bytes.bytes().begin(), bytes.bytes().end()}, true, report});
   return sent_;

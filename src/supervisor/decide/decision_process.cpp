@@ -6,8 +6,8 @@
 
 #include "config/robot/supervisor_config.h"
 #include "config/scenario/event_text.h"
-#include "kadans/signal/input_error.h"
 #include "script/host/script_host.h"
+#include "signal/input_file.h"
 #include "signal/utf8.h"
 
 namespace kadans {
@@ -143,9 +143,9 @@ void DecisionProcess::ask(std::unique_ptr<DecisionQuestion> question, const Snap
 }
 
 void ServedDecisions::order(const PlayOrder& order) {
-  if (order.kind != PlayOrder::Kind::emit) throw InputError({.message = "decisions take events alone"});
+  if (order.kind != PlayOrder::Kind::emit) refuse("decisions take events alone");
   tell_asked(inputs_, BehaviorInputs::Asked::heard, [&](ByteWriter& bytes) { put_event(order.event, bytes); });
-  if (const std::string why = decisions_.refusal(order.event); !why.empty()) throw InputError({.message = why});
+  if (const std::string why = decisions_.refusal(order.event); !why.empty()) refuse(why);
 }
 
 void ServedDecisions::before_tick(const Snapshot& snapshot) noexcept {

@@ -7,6 +7,7 @@
 #include "kadans/signal/input_error.h"
 #include "script/host/script_host.h"
 #include "signal/byte_order.h"
+#include "signal/input_file.h"
 
 namespace kadans {
 namespace {
@@ -154,9 +155,8 @@ BehaviorReply Decisions::read_again(const Snapshot& snapshot) noexcept {
 
 BehaviorReply Decisions::reply(const BehaviorQuestion& question, const Snapshot& snapshot) {
   if (question.kind == BehaviorQuestion::Kind::reload) return read_again(snapshot);
-  if (question.kind != BehaviorQuestion::Kind::why)
-    throw InputError({.message = "decisions are asked why, and to read their files again"});
-  if (failed() || behavior_->finished()) throw InputError({.message = behavior_->name() + " is over"});
+  if (question.kind != BehaviorQuestion::Kind::why) refuse("decisions are asked why, and to read their files again");
+  if (failed() || behavior_->finished()) refuse(behavior_->name() + " is over");
   return {.reasons = {{behavior_->name(), behavior_->why(snapshot)}}};
 }
 

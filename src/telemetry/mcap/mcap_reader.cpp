@@ -5,7 +5,6 @@
 
 #include <zstd.h>
 
-#include "kadans/signal/input_error.h"
 #include "mcap_format.h"
 #include "signal/crc32.h"
 #include "signal/input_file.h"
@@ -22,15 +21,14 @@ constexpr std::uint64_t footer_length = 20;
 McapReader::McapReader(const std::string& path) : path_(path) {
   check_input_file(path);
   file_.open(path, std::ios::binary);
-  const auto refuse = [&path](const char* why) { throw InputError({.file = path, .message = why}); };
   file_.seekg(0, std::ios::end);
   const std::streamoff size = file_ ? static_cast<std::streamoff>(file_.tellg()) : -1;
-  if (size < 0) refuse("cannot be read");
+  if (size < 0) refuse(path, "cannot be read");
   file_size_ = static_cast<std::uint64_t>(size);
   std::string magic(mcap_magic.size(), '\0');
   file_.seekg(0);
   file_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (!file_ || magic != mcap_magic) refuse("is not an MCAP file: it does not begin with the MCAP magic");
+  if (!file_ || magic != mcap_magic) refuse(path, "is not an MCAP file: it does not begin with the MCAP magic");
   position_ = magic.size();
 }
 

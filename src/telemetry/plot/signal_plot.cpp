@@ -8,8 +8,8 @@
 #include <optional>
 #include <system_error>
 
-#include "kadans/signal/input_error.h"
 #include "realtime/machine/child_process.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "signal/utf8.h"
 #include "telemetry/plot.h"
@@ -497,10 +497,9 @@ std::string draw(const SignalPlot& plot, PlotFormat format, PlotSize size) {
     drawn = run_program({"gnuplot", "-d"}, gnuplot_script(plot, format, size));  // -d: nobody's settings but ours
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::no_such_file_or_directory) throw;
-    throw InputError({.message = "plots are drawn by gnuplot, which is not here: install the package gnuplot-nox"});
+    refuse("plots are drawn by gnuplot, which is not here: install the package gnuplot-nox");
   }
-  if (drawn.exit_code != 0 || drawn.out.empty())
-    throw InputError({.message = "gnuplot failed: " + drawn.err.substr(0, 500)});
+  if (drawn.exit_code != 0 || drawn.out.empty()) refuse("gnuplot failed: " + drawn.err.substr(0, 500));
   return drawn.out;
 }
 

@@ -13,8 +13,8 @@
 
 #include "config/json/foreign_json.h"
 #include "input_reader.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/nearest_name.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "signal/utf8.h"
 #include "telemetry/mcap/mcap_writer.h"
@@ -233,14 +233,14 @@ class CutInputs {
   // `exact`: the signals of which the new file has each tick with all bits.
   CutInputs(const RecordOutline& record, std::int64_t to_ns, const std::set<std::string>& exact, McapWriter& file)
       : to_ns_(std::min(to_ns, record.last_ns)), file_(file), ticks_(record.file), behaviors_(record.file) {
-    const auto refuse = [&](const std::string& why) { throw InputError({.file = record.file, .message = why}); };
     more_ = ticks_.next(tick_);
     if (!more_)
-      refuse("has no inputs to be kept: " + (ticks_.problem().empty() ? "it holds no tick" : ticks_.problem()));
+      refuse(record.file,
+             "has no inputs to be kept: " + (ticks_.problem().empty() ? "it holds no tick" : ticks_.problem()));
     if (tick_.tick != 0)
-      refuse("begins in tick " + std::to_string(tick_.tick) +
-             " of its run: only inputs from the first tick on can be repeated");
-    if (ticks_.layout().state_bytes > 0) refuse("is a flight record: its inputs are not cut");
+      refuse(record.file, "begins in tick " + std::to_string(tick_.tick) +
+                              " of its run: only inputs from the first tick on can be repeated");
+    if (ticks_.layout().state_bytes > 0) refuse(record.file, "is a flight record: its inputs are not cut");
     std::vector<bool> known;
     TextMap facts = ticks_.layout().facts();
     for (const std::string& name : ticks_.signals()) {
@@ -321,7 +321,7 @@ class Cutting {
     put_facts();
     if (cut_.inputs) inputs_ = std::make_unique<CutInputs>(record_, cut_.span.to_ns, exact_signals(), file_);
     while (rows_.next()) pass();
-    if (result_.messages == 0) throw InputError({.file = record_.file, .message = "holds nothing between these times"});
+    if (result_.messages == 0) refuse(record_.file, "holds nothing between these times");
     if (inputs_) check(inputs_->finish());
     check(file_.close());
     result_.file_bytes = file_.file_bytes();
@@ -330,7 +330,7 @@ class Cutting {
 
  private:
   void check(bool done) const {
-    if (!done) throw InputError({.message = file_.error()});
+    if (!done) refuse(file_.error());
   }
 
   void put_facts() {

@@ -13,6 +13,7 @@
 
 #include "kadans/signal/input_error.h"
 #include "record_rows.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 #include "signal/sine_cosine.h"
 #include "telemetry/record/record_folder.h"
@@ -36,7 +37,7 @@ class ObservationReader {
       if (!rows_.values().empty()) take();
     }
     if (!rows_.reader().complete() && !rows_.reader().problem().empty() && found_.empty())
-      throw InputError({.file = file_, .message = rows_.reader().problem()});
+      refuse(file_, rows_.reader().problem());
     std::ranges::stable_sort(poses_, {}, &Pose::time_ns);
     for (Found& one : found_) {
       if (one.carried) carry_back(one.observation);
@@ -228,14 +229,14 @@ class SequenceReader {
 
 std::vector<RecordedObservation> read_observations(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({.file = file, .message = "cannot be read"});
+  if (!stream) refuse(file, "cannot be read");
   if (!is_record(file)) return SequenceReader(file).read(stream);
   ObservationReader reader(file);
   std::vector<RecordedObservation> all = reader.read();
   if (!reader.has_entries())
-    throw InputError({.file = file,
-                      .message = "has no observations: its robot had no world model (supervisor.world), or the record "
-                                 "was cut without the signals seen.*"});
+    refuse(file,
+           "has no observations: its robot had no world model (supervisor.world), or the record "
+           "was cut without the signals seen.*");
   return all;
 }
 

@@ -11,6 +11,7 @@
 #include "config/json/problems.h"
 #include "kadans/signal/nearest_name.h"
 #include "kadans/signal/state_hash.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -212,7 +213,7 @@ RecordOutline outline_of(const std::string& path) {
   }
   if (topics.empty()) {
     const std::string& problem = rows.reader().problem();
-    throw InputError({.file = problem.empty() ? path : "", .message = problem.empty() ? "holds no message" : problem});
+    refuse(problem.empty() ? path : "", problem.empty() ? "holds no message" : problem);
   }
   finish(rows.reader(), topics, outline);
   return outline;
@@ -234,8 +235,7 @@ std::vector<ChosenSignal> choose_signals(const RecordOutline& record, const std:
       found = true;
       if (taken.insert(name).second) chosen.push_back(signal);
     }
-    if (!found)
-      throw InputError({.file = record.file, .message = unknown_name("signal", pattern, record.signal_names())});
+    if (!found) refuse(record.file, unknown_name("signal", pattern, record.signal_names()));
   }
   return chosen;
 }
@@ -250,8 +250,7 @@ std::vector<std::uint16_t> choose_topics(const RecordOutline& record, const std:
       names.push_back(topic.topic.name);
       if (matches(wanted, topic.topic.name)) chosen.push_back(topic.channel);
     }
-    if (chosen.size() == before)
-      throw InputError({.file = record.file, .message = unknown_name("topic", wanted, names)});
+    if (chosen.size() == before) refuse(record.file, unknown_name("topic", wanted, names));
   }
   return chosen;
 }

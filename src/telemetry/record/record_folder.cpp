@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <optional>
@@ -70,10 +69,8 @@ std::vector<RecordFolder::Own> RecordFolder::own_records() const {
 
 fs::path RecordFolder::next(std::string_view suffix) const {
   const std::vector<Own> all = own_records();
-  char number[32];
-  std::snprintf(number, sizeof number, "_%04llu_",
-                static_cast<unsigned long long>(all.empty() ? 1 : all.back().number + 1));
-  return folder_ / (robot_ + number + date_now() + std::string(suffix) + std::string(ending));
+  const auto number = static_cast<unsigned long long>(all.empty() ? 1 : all.back().number + 1);
+  return folder_ / (robot_ + printed("_%04llu_", number) + date_now() + std::string(suffix) + std::string(ending));
 }
 
 std::size_t RecordFolder::make_room(std::uint64_t more_bytes, std::initializer_list<fs::path> kept) const {

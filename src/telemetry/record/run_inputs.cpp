@@ -7,8 +7,8 @@
 #include <zstd.h>
 
 #include "config/json/problems.h"
-#include "kadans/signal/input_error.h"
 #include "kadans/signal/state_hash.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -18,10 +18,6 @@ constexpr std::string_view prefix = "inputs/", suffix = ".zst";
 constexpr std::size_t texts_max_bytes = std::size_t{64} << 20U;  // of all together, unpacked
 constexpr std::size_t inputs_max = 10'000;
 constexpr int text_compression_level = 6;  // also while a robot runs, when its record goes on in a new file
-
-[[noreturn]] void refuse(const std::string& record, const std::string& why) {
-  throw InputError({.file = record, .message = why});
-}
 
 std::vector<std::byte> packed(const std::string& text) {
   Packer packer(text_compression_level);

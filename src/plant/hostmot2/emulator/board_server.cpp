@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "kadans/signal/input_error.h"
+#include "signal/input_file.h"
 
 namespace kadans::hostmot2 {
 
@@ -19,7 +20,7 @@ BoardServer::BoardServer(const HostMot2Settings& settings, const PlantSite& site
     for (const BoardSettings& board : settings.boards) sockets_.push_back(listening_socket(board_place(board.address)));
   } catch (const InputError& error) {
     for (const int one : sockets_) close(one);
-    throw InputError({.file = "--listen", .message = error.problems().front().message});
+    refuse("--listen", error.problems().front().message);
   }
 }
 

@@ -9,8 +9,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "kadans/signal/input_error.h"
 #include "plant/hostmot2/mapped_link.h"
+#include "signal/input_file.h"
 #include "signal/owned_descriptor.h"
 
 namespace kadans::hostmot2 {
@@ -57,7 +57,7 @@ RegisterFile::RegisterFile(EmulatedBoard& board, const std::string& path) : boar
   const bool good = file && ftruncate(file.number(), file_bytes) == 0;
   void* const memory =
       good ? mmap(nullptr, file_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file.number(), 0) : MAP_FAILED;
-  if (memory == MAP_FAILED) throw InputError({.message = path + ": " + std::system_category().message(errno)});
+  if (memory == MAP_FAILED) refuse(path + ": " + std::system_category().message(errno));
   registers_ = static_cast<volatile std::uint32_t*>(memory);
   for (std::size_t i = 0; i < shown_.size(); ++i) registers_[i] = 0;
   show();
