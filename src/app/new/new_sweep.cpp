@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr int cases = 24, cases_run = 4;
+constexpr int cases_planned = 24, cases_run = 4;
 
 // The scenarios of this robot in the project.
 std::vector<fs::path> scenarios_of(const NewSubject& subject) {
@@ -120,7 +120,7 @@ int run_new_sweep(const NewPartOptions& options) {
                   {"doc", scenario.name + ", with other masses, torques, noise, gains and delay in each run."},
                   {"scenarios", {from_root}},
                   {"sampling", "latin_hypercube"},
-                  {"cases", cases},
+                  {"cases", cases_planned},
                   {"vary", varied(subject, quantities.names())},
                   {"metrics", metrics},
                   {"time", "time_s"},
