@@ -66,10 +66,10 @@ struct RobotReadings {
 };
 
 // Translates a row of signals into readings.
-class RobotReader {
+class RowReader {
  public:
   // Make it when all signals are declared. The catalog must outlive it. Throws InputError on a wrong URDF.
-  RobotReader(const Catalog& catalog, const std::string& urdf);
+  RowReader(const Catalog& catalog, const std::string& urdf);
 
   void take(const LatestRow::View& row) noexcept;
   const RobotReadings& readings() const noexcept { return is_; }
@@ -131,7 +131,7 @@ class Ros2Topics {
   std::vector<Stamped> stamped_;  // scratch: the frames of one message
 };
 
-RobotReader::RobotReader(const Catalog& catalog, const std::string& urdf) : model_(*catalog.model) {
+RowReader::RowReader(const Catalog& catalog, const std::string& urdf) : model_(*catalog.model) {
   const auto find = [&](const std::string& name) { return catalog.signals.find(name); };
   const auto first = [&](const char* one, const char* other) { return find(one) ? find(one) : find(other); };
   for (const Joint& joint : model_.joints) {
@@ -157,7 +157,7 @@ RobotReader::RobotReader(const Catalog& catalog, const std::string& urdf) : mode
   }
 }
 
-void RobotReader::take(const LatestRow::View& row) noexcept {
+void RowReader::take(const LatestRow::View& row) noexcept {
   const auto value = [&](const Signal& signal) { return signal ? row.values[*signal] : 0.0; };
   take_odometry(row, 1e-9 * static_cast<double>(row.time_ns - is_.time_ns));
   is_.time_ns = row.time_ns;
@@ -177,7 +177,7 @@ void RobotReader::take(const LatestRow::View& row) noexcept {
     is_.moving[i + 1].pose = frame_pose(driven_[i], model_, is_.position_rad);
 }
 
-void RobotReader::take_odometry(const LatestRow::View& row, double elapsed_s) noexcept {
+void RowReader::take_odometry(const LatestRow::View& row, double elapsed_s) noexcept {
   const auto value = [&](const Signal& signal) { return signal ? row.values[*signal] : 0.0; };
   if (value(reckoned_.valid) == 0) return is_.odometry.reset();
   const double heading_rad = value(reckoned_.heading), c = std::cos(heading_rad), s = std::sin(heading_rad);
@@ -379,7 +379,7 @@ struct Ros2Bridge::Inside final : Task {
   InstancePort& port;
   std::string urdf;
   std::uint32_t every_ticks;
-  RobotReader reader;
+  RowReader reader;
   TextOrders commands;
   std::optional<Ros2Topics> topics;
   std::promise<void> joined;
