@@ -23,11 +23,9 @@ void Lockstep::add(const EngineSettings& settings, ControlEngine& control, Behav
   robots_.insert(robots_.begin(), {&control, &behaviors, supervisor, behavior_period_ns});
 }
 
-void Lockstep::silence(const BehaviorEngine& behaviors, bool themselves, bool supervisor) noexcept {
+void Lockstep::silence(const BehaviorEngine& of, Silent silent) noexcept {
   for (Engines& robot : robots_) {
-    if (robot.behaviors != &behaviors) continue;
-    robot.behaviors_silent = themselves;
-    robot.supervisor_silent = supervisor;
+    if (robot.behaviors == &of) robot.silent = silent;
   }
 }
 
@@ -47,12 +45,12 @@ void Lockstep::step() {
   }
   for (Engines& robot : robots_) {
     if (now_ns < robot.behaviors_due_ns) continue;
-    if (!robot.behaviors_silent) robot.behaviors->tick(now_ns);
+    if (!robot.silent.behaviors) robot.behaviors->tick(now_ns);
     robot.behaviors_due_ns = (now_ns / robot.behavior_period_ns + 1) * robot.behavior_period_ns;
   }
   for (Engines& robot : robots_) {
     if (robot.supervisor == nullptr || now_ns < robot.supervisor_due_ns) continue;
-    if (!robot.supervisor_silent) robot.supervisor->tick(now_ns);
+    if (!robot.silent.supervisor) robot.supervisor->tick(now_ns);
     const std::int64_t period_ns = robot.supervisor->period_ns();
     robot.supervisor_due_ns = (now_ns / period_ns + 1) * period_ns;
   }

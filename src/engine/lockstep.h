@@ -32,9 +32,12 @@ class Lockstep {
   void step();
 
   // Faults for tests and scenarios. miss: skips this number of control ticks of all robots before the next one.
-  // silence: no tick of these behaviors themselves, or of what decides over them, comes until it is called with false.
+  // silence: no tick of what is silent comes until it is called without it.
   void miss(std::uint32_t control_ticks) noexcept { missed_ = control_ticks; }
-  void silence(const BehaviorEngine& behaviors, bool themselves, bool supervisor) noexcept;
+  struct Silent {
+    bool behaviors = false, supervisor = false;
+  };
+  void silence(const BehaviorEngine& of, Silent silent) noexcept;
 
   std::int64_t time_ns() const noexcept { return clock_.now_ns(); }
   std::int64_t control_period_ns() const noexcept { return control_period_ns_; }
@@ -48,7 +51,7 @@ class Lockstep {
     Supervising* supervisor;  // nullptr: there is none
     std::int64_t behavior_period_ns;
     std::int64_t behaviors_due_ns = 0, supervisor_due_ns = 0;
-    bool behaviors_silent = false, supervisor_silent = false;
+    Silent silent{};
   };
 
   void pass_period();

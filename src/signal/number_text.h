@@ -72,7 +72,7 @@ std::string listed(const List& list, Text text = {}, std::string_view between = 
   std::string all;
   for (auto at = std::begin(list); at != std::end(list); ++at) {
     const bool ends = !last.empty() && std::next(at) == std::end(list);
-    if (!all.empty()) all += ends ? last : between;
+    if (at != std::begin(list)) all += ends ? last : between;
     all += std::invoke(text, *at);
   }
   return all;

@@ -25,7 +25,7 @@ class SignalsBlocked {
   sigset_t before_;
 };
 
-struct QuietThread {
+struct QuietThreadSettings {
   const char* name;         // at most 15 characters, shown by ps and top
   std::size_t stack_bytes;  // all of it may be locked memory
   int priority = 0;         // of SCHED_FIFO, from its first instruction on; 0: as the thread that starts it
@@ -34,7 +34,7 @@ struct QuietThread {
 // Starts a thread that blocks all signals and calls this member of the object. Returns 0, or the error with which the
 // system refuses it.
 template <auto Member, typename Object>
-int start_quiet_thread(pthread_t& thread, const QuietThread& wanted, Object* object) noexcept {
+int start_quiet_thread(pthread_t& thread, const QuietThreadSettings& wanted, Object* object) noexcept {
   const auto enter = [](void* self) -> void* {
     (static_cast<Object*>(self)->*Member)();
     return nullptr;

@@ -38,6 +38,14 @@ TEST_CASE("number_of takes whole texts that are finite numbers, and nothing else
   CHECK_FALSE(number_of<unsigned>("-1"));
 }
 
+TEST_CASE("a list is told with what stands between its items, also around an empty one") {
+  const std::vector<std::string> words{"", "left", "right"};
+  CHECK(listed(words) == ", left, right");
+  CHECK(listed(
+            words, [](const std::string& word) { return "'" + word + "'"; }, ", ", " or ") == "'', 'left' or 'right'");
+  CHECK(listed(std::vector<std::string>{}).empty());
+}
+
 TEST_CASE("a word of a command is quoted when the shell would take it for something else") {
   CHECK(shell_word("config/scenarios/squat.json") == "config/scenarios/squat.json");
   CHECK(shell_word("my squat.json") == "'my squat.json'");

@@ -21,8 +21,9 @@ class Sick final : public ControlObject {
   void declare(Declaration&) override {}
   void start(const ControlInput&) noexcept override {}
   void step(const ControlInput&, ActuationFrame& actuation) noexcept override {
-    const double effort_Nm = ++ticks_ > 100 ? std::numeric_limits<double>::quiet_NaN() : 1;
-    actuation.joints[0] = {.effort_Nm = effort_Nm, .mode = ActuationMode::effort};
+    const double wrong = ++ticks_ > 100 ? std::numeric_limits<double>::quiet_NaN() : 1;
+    actuation.joints[0] = {.effort_Nm = ticks_ > 150 ? 1 : wrong, .mode = ActuationMode::effort};
+    actuation.joints[0].stiffness_Nm_per_rad = wrong;
   }
   void set_point(std::uint32_t, double, double) noexcept override {}
   void cancel_motion(std::uint32_t) noexcept override {}

@@ -124,8 +124,8 @@ class OneRobotWorld : public World, public WorldRobot {
   WorldRobot& robot(std::size_t) noexcept final { return *this; }
 };
 
-// A world of one robot around a robot of another world: what it does not change passes through. It opens and closes
-// nothing.
+// A world of one robot around a robot of another world: what it does not change passes through, but for write_drives(),
+// which comes as write(), as to every plant that does not take drives. It opens and closes nothing.
 class WorldAround : public OneRobotWorld {
  public:
   void declare_signals(SignalTable& table) const override { robot_.declare_signals(table); }

@@ -15,7 +15,7 @@
 namespace kadans {
 namespace {
 
-// `kadans view` shows a record in the web page; `kadans render` makes pictures of it.
+// `kadans view` shows a record in the web page.
 struct ViewOptions {
   std::string record;
   LiveServiceOptions live;

@@ -10,6 +10,8 @@
 #include <tinyxml2.h>
 
 #include "kadans/signal/input_error.h"
+#include "model/urdf/urdf_description.h"
+#include "model/xml_scan.h"
 #include "signal/input_file.h"
 
 namespace kadans {
@@ -23,6 +25,8 @@ struct CodeFile {
   fs::path path;
   std::string text;
   std::string bare{};  // of C, without comments
+
+  bool is_xml() const { return path.extension() == ".xml"; }
 };
 
 std::string without_comments(const std::string& text) {
@@ -62,7 +66,7 @@ std::vector<CodeFile> code_files(const fs::path& folder) {
       refuse(folder,
              "holds more than " + std::to_string(code_files_max) + " files of C: name the folder of one model's code");
     CodeFile file{.path = entry.path(), .text = read_input_file(entry.path().string())};
-    if (ending != ".xml") {
+    if (!file.is_xml()) {
       refuse_long_lines(file);
       file.bare = without_comments(file.text);
     }
@@ -130,6 +134,7 @@ void take_files(const std::vector<CodeFile>& files, GeneratedCode& code) {
 void read_name_table(const std::vector<CodeFile>& files, const std::string& table, const std::string& array,
                      std::vector<CodeValue>& values) {
   for (const CodeFile& file : files) {
+    if (file.is_xml()) continue;
     const std::smatch found =
         first_match(file.text, ("\\b(\\w*)_" + table + R"(_names\s*\[[^\]\n]*\]\s*=\s*\{)").c_str());
     if (found.empty()) continue;
@@ -150,6 +155,7 @@ void read_element_comments(const std::vector<CodeFile>& files, const std::string
   std::map<int, std::pair<std::string, fs::path>> names;
   const std::regex pattern("\\b" + array + R"(\s*\[\s*(\d{1,4})\s*\][^;\n]*;[ \t]*/\*\s*([^*\n]+?)\s*\*/)");
   for (const CodeFile& file : files) {
+    if (file.is_xml()) continue;
     for (std::sregex_iterator i(file.text.begin(), file.text.end(), pattern), end; i != end; ++i)
       names.try_emplace(std::stoi((*i)[1]), (*i)[2], file.path);
   }
@@ -265,7 +271,7 @@ GeneratedCode read_simulink(const std::vector<CodeFile>& files, const CodeFile& 
                             (code.inputs.empty() ? "inputs" : "outputs"));
   for (const CodeFile& file : files) {
     std::smatch step = first_match(file.bare, R"(stepSize0\s*=\s*([0-9.]+(?:[eE][-+]?\d+)?))");
-    if (step.empty()) step = first_match(file.text, R"(Sample time: \[([0-9.]+(?:[eE][-+]?\d+)?)s)");
+    if (step.empty() && !file.is_xml()) step = first_match(file.text, R"(Sample time: \[([0-9.]+(?:[eE][-+]?\d+)?)s)");
     if (!step.empty() && code.step_s == 0) code.step_s = std::stod(step[1]);
   }
   return code;
@@ -286,6 +292,9 @@ const XMLElement* child(const XMLElement* element, const char* name) {
 
 GeneratedCode read_fmu(const std::vector<CodeFile>& files, const CodeFile& description) {
   GeneratedCode code{.shape = GeneratedCode::Shape::fmu, .tool = "OpenModelica (FMI 2.0)"};
+  if (description.text.size() > description_max_bytes)
+    refuse(description.path, "has more than " + std::to_string(description_max_bytes) + " bytes");
+  if (const auto wrong = find_non_text(description.text)) refuse(description.path, "is no XML: " + wrong->message);
   tinyxml2::XMLDocument xml;
   if (xml.Parse(description.text.data(), description.text.size()) != tinyxml2::XML_SUCCESS)
     throw InputError({.file = description.path.string(),

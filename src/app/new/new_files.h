@@ -51,7 +51,7 @@ struct NewControlObjectOptions {
 // A control object around C code that a tool has made; `main_template` is its main.cpp or plugin.cpp.
 int run_new_from_c(const NewControlObjectOptions& options, std::string_view main_template);
 
-// Each puts a command into the group `new`. They throw InputError, and then nothing is written.
+// Each puts a command into the group `new`. When what it runs throws InputError, nothing is written.
 void add_new_control_object(CLI::App& made, CommandLine& line);
 void add_new_robot(CLI::App& made, CommandLine& line);
 void add_new_behavior(CLI::App& made, CommandLine& line);

@@ -83,7 +83,7 @@ class TrialWatch final : public RunObserver {
   static void end_disturbances(RunParts& robot) {
     if (robot.disturbances == nullptr) return;
     robot.disturbances = nullptr;
-    robot.lockstep.silence(robot.behaviors, false, false);
+    robot.lockstep.silence(robot.behaviors, {});
   }
   static TrialFailure error(const LogLine& line) {
     return {.what = "error " + without_numbers(line.text),

@@ -157,6 +157,7 @@ void add_case(tinyxml2::XMLElement& suite, const JunitCase& one) {
 // By RunStatus: passed, failed, refused, crashed, timed out, cancelled.
 constexpr std::array<Verdict, 6> verdicts{Verdict::passed, Verdict::failed, Verdict::error,
                                           Verdict::error,  Verdict::error,  Verdict::skipped};
+static_assert(verdicts.size() == static_cast<std::size_t>(RunStatus::cancelled) + 1);
 
 }  // namespace
 

@@ -40,7 +40,7 @@ void Disturbances::apply(Lockstep& lockstep, const BehaviorEngine& behaviors, Wo
     }
     happened_[i] = true;
   }
-  if (!faults_.empty()) lockstep.silence(behaviors, silent, undecided);
+  if (!faults_.empty()) lockstep.silence(behaviors, {.behaviors = silent, .supervisor = undecided});
   hands_.apply(world, robot, lockstep.time_ns(), lockstep.control_period_ns());
   pushes_.apply(robot, time_s, 1e-9 * static_cast<double>(lockstep.control_period_ns()));
 }

@@ -107,28 +107,6 @@ void ask_guards(lua_State* state, Asking& asking) {
   }
 }
 
-// The fields of the function's arguments, s and m as a rule, that stand in a guard's text; no calls.
-std::vector<Seen> fields_read(const std::string& text) {
-  Tokens tokens = lex_source(text);
-  tokens.resize(tokens.size() + 4);
-  std::size_t open = 0;
-  while (!tokens[open].is("function") && tokens[open].kind != TokenKind::end) ++open;
-  while (!tokens[open].is("(") && tokens[open].kind != TokenKind::end) ++open;
-  const std::string snapshot = tokens[open + 1].text, machine = tokens[open + 2].is(",") ? tokens[open + 3].text : "";
-  std::vector<Seen> all;
-  for (std::size_t i = open; tokens[i].kind != TokenKind::end && all.size() < paths_max; ++i) {
-    const bool of_snapshot = tokens[i].is_name(snapshot);
-    if ((!of_snapshot && !tokens[i].is_name(machine)) || tokens[i - 1].is(".")) continue;
-    std::string path = tokens[i].text;
-    const std::size_t first = i;
-    for (; tokens[i + 1].is(".") && tokens[i + 2].kind == TokenKind::name; i += 2) path += "." + tokens[i + 2].text;
-    const bool known = std::ranges::find(all, path, &Seen::path) != all.end();
-    if (i > first && !tokens[i + 1].is_any({"(", ":", "["}) && !known)
-      all.push_back({.path = path, .of_snapshot = of_snapshot, .fields = {}});
-  }
-  return all;
-}
-
 std::string shown_lines(const std::string& text, int first, int last) {
   std::vector<std::string> lines;
   std::size_t common = std::string::npos;
@@ -146,7 +124,12 @@ std::string shown_lines(const std::string& text, int first, int last) {
   return all;
 }
 
-GuardSource source_of(const Behavior::Parts& parts, int function) {
+struct FunctionLines {
+  const LuaState::Source* source = nullptr;  // null: there is no function, or no text of it
+  int first = 0, last = 0;
+};
+
+FunctionLines lines_of(const Behavior::Parts& parts, int function) {
   lua_State* state = parts.lua->get();
   if (function == Chart::no_function || lua_checkstack(state, 2) == 0) return {};
   lua_Debug place{};
@@ -154,9 +137,38 @@ GuardSource source_of(const Behavior::Parts& parts, int function) {
   lua_getinfo(state, ">S", &place);
   for (const LuaState::Source& source : parts.lua->sources()) {
     if (place.linedefined <= 0 || source.chunk != std::string_view(place.source).substr(1)) continue;
-    return {source.chunk, place.linedefined, shown_lines(source.text, place.linedefined, place.lastlinedefined)};
+    return {&source, place.linedefined, place.lastlinedefined};
   }
   return {};
+}
+
+GuardSource source_of(const Behavior::Parts& parts, int function) {
+  const FunctionLines lines = lines_of(parts, function);
+  if (lines.source == nullptr) return {};
+  return {lines.source->chunk, lines.first, shown_lines(lines.source->text, lines.first, lines.last)};
+}
+
+// The fields of the function's arguments, s and m as a rule, that stand in a guard's lines; no calls.
+std::vector<Seen> fields_read(const FunctionLines& lines) {
+  Tokens tokens = lines.source != nullptr ? lex_source(lines.source->text) : Tokens();
+  std::erase_if(tokens, [&](const SourceToken& one) { return one.line < lines.first || one.line > lines.last; });
+  tokens.resize(tokens.size() + 5, SourceToken{TokenKind::end, "", lines.last});
+  std::size_t open = 0;
+  while (!tokens[open].is("function") && tokens[open].kind != TokenKind::end) ++open;
+  while (!tokens[open].is("(") && tokens[open].kind != TokenKind::end) ++open;
+  const std::string snapshot = tokens[open + 1].text, machine = tokens[open + 2].is(",") ? tokens[open + 3].text : "";
+  std::vector<Seen> all;
+  for (std::size_t i = open; tokens[i].kind != TokenKind::end && all.size() < paths_max; ++i) {
+    const bool of_snapshot = tokens[i].is_name(snapshot);
+    if ((!of_snapshot && !tokens[i].is_name(machine)) || tokens[i - 1].is(".")) continue;
+    std::string path = tokens[i].text;
+    const std::size_t first = i;
+    for (; tokens[i + 1].is(".") && tokens[i + 2].kind == TokenKind::name; i += 2) path += "." + tokens[i + 2].text;
+    const bool known = std::ranges::find(all, path, &Seen::path) != all.end();
+    if (i > first && !tokens[i + 1].is_any({"(", ":", "["}) && !known)
+      all.push_back({.path = path, .of_snapshot = of_snapshot, .fields = {}});
+  }
+  return all;
 }
 
 void add(std::string& to, const std::string& clause) { to += (to.empty() ? "" : "; ") + clause; }
@@ -220,7 +232,7 @@ std::vector<TransitionReason> Behavior::why(const Snapshot& snapshot) const {
   Asking asking{copy};
   for (const StateIndex index : copy.runner->active_states()) add_questions(copy, index, asking.questions);
   for (Question& question : asking.questions) {
-    question.seen = fields_read(source_of(copy, copy.chart.transitions[question.transition].when).text);
+    question.seen = fields_read(lines_of(copy, copy.chart.transitions[question.transition].when));
     for (Seen& seen : question.seen) seen.fields = std::string_view(seen.path).substr(seen.path.find('.') + 1);
   }
   const ScriptLimits& limits = copy.settings.limits;

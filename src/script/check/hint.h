@@ -64,7 +64,7 @@ const Named& check_named(lua_State* state, const std::vector<Named>& all, const 
   if (found != all.end()) return *found;
   const Hint hint = make_hint(state, name, [&](auto& names) { names = names_of(all); });
   luaL_error(state, "unknown %s '%s'%s", kind, name, hint.data());
-  __builtin_unreachable();
+  __builtin_unreachable();  // luaL_error does not return
 }
 
 }  // namespace kadans

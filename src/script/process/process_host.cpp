@@ -257,18 +257,16 @@ void ProcessHost::attach(Catalog& catalog, const SafePosture::Settings& safe) {
     }
   }
   fingerprint_ = fingerprint_of(catalog);
-  const auto refuse = [this](const std::string& why) {
-    throw InputError({.message = process_name() + " did not start: " + why});
-  };
+  const auto reject = [this](const std::string& why) { refuse(process_name() + " did not start: " + why); };
   while (!child_->is_ready()) {
     const std::int64_t left_ns = child_->started_wall_ns + settings_.start_patience_ns - clock_.now_ns();
     const bool gone = child_->process.bell().wait(std::max<std::int64_t>(left_ns, 0)) == Doorbell::Heard::end;
-    if (gone) refuse(child_->process.end());
-    if (left_ns <= 0) refuse("it takes too long");
+    if (gone) reject(child_->process.end());
+    if (left_ns <= 0) reject("it takes too long");
   }
   const auto names = child_->names();
-  if (!names) refuse("it tells no names");
-  if (child_->fingerprint() != fingerprint_) refuse("the robot's files changed meanwhile");
+  if (!names) reject("it tells no names");
+  if (child_->fingerprint() != fingerprint_) reject("the robot's files changed meanwhile");
   if (!decides()) play_.declare(catalog.signals);
   for (std::size_t i = 0; i < names->size(); ++i) {
     BehaviorStatus& status = behaviors_.emplace_back();

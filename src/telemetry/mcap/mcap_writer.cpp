@@ -23,7 +23,7 @@ constexpr std::size_t definitions_bytes = std::size_t{64} << 10U;
 void Packer::ZstdDelete::operator()(ZSTD_CCtx_s* context) const noexcept { ZSTD_freeCCtx(context); }
 
 Packer::Packer(int level, std::size_t largest) : zstd_(ZSTD_createCCtx()), packed_(ZSTD_compressBound(largest)) {
-  if (zstd_ == nullptr) return;
+  if (zstd_ == nullptr) throw std::bad_alloc();
   const auto set = [this](ZSTD_cParameter parameter, int value) {
     (void)ZSTD_CCtx_setParameter(zstd_.get(), parameter, value);
   };
@@ -34,7 +34,6 @@ Packer::Packer(int level, std::size_t largest) : zstd_(ZSTD_createCCtx()), packe
 }
 
 std::span<const std::byte> Packer::pack(std::span<const std::byte> bytes) {
-  if (zstd_ == nullptr) return {};
   packed_.resize(std::max(packed_.size(), ZSTD_compressBound(bytes.size())));
   const std::size_t size = ZSTD_compress2(zstd_.get(), packed_.data(), packed_.size(), bytes.data(), bytes.size());
   return std::span(packed_).first(ZSTD_isError(size) != 0 ? 0 : size);

@@ -63,8 +63,9 @@ class RecordFile {
 class Packer {
  public:
   // `level`: of zstd, -7..19, less is faster. `largest`: bytes for whose packing there is room from the start.
+  // Throws std::bad_alloc.
   explicit Packer(int level, std::size_t largest = 0);
-  // Valid until the next call. Empty: out of memory.
+  // Valid until the next call. Empty: zstd has failed.
   std::span<const std::byte> pack(std::span<const std::byte> bytes);
 
  private:

@@ -228,9 +228,11 @@ class SequenceReader {
 }  // namespace
 
 std::vector<RecordedObservation> read_observations(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) refuse(file, "cannot be read");
-  if (!is_record(file)) return SequenceReader(file).read(stream);
+  check_input_file(file);
+  if (!is_record(file)) {
+    std::ifstream stream(file, std::ios::binary);
+    return SequenceReader(file).read(stream);
+  }
   ObservationReader reader(file);
   std::vector<RecordedObservation> all = reader.read();
   if (!reader.has_entries())

@@ -213,7 +213,8 @@ RecordOutline outline_of(const std::string& path) {
   }
   if (topics.empty()) {
     const std::string& problem = rows.reader().problem();
-    refuse(problem.empty() ? path : "", problem.empty() ? "holds no message" : problem);
+    if (problem.empty()) refuse(path, "holds no message");
+    refuse(problem);
   }
   finish(rows.reader(), topics, outline);
   return outline;

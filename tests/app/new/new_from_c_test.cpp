@@ -99,6 +99,20 @@ TEST_CASE("Texts of modelDescription.xml are decoded, and what stands in its com
   CHECK(has(source, "\"Torque \\\"per\\\" error.\"}"));
 }
 
+TEST_CASE("Files of XML beside code of C may hold anything; what is too much for a description is refused") {
+  const auto folder = fresh_folder("from_c_beside_xml");
+  std::filesystem::copy(examples / "twenty_sim", folder / "code", std::filesystem::copy_options::recursive);
+  write(folder / "code/data.xml",
+        "<d>" + std::string(200'000, 'x') + " xx_input_names [2] = { \"no\" } u[0]; /* no */</d>\n");
+  const Outcome made = wrap(folder / "code", folder);
+  CHECK_MESSAGE(made.exit_code == 0, made.err);
+  CHECK(has(made.err, "4 inputs, 2 outputs, 5 parameters"));
+  write(folder / "code/modelDescription.xml", "<fmiModelDescription>" + std::string(3U << 20U, ' '));
+  CHECK(has(wrap(folder / "code", folder).err, "modelDescription.xml: has more than 2097152 bytes"));
+  write(folder / "code/modelDescription.xml", std::string("<fmiModelDescription/>\0<x/>", 27));
+  CHECK(has(wrap(folder / "code", folder).err, "modelDescription.xml: is no XML: "));
+}
+
 TEST_CASE("Code that fits no shape is refused with the file, what was looked for and what was found") {
   const OddCode table[] = {
       {"none", "", "law.c", "", "double law(double e) { return 2 * e; }\n",

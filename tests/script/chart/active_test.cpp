@@ -178,6 +178,19 @@ return k.behavior 'x' { initial = 'in', vars = { n = 3 },
   CHECK(stage.behavior->active() == Texts{"in.a"});
 }
 
+TEST_CASE(
+    "why tells what a guard read behind a line that is cut for showing, and takes no names in texts and comments") {
+  Stage stage(
+      "local k = require 'kadans'\nreturn k.behavior 'x' { initial = 'a',\n"
+      "k.state 'a' { { when = function(s)\n  if s.base == '" +
+      std::string(200, 'x') +
+      " s.base.roll_rad' then return false end -- s.base.yaw_rad\n  return s.base.pitch_rad > 0.5 end, to = 'b' } },\n"
+      "k.state 'b' { endless = true } }");
+  stage.tick(1);
+  stage.snapshot.status.base.pitch_rad = 0.25;
+  CHECK(to(stage.behavior->why(stage.snapshot), "b").saw == "s.base.pitch_rad = 0.25");
+}
+
 TEST_CASE("asking why changes nothing of the run, whatever the guards do") {
   const std::string text = R"(local k = require 'kadans'
 return k.behavior 'x' { initial = 'a', vars = { n = 0 },

@@ -4,8 +4,6 @@
 #include <array>
 #include <limits>
 
-#include <unistd.h>
-
 #include "kadans/signal/input_error.h"
 #include "signal/input_file.h"
 
@@ -17,17 +15,14 @@ BoardServer::BoardServer(const HostMot2Settings& settings, const PlantSite& site
       peers_(settings.boards.size()) {
   try {
     settings.require_ethernet();
-    for (const BoardSettings& board : settings.boards) sockets_.push_back(listening_socket(board_place(board.address)));
+    for (const BoardSettings& board : settings.boards)
+      sockets_.emplace_back(listening_socket(board_place(board.address)));
   } catch (const InputError& error) {
-    for (const int one : sockets_) close(one);
     refuse("--listen", error.problems().front().message);
   }
 }
 
-BoardServer::~BoardServer() {
-  end();
-  for (const int one : sockets_) close(one);
-}
+BoardServer::~BoardServer() { end(); }
 
 std::int64_t BoardServer::serve_bus(std::int64_t now_ns) noexcept {
   std::array<std::uint8_t, 2048> bytes;
@@ -38,14 +33,15 @@ std::int64_t BoardServer::serve_bus(std::int64_t now_ns) noexcept {
       PeerAddress from;
       from.size = sizeof from.address;
       auto* const address = reinterpret_cast<sockaddr*>(&from.address);
-      const ssize_t got = recvfrom(sockets_[i], bytes.data(), bytes.size(), MSG_DONTWAIT, address, &from.size);
+      const ssize_t got = recvfrom(sockets_[i].number(), bytes.data(), bytes.size(), MSG_DONTWAIT, address, &from.size);
       if (got < 0) break;
       peers_[i] = from;
       wire.receive({bytes.data(), static_cast<std::size_t>(got)}, now_ns);
     }
     for (std::vector<std::uint8_t> reply = wire.take(now_ns); !reply.empty(); reply = wire.take(now_ns)) {
       const auto* const address = reinterpret_cast<const sockaddr*>(&peers_[i].address);
-      (void)sendto(sockets_[i], reply.data(), reply.size(), MSG_DONTWAIT | MSG_NOSIGNAL, address, peers_[i].size);
+      (void)sendto(sockets_[i].number(), reply.data(), reply.size(), MSG_DONTWAIT | MSG_NOSIGNAL, address,
+                   peers_[i].size);
     }
     wake_ns = std::min(wake_ns, wire.due_ns());
   }

@@ -7,6 +7,7 @@
 #include "emulated_machine.h"
 #include "plant/drive_server.h"
 #include "plant/socket_address.h"
+#include "signal/owned_descriptor.h"
 
 namespace kadans::hostmot2 {
 
@@ -19,7 +20,11 @@ class BoardServer final : public DriveServer {
   std::string peer_name() const override { return "whoever speaks LBP16 there"; }
 
  private:
-  std::vector<int> descriptors() const override { return sockets_; }
+  std::vector<int> descriptors() const override {
+    std::vector<int> numbers;
+    for (const OwnedDescriptor& one : sockets_) numbers.push_back(one.number());
+    return numbers;
+  }
   std::int64_t serve_bus(std::int64_t now_ns) noexcept override;
   std::uint64_t heard() const noexcept override;
   std::uint64_t cycles() const noexcept override;
@@ -27,7 +32,7 @@ class BoardServer final : public DriveServer {
   EmulatedDrives& drives() noexcept override { return machine_; }
 
   EmulatedMachine machine_;
-  std::vector<int> sockets_;
+  std::vector<OwnedDescriptor> sockets_;
   std::vector<PeerAddress> peers_;  // who spoke last to each board
 };
 
