@@ -36,12 +36,10 @@ class CommandLine {
   Command<Options> add(CLI::App& group, const char* name, const char* doc, Run* does) {
     Options& options = options_.emplace_back().emplace<Options>();
     CLI::App* const command = group.add_subcommand(name, doc);
-    runs_.emplace_back(command, [this, does, &options] {
-      if constexpr (std::is_invocable_v<Run, const Options&>)
-        return does(options);
-      else
-        return does(*this, options);
-    });
+    if constexpr (std::is_invocable_v<Run, const Options&>)
+      runs_.emplace_back(command, [does, &options] { return does(options); });
+    else
+      runs_.emplace_back(command, [this, does, &options] { return does(*this, options); });
     return {command, options};
   }
 
