@@ -99,7 +99,7 @@ TEST_CASE("Texts of modelDescription.xml are decoded, and what stands in its com
   CHECK(has(source, "\"Torque \\\"per\\\" error.\"}"));
 }
 
-TEST_CASE("Files of XML beside code of C may hold anything; what is too much for a description is refused") {
+TEST_CASE("Files of XML beside code of C may hold anything, and what is too much for a description is refused") {
   const auto folder = fresh_folder("from_c_beside_xml");
   std::filesystem::copy(examples / "twenty_sim", folder / "code", std::filesystem::copy_options::recursive);
   write(folder / "code/data.xml",

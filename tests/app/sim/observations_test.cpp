@@ -153,7 +153,7 @@ TEST_CASE("A wrong sequence is refused with its line, and a record without a wor
   CHECK(has(wrong("time_s,entry,age_s\n0,ball,0,1\n"), "s.csv:2: has more cells than the head"));
   CHECK(has(wrong("time_s,entry,age_s\n1,ball,0\n0,ball,0\n"), "s.csv:3: time_s is before that of the line above"));
   CHECK(has(wrong("time_s,entry\nnan,ball\n"), "s.csv:2: time_s must be a number"));
-  CHECK(has(error_of((folder / "nowhere.csv").string()), "cannot be read"));
+  CHECK(has(error_of((folder / "nowhere.csv").string()), "there is no such file"));
   const fs::path project = project_copy("observations_none");
   REQUIRE(run("sim config/scenarios/squat.json --duration 0.2 --record s.mcap", project).exit_code <= 1);
   const Outcome none = run("log observations s.mcap", project);

@@ -250,7 +250,7 @@ TEST_CASE("Two TULips that fall onto each other allocate nothing, and do it the 
   std::array<std::uint64_t, 2> hashes{};
   for (std::uint64_t& hash : hashes) {
     Pair pair(0.6);
-    long allocations = 0;
+    [[maybe_unused]] long allocations = 0;
     for (int i = 0; i < 3500; ++i) {
       const testing::AllocationCount heap;
       if (i >= 1000 && i < 1300) pair.world.robot(0).push(0, {0, 80, 0}, {});
