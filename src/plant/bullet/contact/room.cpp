@@ -8,7 +8,7 @@
 #include "object_contact.h"
 #include "plant/bullet/body.h"
 #include "signal/number_text.h"
-#include "touch_points.h"
+#include "part_contact.h"
 
 namespace kadans::bullet {
 namespace {
