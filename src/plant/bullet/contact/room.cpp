@@ -6,9 +6,9 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include "object_contact.h"
+#include "part_contact.h"
 #include "plant/bullet/body.h"
 #include "signal/number_text.h"
-#include "part_contact.h"
 
 namespace kadans::bullet {
 namespace {
