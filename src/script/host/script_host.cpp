@@ -445,7 +445,8 @@ std::vector<PlayList::Entry> ScriptHost::load_kept(std::vector<InputProblem>& pr
     items.push_back(take_item(bytes));
     lasting.push_back(bytes.take<std::uint8_t>() != 0);
   }
-  if (!known || !bytes.ok()) problems.push_back({.message = "what was kept of the behaviors cannot be read"});
+  if (!known || !bytes.ok() || bytes.left() == 0)
+    problems.push_back({.message = "what was kept of the behaviors cannot be read"});
   std::vector<PlayList::Entry> loaded;
   if (problems.empty()) loaded = load(items, true, problems);
   for (std::size_t i = 0; i < loaded.size(); ++i) loaded[i].lasting = lasting[i];

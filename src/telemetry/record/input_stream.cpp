@@ -147,6 +147,7 @@ std::optional<InputLayout> InputLayout::of(const TextMap& facts) {
 void unpack(std::span<const std::uint64_t> words, const InputLayout& layout, TickTaken& taken) {
   const std::uint64_t* from = words.data();
   const auto take = [&](void* to, std::size_t count) {
+    if (count == 0) return;  // then `to` may be null
     std::memcpy(to, from, count * sizeof(std::uint64_t));
     from += count;
   };
