@@ -15,8 +15,6 @@
 namespace kadans {
 namespace {
 
-[[noreturn]] void fail(const std::string& message) { refuse(message); }
-
 struct HostPort {
   std::string host, port;
 };
@@ -27,7 +25,7 @@ HostPort parse(const std::string& text) {
                  colon == std::string::npos ? "" : text.substr(colon + 1)};
   const bool digits =
       !place.port.empty() && place.port.size() <= 5 && place.port.find_first_not_of("0123456789") == std::string::npos;
-  if (!digits || std::stoul(place.port) > 65535) fail("'" + text + "' must be HOST:PORT, such as 192.168.0.10:7100");
+  if (!digits || std::stoul(place.port) > 65535) refuse("'" + text + "' must be HOST:PORT, such as 192.168.0.10:7100");
   if (place.host.size() > 1 && place.host.front() == '[' && place.host.back() == ']')
     place.host = place.host.substr(1, place.host.size() - 2);
   return place;
@@ -45,7 +43,7 @@ int open_at(const std::string& text, int flags, Attach attach) {
   const char* host = place.host.empty() ? nullptr : place.host.c_str();
   const int unknown = getaddrinfo(host, place.port.c_str(), &wanted, &first);
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> list(first, freeaddrinfo);
-  if (unknown != 0) fail("'" + text + "': " + gai_strerror(unknown));
+  if (unknown != 0) refuse("'" + text + "': " + gai_strerror(unknown));
   int error = 0;
   for (const addrinfo* at = first; at != nullptr; at = at->ai_next) {
     const int descriptor = socket(at->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, at->ai_protocol);
@@ -57,7 +55,7 @@ int open_at(const std::string& text, int flags, Attach attach) {
     error = errno;
     if (descriptor >= 0) close(descriptor);
   }
-  fail("'" + text + "': " + std::system_category().message(error));
+  refuse("'" + text + "': " + std::system_category().message(error));
 }
 
 }  // namespace

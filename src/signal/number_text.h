@@ -2,13 +2,11 @@
 // a number only in part is no number, and neither is nan.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <iterator>
 #include <optional>
@@ -20,13 +18,8 @@
 
 namespace kadans {
 
-// As std::printf prints; at most 511 characters.
-template <typename... Values>
-std::string printed(const char* pattern, Values... values) {
-  char text[512];
-  const int length = std::snprintf(text, sizeof text, pattern, values...);
-  return {text, static_cast<std::size_t>(std::clamp(length, 0, static_cast<int>(sizeof text) - 1))};
-}
+// As std::printf prints; at most 511 characters. The compiler compares the values with the pattern.
+[[gnu::format(printf, 1, 2)]] std::string printed(const char* pattern, ...);
 
 // As few digits as name the number exactly; up to 1e9 an integer is written in full: 1000000, 1e-09.
 inline std::string number_text(double value) {

@@ -1,6 +1,7 @@
 #include "commission_person.h"
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 

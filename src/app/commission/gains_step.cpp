@@ -1,4 +1,5 @@
 // What a joint's inertia, friction and delay are, and which gains follow from them.
+#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,5 +1,6 @@
 #include "dap_stream.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 

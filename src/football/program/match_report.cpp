@@ -1,30 +1,35 @@
 #include "match_report.h"
 
+#include <array>
 #include <charconv>
+#include <cstdarg>
 #include <cstdio>
 
 #include "kadans/config/input_object.h"
 
 namespace kadans::football {
-namespace {
 
-template <typename... Values>
-std::string line_of(const char* pattern, Values... values) {
+std::string formatted(const char* pattern, ...) {
   std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
+  std::va_list values;
+  va_start(values, pattern);
+  std::vsnprintf(text.data(), text.size(), pattern, values);
+  va_end(values);
   return text.data();
 }
 
+namespace {
+
 std::string json_of(const Decision& decision) {
-  return line_of("{\"time_s\": %.3f, \"half\": %d, \"remaining_s\": %.1f, \"text\": ",
-                 1e-9 * static_cast<double>(decision.time_ns), decision.first_half ? 1 : 2, decision.remaining_s) +
+  return formatted("{\"time_s\": %.3f, \"half\": %d, \"remaining_s\": %.1f, \"text\": ",
+                   1e-9 * static_cast<double>(decision.time_ns), decision.first_half ? 1 : 2, decision.remaining_s) +
          json_text(decision.text) + ", \"rule\": " + json_text(decision.rule) + "}";
 }
 
 std::string json_of(const PlayedRobot& robot) {
   const std::string error = robot.errors > 0 ? ", \"first_error\": " + json_text(robot.first_error) : "";
   return "{\"name\": " + json_text(robot.name) +
-         line_of(
+         formatted(
              ", \"falls\": %llu, \"penalties\": %llu, \"messages\": %llu, \"errors\": %llu, \"upright_s\": %.2f, "
              "\"played_s\": %.2f, \"still_max_s\": %.2f, \"frozen_max_s\": %.2f, \"off_median_m\": %.3f, "
              "\"off_most_m\": %.3f, "
@@ -48,11 +53,11 @@ std::string json_list(const std::vector<T>& all) {
 bool ended_by_itself(const MatchResult& result) { return result.ended.starts_with("by "); }
 
 std::string text_of(const MatchResult& result, const MatchConfig& match) {
-  std::string text = line_of("%s %u : %u %s, ended %s\n", match.teams[0].name.c_str(), result.score[0], result.score[1],
-                             match.teams[1].name.c_str(), result.ended.c_str());
+  std::string text = formatted("%s %u : %u %s, ended %s\n", match.teams[0].name.c_str(), result.score[0],
+                               result.score[1], match.teams[1].name.c_str(), result.ended.c_str());
   for (const Decision& decision : result.decisions) text += "  " + decision.line() + "\n";
   for (const PlayedRobot& robot : result.robots)
-    text += line_of(
+    text += formatted(
         "  %s: %llu falls, %llu penalties, %llu messages, stood still for %.1f s at most, frozen for "
         "%.1f s, %.2f m off in the median\n",
         robot.name.c_str(), static_cast<unsigned long long>(robot.falls),
@@ -60,26 +65,26 @@ std::string text_of(const MatchResult& result, const MatchConfig& match) {
         robot.still_max_s, robot.frozen_max_s, robot.off_median_m);
   for (const PlayedRobot& robot : result.robots) {
     if (robot.errors > 0)
-      text += line_of("  %s: %llu errors of its decisions or behaviors, the first:\n", robot.name.c_str(),
-                      static_cast<unsigned long long>(robot.errors)) +
+      text += formatted("  %s: %llu errors of its decisions or behaviors, the first:\n", robot.name.c_str(),
+                        static_cast<unsigned long long>(robot.errors)) +
               "    " + robot.first_error + "\n";
   }
-  return text + line_of("  seed %llu, %.1f s, %.1f s of them in play, hash %016llx",
-                        static_cast<unsigned long long>(result.seed), result.simulated_s, result.playing_s,
-                        static_cast<unsigned long long>(result.state_hash));
+  return text + formatted("  seed %llu, %.1f s, %.1f s of them in play, hash %016llx",
+                          static_cast<unsigned long long>(result.seed), result.simulated_s, result.playing_s,
+                          static_cast<unsigned long long>(result.state_hash));
 }
 
 std::string json_of(const MatchResult& result, const MatchConfig& match) {
   const auto team = [&](std::size_t side) {
     return "{\"name\": " + json_text(match.teams.at(side).name) +
-           line_of(", \"goals\": %u, \"messages_left\": %u, \"over_budget\": %llu}", result.score.at(side),
-                   result.messages_left.at(side), static_cast<unsigned long long>(result.over_budget.at(side)));
+           formatted(", \"goals\": %u, \"messages_left\": %u, \"over_budget\": %llu}", result.score.at(side),
+                     result.messages_left.at(side), static_cast<unsigned long long>(result.over_budget.at(side)));
   };
   return "{\"match\": " + json_text(result.match) +
-         line_of(", \"seed\": %llu, \"ended\": ", static_cast<unsigned long long>(result.seed)) +
+         formatted(", \"seed\": %llu, \"ended\": ", static_cast<unsigned long long>(result.seed)) +
          json_text(result.ended) + ", \"home\": " + team(0) + ", \"away\": " + team(1) +
-         line_of(", \"simulated_s\": %.2f, \"playing_s\": %.2f, \"state_hash\": \"%016llx\",\n  \"decisions\": ",
-                 result.simulated_s, result.playing_s, static_cast<unsigned long long>(result.state_hash)) +
+         formatted(", \"simulated_s\": %.2f, \"playing_s\": %.2f, \"state_hash\": \"%016llx\",\n  \"decisions\": ",
+                   result.simulated_s, result.playing_s, static_cast<unsigned long long>(result.state_hash)) +
          json_list(result.decisions) + ",\n  \"robots\": " + json_list(result.robots) + "}";
 }
 

@@ -7,6 +7,9 @@
 
 namespace kadans::football {
 
+// As std::printf prints; at most 399 characters. The compiler compares the values with the pattern.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* pattern, ...);
+
 bool ended_by_itself(const MatchResult& result);  // by the rules, or as its file wants it
 std::string text_of(const MatchResult& result, const MatchConfig& match);
 // One JSON object: {"match":, "seed":, "ended":, "home": {"name":, "goals":}, ..., "decisions": [...], "robots":

@@ -1,7 +1,6 @@
 #include "match_summary.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <numbers>
 
 #include "match_report.h"
@@ -11,13 +10,6 @@ namespace {
 
 constexpr std::uint64_t bootstrap_seed = 1;
 constexpr std::size_t missing_told = 10;
-
-template <typename... Values>
-std::string told(const char* pattern, Values... values) {
-  std::array<char, 300> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
 
 // What each match gives one number of.
 template <typename Of>
@@ -53,36 +45,36 @@ double most_messages(const MatchResult& result) {
   return std::max(sent[0], sent[1]);
 }
 
-std::string line_of(const char* what, const Share& share) {
+std::string printed(const char* what, const Share& share) {
   const double percent = share.of == 0 ? 0 : 100.0 * static_cast<double>(share.hits) / static_cast<double>(share.of);
   const Interval around = share.interval();
-  return told("  %-34s %4zu of %-4zu %5.1f %%  (%.1f to %.1f)\n", what, share.hits, share.of, percent, 100 * around.low,
-              100 * around.high);
+  return formatted("  %-34s %4zu of %-4zu %5.1f %%  (%.1f to %.1f)\n", what, share.hits, share.of, percent,
+                   100 * around.low, 100 * around.high);
 }
 
-std::string line_of(const char* what, const SampleStatistics& value, const char* unit, double scale = 1) {
-  return told("  %-34s %8.3g %s  (%.3g to %.3g), median %.3g, most %.3g\n", what, scale * value.mean, unit,
-              scale * value.mean_interval.low, scale * value.mean_interval.high, scale * value.median,
-              scale * value.greatest);
+std::string printed(const char* what, const SampleStatistics& value, const char* unit, double scale = 1) {
+  return formatted("  %-34s %8.3g %s  (%.3g to %.3g), median %.3g, most %.3g\n", what, scale * value.mean, unit,
+                   scale * value.mean_interval.low, scale * value.mean_interval.high, scale * value.median,
+                   scale * value.greatest);
 }
 
 std::string json_of(const Share& share) {
   const Interval around = share.interval();
-  return told("{\"hits\": %zu, \"of\": %zu, \"low\": %.4f, \"high\": %.4f}", share.hits, share.of, around.low,
-              around.high);
+  return formatted("{\"hits\": %zu, \"of\": %zu, \"low\": %.4f, \"high\": %.4f}", share.hits, share.of, around.low,
+                   around.high);
 }
 
 std::string json_of(const SampleStatistics& value) {
-  return told("{\"mean\": %.6g, \"low\": %.6g, \"high\": %.6g, \"median\": %.6g, \"most\": %.6g}", value.mean,
-              value.mean_interval.low, value.mean_interval.high, value.median, value.greatest);
+  return formatted("{\"mean\": %.6g, \"low\": %.6g, \"high\": %.6g, \"median\": %.6g, \"most\": %.6g}", value.mean,
+                   value.mean_interval.low, value.mean_interval.high, value.median, value.greatest);
 }
 
 std::string json_of(const MatchSummary& s) {
   std::string settings;
   for (const std::string& setting : s.variant.settings) settings += (settings.empty() ? "" : ", ") + json_text(setting);
   std::string text = "{\"file\": " + json_text(s.variant.file) + ", \"settings\": [" + settings + "]" +
-                     told(", \"matches\": %zu, \"missing\": %zu, \"errors\": %llu", s.matches, s.missing.size(),
-                          static_cast<unsigned long long>(s.errors));
+                     formatted(", \"matches\": %zu, \"missing\": %zu, \"errors\": %llu", s.matches, s.missing.size(),
+                               static_cast<unsigned long long>(s.errors));
   const std::pair<const char*, const Share*> shares[] = {{"ended_by_itself", &s.ended_by_itself},
                                                          {"home_won", &s.home_won},
                                                          {"drawn", &s.drawn},
@@ -176,26 +168,27 @@ bool all_well(const std::vector<MatchSummary>& all) {
 std::string summary_text(const std::vector<MatchSummary>& all) {
   std::string text;
   for (const MatchSummary& s : all) {
-    text += s.variant.name() + told(": %zu matches\n", s.matches);
+    text += s.variant.name() + formatted(": %zu matches\n", s.matches);
     if (s.matches > 0) {
-      text += line_of("ended by the rules or its file", s.ended_by_itself);
-      text += line_of("won by home", s.home_won) + line_of("drawn", s.drawn) + line_of("won by away", s.away_won);
-      text += line_of("with goals", s.with_goals);
-      text += line_of("goals a match", s.goals, "");
-      text += line_of("falls a robot and minute", s.falls_per_minute, "");
-      text += line_of("nobody still for 20 s of play", s.still_below_limit);
-      text += line_of("nobody frozen for 20 s of play", s.frozen_below_limit);
-      text += line_of("longest stand in play", s.still_max_s, "s");
-      text += line_of("longest time frozen", s.frozen_max_s, "s");
-      text += line_of("off in the median, worst robot", s.off_m, "m");
-      text += line_of("turned off, worst robot", s.off_rad, "deg", 180 / std::numbers::pi);
-      text += line_of("messages of the team that says more", s.messages, "");
-      text += line_of("within the messages' budget", s.within_budget);
+      text += printed("ended by the rules or its file", s.ended_by_itself);
+      text += printed("won by home", s.home_won) + printed("drawn", s.drawn) + printed("won by away", s.away_won);
+      text += printed("with goals", s.with_goals);
+      text += printed("goals a match", s.goals, "");
+      text += printed("falls a robot and minute", s.falls_per_minute, "");
+      text += printed("nobody still for 20 s of play", s.still_below_limit);
+      text += printed("nobody frozen for 20 s of play", s.frozen_below_limit);
+      text += printed("longest stand in play", s.still_max_s, "s");
+      text += printed("longest time frozen", s.frozen_max_s, "s");
+      text += printed("off in the median, worst robot", s.off_m, "m");
+      text += printed("turned off, worst robot", s.off_rad, "deg", 180 / std::numbers::pi);
+      text += printed("messages of the team that says more", s.messages, "");
+      text += printed("within the messages' budget", s.within_budget);
     }
     if (s.errors > 0)
-      text += told("  %llu errors of decisions or behaviors, the first:\n", static_cast<unsigned long long>(s.errors)) +
+      text += formatted("  %llu errors of decisions or behaviors, the first:\n",
+                        static_cast<unsigned long long>(s.errors)) +
               "    " + s.first_error + "\n";
-    if (!s.missing.empty()) text += told("  %zu without a result:\n", s.missing.size());
+    if (!s.missing.empty()) text += formatted("  %zu without a result:\n", s.missing.size());
     for (std::size_t i = 0; i < std::min(s.missing.size(), missing_told); ++i) text += "    " + s.missing[i] + "\n";
   }
   return text;

@@ -147,8 +147,8 @@ std::string further(const std::vector<std::size_t>& places, const SourceText& so
   std::string text = " (" + std::to_string(places.size()) + " such";
   if (lines.empty()) return text + " in this line)";
   text += lines.size() == 1 ? ": also in line " : ": also in lines ";
-  for (std::size_t i = 0; i < std::min(lines.size(), most_lines); ++i)
-    text += (i == 0 ? "" : ", ") + std::to_string(lines[i]);
+  const auto first_lines = std::span(lines).first(std::min(lines.size(), most_lines));
+  text += listed(first_lines, [](int line) { return std::to_string(line); });
   return text + (lines.size() > most_lines ? " ...)" : ")");
 }
 

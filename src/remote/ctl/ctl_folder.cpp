@@ -49,9 +49,8 @@ fs::path of_user() {
   return fs::path(home) / ".cache/kadans";
 }
 
-[[noreturn]] void fail(const fs::path& path, const std::string& what) { refuse(path, what); }
 [[noreturn]] void fail_as_system(const fs::path& path, const std::string& what) {
-  fail(path, what + ": " + std::generic_category().message(errno));
+  refuse(path, what + ": " + std::generic_category().message(errno));
 }
 
 // Nothing where the path is too long.
@@ -95,12 +94,12 @@ std::vector<fs::path> ctl_folders_for_clients() {
 CtlSockets::CtlSockets(const Settings& settings) : folder_(fs::absolute(settings.folder).lexically_normal()) {
   const fs::path longest = folder_ / name(Role::develop);
   if (!address_of(longest))
-    fail(longest,
-         "the path of a socket has at most " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
+    refuse(longest,
+           "the path of a socket has at most " + std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " characters");
   std::error_code failed;
   fs::create_directories(folder_, failed);
-  if (failed) fail(folder_, "cannot be made: " + failed.message());
-  if (!is_own(folder_)) fail(folder_, "is no folder of this user's or the system's, so no sockets are made in it");
+  if (failed) refuse(folder_, "cannot be made: " + failed.message());
+  if (!is_own(folder_)) refuse(folder_, "is no folder of this user's or the system's, so no sockets are made in it");
   try {
     lock();
     listen_as(Role::read, settings.operators);
@@ -122,7 +121,7 @@ void CtlSockets::lock() {
   if (fchmod(lock_.number(), lock_mode) != 0) fail_as_system(file, "cannot be given its mode");
   if (flock(lock_.number(), LOCK_EX | LOCK_NB) == 0) return;
   if (errno != EWOULDBLOCK) fail_as_system(file, "cannot be locked");
-  fail(folder_, "another instance is reached here already; give this one a folder of its own: --ctl FOLDER");
+  refuse(folder_, "another instance is reached here already; give this one a folder of its own: --ctl FOLDER");
 }
 
 // Nobody can connect before the socket has its owner and mode.

@@ -1,6 +1,7 @@
 #include "chart_runner.h"
 
 #include <algorithm>
+#include <cstdarg>
 #include <cstdio>
 
 #include <lua.hpp>
@@ -18,10 +19,12 @@ constexpr std::size_t state_steps = 2;              // to look at a state for on
 constexpr int shown_slot = EventQueue::places + 2;  // in RunnerTables::event_data
 
 // What is told once.
-template <typename... Values>
-void warn(ScriptVoice& voice, const char* pattern, Values... values) noexcept {
+[[gnu::format(printf, 2, 3)]] void warn(ScriptVoice& voice, const char* pattern, ...) noexcept {
   char text[640];
-  std::snprintf(text, sizeof text, pattern, values...);
+  std::va_list values;
+  va_start(values, pattern);
+  std::vsnprintf(text, sizeof text, pattern, values);
+  va_end(values);
   voice.say_with(BehaviorLog::Severity::warning, text);
 }
 
