@@ -20,11 +20,14 @@ void Wiggle::set_turn() {
 
 void Wiggle::begin(const BenchSight& sight) {
   phase_ = 4;  // a rest first: the drive is enabled, a brake opens
-  since_s_ = sight.time_s;
+  since_s_ = read_at_s_ = sight.time_s;
   turn_begun_ = false;
+  late_turns_ = 0;
 }
 
 void Wiggle::end_turn() {
+  late_turns_ = late_ ? late_turns_ + 1 : 0;
+  if (late_) return;
   const auto answered = [&](double rad) { return std::abs(rad) >= settings_.seen_rad; };
   bool any = false, same = true;
   for (std::size_t i = 0; i < settings_.joints; ++i) {
@@ -50,6 +53,8 @@ void Wiggle::end_turn() {
 
 double Wiggle::step(const BenchSight& sight) {
   told_Nm_ = std::max(told_Nm_, std::abs(sight.effort_Nm[settings_.joint]));
+  if (sight.since_s[settings_.joint] > 0) read_at_s_ = sight.time_s;
+  late_ = late_ || (phase_ < 4 && std::max(sight.dt_s, sight.time_s - read_at_s_) > quarter_s_);
   const double passed_s = sight.time_s - since_s_;
   if (passed_s >= (phase_ == 4 ? rest_s : quarter_s_) - 1e-9) {
     since_s_ = sight.time_s;
@@ -58,6 +63,7 @@ double Wiggle::step(const BenchSight& sight) {
     if (phase_ == 0) {
       first_ = -first_;  // what friction lets drift comes back
       turn_begun_ = true;
+      late_ = false;
     }
     at_rad_[static_cast<std::size_t>(phase_)] = sight.position_rad;
   }

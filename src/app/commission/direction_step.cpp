@@ -38,6 +38,7 @@ class Turn final : public Push {
     }
     return effort_Nm;
   }
+  std::string_view aborted() const override { return relation_ != 0 ? "" : wiggle_.aborted(); }
   bool complete() const override { return relation_ != 0 ? lead_.complete() : wiggle_.complete(); }
   double relation() const noexcept { return relation_; }  // 0: its encoder did not answer
   double went_rad() const noexcept { return went_rad_; }

@@ -61,7 +61,8 @@ bool name_drive(CommissionStep& step, std::size_t drive, const std::vector<doubl
   BenchSession& session = step.session;
   const std::string name = step.drive_name(drive);
   const std::size_t joints = step.robot.model.joints.size();
-  Wiggle wiggle({.inertia_kg_m2 = inertia_kg_m2[drive],
+  Wiggle wiggle({.joint = drive,
+                 .inertia_kg_m2 = inertia_kg_m2[drive],
                  .least_inertia_kg_m2 = *std::ranges::min_element(inertia_kg_m2),
                  .effort_max_Nm = session.effort_max_Nm(drive),
                  .joints = joints});

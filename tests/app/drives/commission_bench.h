@@ -42,9 +42,10 @@ struct Truth {
   std::function<void(PlantSettings&)> model{};                // and in the model
   std::function<void(dynamixel::EmulatedRobot&)> servos{};
   std::function<void(dynamixel::DynamixelSettings&)> servo_settings{};
-  std::size_t delay_ticks = 0;  // from the program to the bus
-  double load_kg = 0;           // what the person hangs on tilt, at load_m from its axis
-  double cut_at_share = 0;      // the cable is out from the first torque of this share; 0: never
+  std::size_t delay_ticks = 0;             // from the program to the bus
+  int stall_ticks = 0, stall_every = 1000;  // so many of so many: what is on the bus stands still
+  double load_kg = 0;                      // what the person hangs on tilt, at load_m from its axis
+  double cut_at_share = 0;                 // the cable is out from the first torque of this share; 0: never
 };
 constexpr double load_m = 0.1;
 
@@ -103,6 +104,10 @@ class VirtualBench final : public Bench {
 
   void read(SensorFrame& sensors) override { world_->read(sensors); }
   void write(const ActuationFrame& actuation) override {
+    if (++tick_ % truth_.stall_every < truth_.stall_ticks) {
+      now_ns_ += period_ns_;
+      return;
+    }
     late_.push_back(actuation);
     world_->write(late_.front());
     if (late_.size() > truth_.delay_ticks) late_.pop_front();
@@ -166,6 +171,7 @@ class VirtualBench final : public Bench {
   const RobotModel& model_;
   PlantSettings plant_;
   std::int64_t period_ns_, now_ns_ = 0;
+  int tick_ = 0;
   const Truth& truth_;
   Seen& seen_;
   std::deque<ActuationFrame> late_;

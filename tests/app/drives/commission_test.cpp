@@ -116,23 +116,44 @@ TEST_CASE("A servo whose encoder is dead says so, and nothing is driven") {
   CHECK(project.all.seen.torque_share == 0);
 }
 
+TEST_CASE("Servos that stand still for moments have no dead encoder; where that never ends, they are let go") {
+  for (const int every : {410, 530, 1010}) {
+    CAPTURE(every);
+    Project project(servos);
+    project.truth.stall_ticks = 70;
+    project.truth.stall_every = every;
+    check_good(project.commissioned());
+  }
+  Project busy(servos);
+  busy.truth.stall_ticks = 70;
+  busy.truth.stall_every = 80;
+  const Commissioned& all = busy.commissioned();
+  REQUIRE(!all.report.problems.empty());
+  CHECK_MESSAGE(has(all.report.problems[0],
+                    "drive 'pan': its readings come too late to see whether it moves: it was let go at once"),
+                all.report.problems[0]);
+}
+
 TEST_CASE("A stuck brake is found, at any place of the joint, and the other joint goes on") {
   for (const Bus& bus : {boards, servos}) {
-    for (const int seed : {1, 2, 3}) {
+    for (const int seed : {1, 2, 3, 4}) {
       CAPTURE(bus.type);
       CAPTURE(seed);
+      const std::size_t stuck = seed == 4 ? 1 : 0;
+      const std::string its = stuck == 1 ? "tilt" : "pan", other = stuck == 1 ? "pan" : "tilt";
       Project project(bus);
       project.truth.model = [&](PlantSettings& model) {
-        model.drives[0].coulomb_Nm = 20;
+        model.drives[stuck].coulomb_Nm = 20;
         model.position_rad = {0.7 * seed - 1.5, 0.2 * seed};
       };
       const Commissioned& all = project.commissioned();
       REQUIRE(all.report.problems.size() == 1);
-      CHECK_MESSAGE(has(all.report.problems[0], "drive 'pan' pushed with 0.098 Nm, and nothing moved"),
+      const std::string effort = stuck == 1 ? "0.08" : "0.098";
+      CHECK_MESSAGE(has(all.report.problems[0], "drive '" + its + "' pushed with " + effort + " Nm, and nothing moved"),
                     all.report.problems[0]);
       CHECK(has(all.report.problems[0], "a brake that is stuck"));
       CHECK(has(all.report.problems[0], "its motor gets its current") == (bus.type == servos.type));
-      CHECK(all.person.was_told("drive 'tilt' moves joint 'tilt'"));
+      CHECK(all.person.was_told("drive '" + other + "' moves joint '" + other + "'"));
       check_safe(all.seen);
       CHECK(read(project.mine) == read(project.right));
     }
