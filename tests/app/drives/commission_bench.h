@@ -42,10 +42,10 @@ struct Truth {
   std::function<void(PlantSettings&)> model{};                // and in the model
   std::function<void(dynamixel::EmulatedRobot&)> servos{};
   std::function<void(dynamixel::DynamixelSettings&)> servo_settings{};
-  std::size_t delay_ticks = 0;             // from the program to the bus
+  std::size_t delay_ticks = 0;              // from the program to the bus
   int stall_ticks = 0, stall_every = 1000;  // so many of so many: what is on the bus stands still
-  double load_kg = 0;                      // what the person hangs on tilt, at load_m from its axis
-  double cut_at_share = 0;                 // the cable is out from the first torque of this share; 0: never
+  double load_kg = 0;                       // what the person hangs on tilt, at load_m from its axis
+  double cut_at_share = 0;                  // the cable is out from the first torque of this share; 0: never
 };
 constexpr double load_m = 0.1;
 
