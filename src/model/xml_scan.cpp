@@ -18,6 +18,14 @@ bool control(char c) noexcept {
 
 std::string hex(char c) { return printed("0x%02X", static_cast<unsigned>(static_cast<unsigned char>(c))); }
 
+std::string without_controls(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (control(c) || c == '\n' || c == '\r' || c == '\t') c = ' ';
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string_view trimmed(std::string_view text) noexcept {
@@ -63,11 +71,14 @@ std::string shown(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::size_t size = std::min(text.size(), longest);
   while (size > 0 && size < text.size() && inside_character(text[size])) --size;
-  std::string result(text.substr(0, size));
-  for (char& c : result) {
-    if (control(c) || c == '\n' || c == '\r' || c == '\t') c = ' ';
-  }
-  return size < text.size() ? result + "..." : result;
+  return without_controls(text.substr(0, size)) + (size < text.size() ? "..." : "");
+}
+
+std::string shown_path_quoted(std::string_view path) {
+  constexpr std::size_t longest = 60;
+  std::size_t start = path.size() > longest ? path.size() - longest : 0;
+  while (start < path.size() && inside_character(path[start])) ++start;
+  return std::string(start > 0 ? "'..." : "'") + without_controls(path.substr(start)) + "'";
 }
 
 namespace {

@@ -41,6 +41,7 @@ std::optional<TextProblem> find_non_text(std::string_view text);
 // For a message: without control characters, cut after 40 characters.
 std::string shown(std::string_view text);
 inline std::string shown_quoted(std::string_view name) { return "'" + shown(name) + "'"; }
+std::string shown_path_quoted(std::string_view path);  // the last 60 characters: its end tells which file it is
 
 // Where the elements and attributes of an XML text stand. tinyxml2 reads the values but knows only lines. This scan
 // finds every start tag and its attributes byte for byte, in the order of the document. It describes the most common

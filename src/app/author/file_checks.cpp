@@ -285,7 +285,8 @@ std::string FileChecks::check(const CheckedFile& checked) {
     const std::string what = check_script_file(checked);
     return what == "a module" || what == "tests" ? what : "behavior: " + what;
   }
-  if (extension != ".json") refuse(file, "not a file that can be checked: .urdf, .xacro, .xml (MJCF), .json or .lua");
+  if (extension != ".json")
+    refuse(file, "not a file that can be checked: .urdf, .xacro, .xml and .mjcf (MJCF), .json or .lua");
   const std::string what = check_json(file);
   if (what.empty() && !checked.found) refuse(file, "is no robot, scenario, sweep or tuning of ours");
   return what;

@@ -6,6 +6,7 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/shell_word.h"
 #include "model/urdf/xacro_values.h"
+#include "model/xml_scan.h"
 #include "realtime/machine/child_process.h"
 #include "signal/input_file.h"
 
@@ -34,11 +35,16 @@ std::string expanded_xacro(const std::filesystem::path& file) {
   return output.out;
 }
 
+std::string first_element(const std::string& text) {
+  const XmlScan scan = scan_xml(SourceText(text));
+  return scan.tags.empty() ? "" : std::string(scan.tags.front().name);
+}
+
 }  // namespace
 
 bool is_robot_description(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
-  if (extension == ".urdf" || extension == ".URDF") return true;
+  if (extension == ".urdf" || extension == ".URDF" || extension == ".mjcf") return true;
   if (extension != ".xml") return false;
   try {
     return is_mjcf(read_input_file(file.string(), urdf_max_bytes));
@@ -60,10 +66,12 @@ UrdfPackages packages_of(const std::vector<std::string>& options) {
 
 RobotDescription read_robot_description(const std::filesystem::path& file, const UrdfOptions& options,
                                         std::vector<InputProblem>* warnings) {
-  if (file.extension() == ".xml") return read_mjcf(file.string(), options, warnings);
   RobotDescription robot;
   const bool is_xacro = file.extension() == ".xacro";
   robot.urdf = is_xacro ? expanded_xacro(file) : read_input_file(file.string(), urdf_max_bytes);
+  const std::string root = first_element(robot.urdf);
+  if (!is_xacro && (root == "mujoco" || (root != "robot" && file.extension() == ".xml")))
+    return read_mjcf(file.string(), options, warnings);
   std::optional<XacroValues> values;
   if (!is_xacro) values = with_xacro_values(robot.urdf, file.string());
   if (values) robot.urdf = values->text;

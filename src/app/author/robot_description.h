@@ -1,4 +1,5 @@
-// What describes a robot: URDF, xacro, in which many are written, or MJCF. All become the text of a URDF.
+// What describes a robot: URDF, xacro, in which many are written, or MJCF, as its first element says. All become the
+// text of a URDF.
 #pragma once
 
 #include <filesystem>

@@ -168,6 +168,7 @@ class StanceSearch {
     find_wheels(stance);
     if (stance.wheels.empty()) find_legs();
     if (legs_.size() < 2) {
+      if (stance.wheels.empty()) stance.why_held = why_not_;
       stance.stand = stance.low = position_;
       for (std::size_t i = 0; i < position_.size(); ++i) {
         if (model_.joints[i].passive() || stance.is_wheel(i)) continue;
@@ -243,18 +244,36 @@ class StanceSearch {
     for (std::size_t link = model_.joints[joint].parent; link > 0; link = model_.joints[link - 1].parent) {
       if (std::abs(body_.axis(link - 1).z()) < 0.9) return false;
     }
-    return true;
+    return round_about_axis(joint);
+  }
+  // Within what a wheel of six corners is.
+  bool round_about_axis(std::size_t joint) const {
+    constexpr double roundness = 0.8;
+    const Vector3d axis = eigen(model_.joints[joint].axis), across_axis = axis.unitOrthogonal();
+    double near = std::numeric_limits<double>::infinity(), far = 0;
+    for (int i = 0; i < 24; ++i) {
+      const double angle = i * std::numbers::pi / 12;
+      const Vector3d way = std::cos(angle) * across_axis + std::sin(angle) * axis.cross(across_axis);
+      double reach = 0;
+      for (const Vec3& tip : body_.tips_of(joint + 1)) reach = std::max(reach, way.dot(eigen(tip)));
+      near = std::min(near, reach);
+      far = std::max(far, reach);
+    }
+    return near > roundness * far;
   }
   // Wheels, none when they and what else is as low do not carry the centre of mass.
   void find_wheels(StandingPose& stance) {
     body_.place(position_);
-    if (is_fixed()) return;
+    if (is_fixed()) return (void)(why_not_ = "its root is 'world', or fixed to it");
     const auto [low, high] = extent();
+    if (high < low) return (void)(why_not_ = "none of its links has a shape to touch with");
     const double near_m = std::clamp(0.05 * (high - low), 0.005, 0.01);
     std::vector<Vector3d> carrying;
+    bool any = false;
     for (std::size_t i = 0; i < model_.links.size(); ++i) {
       if (body_.tips_of(i).empty() || body_.lowest(i) > low + near_m) continue;
       if (i > 0 && may_be_wheel(i - 1)) {
+        any = true;
         carrying.push_back(body_.resting(i, Quat{1, 0, 0, 0}).center());
         if (!model_.joints[i - 1].passive()) stance.wheels.push_back({.joint = i - 1});
         continue;
@@ -266,6 +285,7 @@ class StanceSearch {
     bool carried = true;
     across(carrying, body_.com(),
            [&](double low_m, double high_m) { carried = carried && low_m < -least_reach_m && high_m > least_reach_m; });
+    if (any) why_not_ = carried ? "its wheels have no motors" : "its wheels do not carry its centre of mass";
     if (!carried) stance.wheels.clear();
     if (stance.wheels.empty()) return;
     stance.held = false;
@@ -378,8 +398,12 @@ class StanceSearch {
     for (const Joint& joint : model_.joints) ends[joint.parent] = false;
     const auto [low, high] = extent();
     const double share = 0.1 * (high - low);
-    if (is_fixed()) return;
-    if (!body_.tips_of(0).empty() && body_.lowest(0) < low + share) return;
+    if (is_fixed() || high < low) return;
+    const bool low_base = !body_.tips_of(0).empty() && body_.lowest(0) < low + share;
+    if (why_not_.empty())
+      why_not_ =
+          low_base ? "its base is as low as what it would stand on" : "no two links at its ends are the lowest of all";
+    if (low_base) return;
     for (std::size_t i = 1; i < model_.links.size(); ++i) {
       if (!ends[i] || body_.tips_of(i).empty() || body_.lowest(i) > low + share) continue;
       Leg leg{.foot = i};
@@ -484,6 +508,7 @@ class StanceSearch {
   Body body_;
   std::vector<double> position_;
   std::vector<Leg> legs_;
+  std::string why_not_;  // stands on nothing; a clause
 };
 
 struct Carried {
@@ -557,6 +582,8 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
   constexpr double most_stiffness = 50000, most_damping = 5000;         // that joint_pid takes
   constexpr double own_bandwidth = 225, sag_rad = 0.04, over_load = 3;  // (15 rad/s)^2
   constexpr double stuck_rad = 0.005;                                   // where friction holds it, at most
+  constexpr double slowest_s = 0.05;                                    // in which what damps it lets it come home
+  constexpr double stiffness_per_damping = 40;                          // that a delay of 4 ms allows, by far
   Body body(model);
   body.place(stance.stand);
   Eigen::MatrixXd mass = mass_of_joints(model, stance);
@@ -583,10 +610,14 @@ std::vector<JointHold> hold_joints(const RobotModel& model, const StandingPose& 
     hold.rotor_inertia_kg_m2 =
         joint.rotor_inertia_kg_m2 > 0 ? joint.rotor_inertia_kg_m2 : std::clamp(by_torque, 1e-4, 10.0);
     mass(at_joint, at_joint) += hold.rotor_inertia_kg_m2;
+    // A joint with damping is as slow as one with more inertia, and may be held as stiffly.
+    mass(at_joint, at_joint) += stiffness_per_damping * joint.damping_Nms_per_rad / stiffest_per_s2({});
     const double inertia = loop.inertia_kg_m2 > 0 ? loop.inertia_kg_m2 : mass(at_joint, at_joint);
+    const double friction_Nm = loops.empty() ? joint.friction_Nm : loop.friction_Nm;
     const Vector3d at = body.place_of(i);
     hold.load_Nm_per_rad = slides ? 0 : g_m_s2 * (hung.moment - hung.mass_kg * at).norm();
-    double wanted = std::max({over_load * hold.load_Nm_per_rad, own_bandwidth * inertia, loop.friction_Nm / stuck_rad});
+    double wanted = std::max({over_load * hold.load_Nm_per_rad, own_bandwidth * inertia, friction_Nm / stuck_rad});
+    wanted = std::max(wanted, joint.damping_Nms_per_rad / slowest_s);
     if (slides) wanted = std::max(wanted, hung.mass_kg * g_m_s2 / 0.005);
     const auto foot = slides ? foot_of.end() : foot_of.find(i);
     const bool leg = foot != foot_of.end();

@@ -1,5 +1,6 @@
 // `kadans new robot`: from a URDF to a robot that stands or is held, with all of its files.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <tinyxml2.h>
 
 #include "app/author/robot_description.h"
 #include "app/author/stance.h"
@@ -23,6 +25,7 @@
 #include "kadans/plant/bullet/bullet_world.h"
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/shell_word.h"
+#include "model/xml_scan.h"
 #include "new_files.h"
 #include "signal/input_file.h"
 #include "signal/number_text.h"
@@ -156,35 +159,49 @@ std::string name_from(const std::string& text) {
   return name;
 }
 
+// What an attribute's text stands for, its entities read.
+std::string xml_value(const std::string& written) {
+  const char quote = written.find('"') == std::string::npos ? '"' : '\'';
+  tinyxml2::XMLDocument document;
+  if (document.Parse(("<value is=" + (quote + written + quote) + "/>").c_str()) != tinyxml2::XML_SUCCESS)
+    return written;
+  return document.RootElement()->Attribute("is");
+}
+// Without what XML, URIs and shells have a meaning for.
+std::string plain_name(std::string name) {
+  for (char& c : name) {
+    if (static_cast<unsigned char>(c) < 0x80 && std::isalnum(static_cast<unsigned char>(c)) == 0 &&
+        std::string_view("._-+").find(c) == std::string_view::npos)
+      c = '_';
+  }
+  return name;
+}
+
 // The URDF's text with its meshes in a folder beside it; `copies` gets the name there of each mesh's file.
 std::string with_own_meshes(const std::string& text, const std::string& file, const UrdfPackages& packages,
                             std::map<std::string, std::string>& copies) {
   std::string result;
   std::set<std::string> taken;
   std::size_t at = 0;
-  constexpr std::string_view key = "filename=";
-  for (std::size_t found; (found = text.find(key, at)) != std::string::npos;) {
-    const std::size_t open = found + key.size();
-    const char quote = open < text.size() ? text[open] : ' ';
-    const std::size_t close = quote == '"' || quote == '\'' ? text.find(quote, open + 1) : std::string::npos;
-    if (close == std::string::npos) break;
-    const std::string name = text.substr(open + 1, close - open - 1);
-    result += text.substr(at, open + 1 - at);
-    at = close;
-    const std::optional<std::string> there = find_urdf_file(name, file, packages);
-    if (!there) {
-      result += name;
-      continue;
+  const SourceText source(text);
+  for (const XmlTag& tag : scan_xml(source).tags) {
+    for (const XmlAttribute& attribute : tag.attributes) {
+      if (attribute.name != "filename") continue;
+      const std::size_t close = text.find(text[attribute.value_at - 1], attribute.value_at);
+      const std::string written = text.substr(attribute.value_at, close - attribute.value_at);
+      const std::optional<std::string> there = find_urdf_file(xml_value(written), file, packages);
+      if (!there) continue;
+      std::string& copy = copies[*there];
+      if (copy.empty()) {
+        const fs::path path(*there);
+        const std::string stem = plain_name(path.stem().string()), extension = plain_name(path.extension().string());
+        copy = stem + extension;
+        for (int i = 2; taken.contains(copy); ++i) copy = stem + "_" + std::to_string(i) + extension;
+        taken.insert(copy);
+      }
+      result += text.substr(at, attribute.value_at - at) + "meshes/" + copy;
+      at = close;
     }
-    std::string& copy = copies[*there];
-    if (copy.empty()) {
-      const fs::path path(*there);
-      copy = path.filename().string();
-      for (int i = 2; taken.contains(copy); ++i)
-        copy = path.stem().string() + "_" + std::to_string(i) + path.extension().string();
-      taken.insert(copy);
-    }
-    result += "meshes/" + copy;
   }
   return result + text.substr(at);
 }
@@ -435,13 +452,18 @@ Json robot_json(const RobotDescription& robot, const std::string& name, const St
           {"control", {{"objects", objects}, {"sets", {{"hold", hold}}}}}};
 }
 
+// How far its base may sink: of a base whose frame lies in the ground's height a little, so that it is seen to fall.
+double least_fall_m(const StandingPose& stance) {
+  return stance.height_m < 0.02 ? 0.01 : std::max(0.3 * stance.height_m, 0.02);
+}
+
 Json scenario_json(const std::string& name, const StandingPose& stance) {
   Json checks = Json::array();
   if (!stance.held) {
     checks.push_back({{"name", "stays up, lowest height in m"},
                       {"kind", "always"},
                       {"signal", "plant.base.height_m"},
-                      {"min", rounded(stance.height_m - std::max(0.3 * stance.height_m, 0.02), 1e-3)}});
+                      {"min", rounded(stance.height_m - least_fall_m(stance), 1e-3)}});
     checks.push_back({{"name", "upright, rad"}, {"kind", "always"}, {"signal", "plant.base.tilt_rad"}, {"max", 0.3}});
   }
   // The model's motors never give more than they can; those that give all they can hold nothing.
@@ -460,6 +482,25 @@ Json scenario_json(const std::string& name, const StandingPose& stance) {
           {"checks", checks}};
 }
 
+// The joint without a motor on which all others with one hang; "": there is none.
+std::string loose_root(const RobotModel& model) {
+  std::size_t first = 0;
+  while (first < model.joints.size() && model.joints[first].passive()) ++first;
+  for (std::size_t i = 0; i < first && first < model.joints.size(); ++i) {
+    const auto hangs = [&](std::size_t joint) {
+      for (std::size_t link = model.joints[joint].parent; link > 0; link = model.joints[link - 1].parent) {
+        if (link - 1 == i) return true;
+      }
+      return false;
+    };
+    bool all = true;
+    for (std::size_t joint = first; joint < model.joints.size(); ++joint)
+      all = all && (model.joints[joint].passive() || hangs(joint));
+    if (all) return model.joints[i].name;
+  }
+  return "";
+}
+
 void tell(const RobotModel& model, const StandingPose& stance, const std::vector<JointHold>& holds) {
   std::fprintf(stderr, "%zu joints, %.3g kg\n", model.joints.size(), model.mass_kg());
   if (!stance.wheels.empty()) {
@@ -467,7 +508,10 @@ void tell(const RobotModel& model, const StandingPose& stance, const std::vector
         listed(stance.wheels, [&](const StandingWheel& wheel) { return model.links[wheel.joint + 1].name; });
     std::fprintf(stderr, "It rolls on %s, its base %.3g m high.\n", wheels.c_str(), stance.height_m);
   } else if (stance.feet.empty()) {
-    std::fprintf(stderr, "No two links at its ends are the lowest of all: it is bolted down (plant.fixed_base).\n");
+    std::fprintf(stderr, "It is bolted down (plant.fixed_base): %s.\n", stance.why_held.c_str());
+    if (const std::string loose = loose_root(model); !loose.empty())
+      std::fprintf(stderr, "warning: joint %s has no motor, and carries all that have one: gravity may take it\n",
+                   loose.c_str());
   } else if (stance.held) {
     std::fprintf(stderr,
                  "Its soles are %.0f mm wide together: it does not stand without stepping, so it is bolted down "
@@ -505,12 +549,17 @@ int run_new_robot(const NewRobotOptions& options) {
   const RobotModel& model = description.model;
   const std::string name = options.name.empty() ? name_from(model.name) : options.name;
   if (name.empty() || name != name_from(name))
-    refuse("'" + name + "': a robot's name is words of a-z and 0-9 joined by _: --name NAME");
+    refuse(options.urdf, "'" + (options.name.empty() ? model.name : options.name) +
+                             "': a robot's name is words of a-z and 0-9 joined by _: --name NAME");
   const fs::path project = options.folder;
   const fs::path models = project / "models" / name, config = project / "config" / name,
                  behaviors = project / "behaviors" / name,
                  scenario = project / "config" / "scenarios" / (name + "_hold.json");
-  if (!options.srdf.empty()) (void)read_srdf(options.srdf, model);
+  if (!options.srdf.empty()) {
+    std::vector<InputProblem> odd;
+    (void)read_srdf(options.srdf, model, &odd);
+    warnings.insert(warnings.end(), odd.begin(), odd.end());
+  }
   const StandingPose stance = find_stance(model);
   const std::vector<JointHold> holds = hold_joints(model, stance);
   if (std::ranges::none_of(holds, [](const JointHold& hold) { return hold.stiffness_Nm_per_rad > 0; }))

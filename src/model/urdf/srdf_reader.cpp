@@ -11,6 +11,11 @@ std::vector<LinkPair> read_srdf(const std::string& file, const RobotModel& model
   const UrdfElement root(document, document.root());
   if (root.shown_name() != "<robot>")
     document.stop(root.at(), "the root element is " + root.shown_name() + ", an SRDF's is <robot>");
+  for (const char* of_urdf : {"link", "joint"}) {
+    if (const auto* xml = document.root().FirstChildElement(of_urdf); xml != nullptr)
+      document.stop(UrdfElement(document, *xml).at(),
+                    "an SRDF has no <" + std::string(of_urdf) + "> in its <robot>: this is a URDF");
+  }
   std::vector<LinkPair> pairs;
   for (const auto* xml = document.root().FirstChildElement("disable_collisions"); xml != nullptr;
        xml = xml->NextSiblingElement("disable_collisions")) {

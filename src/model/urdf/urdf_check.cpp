@@ -170,7 +170,7 @@ class MeshFiles {
         return false;
       }
       document_.warn(given.file_at,
-                     "mesh file " + shown_quoted(mesh->file) + " is not there: link " + shown_quoted(link) + " " +
+                     "mesh file " + shown_path_quoted(mesh->file) + " is not there: link " + shown_quoted(link) + " " +
                          consequence + where(mesh->file),
                      std::string(holder) + scheme(mesh->file) + package(mesh->file));
       return true;
@@ -195,8 +195,8 @@ class MeshFiles {
       } catch (const InputError& error) {
         hulls_.erase(mesh->file);
         document_.warn(given.file_at,
-                       "mesh file " + shown_quoted(mesh->file) + " " + error.problems().front().message + "; link " +
-                           shown_quoted(link) + " collides without it",
+                       "mesh file " + shown_path_quoted(mesh->file) + " " + error.problems().front().message +
+                           "; link " + shown_quoted(link) + " collides without it",
                        "mesh that cannot be read");
         return true;
       }
@@ -216,16 +216,20 @@ class MeshFiles {
   }
 
   static std::string package(const std::string& name) {
-    const std::string from = scheme(name);
-    if (from != "package://" && from != "model://") return "";
-    const std::size_t start = std::min(name.find_first_not_of('/', from.size()), name.size());
-    return name.substr(start, name.find('/', start) - start);
+    const auto path = urdf_package_path(name);
+    return path ? path->package : "";
   }
 
-  static std::string where(const std::string& name) {
-    const std::string of = shown(package(name));
-    if (!of.empty()) return "; --package " + of + "=FOLDER or ROS_PACKAGE_PATH says where the package is";
-    return scheme(name).empty() ? "; its path starts from this file's folder" : "";
+  std::string where(const std::string& name) const {
+    if (const std::string of = package(name); !of.empty()) {
+      const auto folder = find_urdf_package(of, document_.file(), options_.packages);
+      if (folder)
+        return "; package " + shown_quoted(of) + " is at " + shown_path_quoted(*folder) + " and has no such file";
+      return "; --package " + shown(of) + "=FOLDER or ROS_PACKAGE_PATH says where the package is";
+    }
+    if (!scheme(name).empty() && !urdf_package_path(name)) return "";
+    return std::string(scheme(name).empty() ? "; its" : "; it names no package, so its") +
+           " path starts from this file's folder";
   }
 
   UrdfDocument& document_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kadans/model/robot_model.h"
@@ -89,6 +90,16 @@ void check_description(UrdfDocument& document, UrdfDescription& robot, const Urd
 
 // The part of it that looks at masses. Names and tree are sound.
 void check_masses(UrdfDocument& document, const UrdfDescription& robot);
+
+// What package:// or model:// names; nothing for a name without these.
+struct UrdfPackagePath {
+  std::string package{}, inside;  // package: "" where the name has one part alone
+  bool rooted = false;            // package:///...
+};
+std::optional<UrdfPackagePath> urdf_package_path(std::string_view name);
+// The folder of a package, the likeliest one.
+std::optional<std::string> find_urdf_package(const std::string& package, const std::string& urdf_file,
+                                             const UrdfPackages& packages);
 
 // The model: fixed joints disappear, what hung on them moves into the parent. The description has been checked.
 RobotModel merged(const UrdfDescription& robot, UrdfDocument& document);

@@ -37,7 +37,7 @@ TEST_CASE("new robot writes robots that stand or are held, and play their behavi
   const WithoutPictures none;
   for (const auto& [of, text, says] :
        {std::tuple{"spot_four", quadruped(), "It stands on fl_calf, fr_calf, rl_calf, rr_calf"},
-        std::tuple{"biped", biped(), "It stands on l_foot, r_foot"}, std::tuple{"arm", arm(), "it is bolted down"}}) {
+        std::tuple{"biped", biped(), "It stands on l_foot, r_foot"}, std::tuple{"arm", arm(), "It is bolted down"}}) {
     const std::string name = of;
     CAPTURE(name);
     write(folder / "from.urdf", text);
@@ -189,6 +189,64 @@ TEST_CASE("new robot takes the meshes with it, each under a name of its own, and
   if (!has(made.err, "No picture: ")) CHECK(read(folder / "project/models/mine/mine.png").substr(1, 3) == "PNG");
 }
 
+TEST_CASE("new robot finds the meshes of all ways in which XML can write them") {
+  const auto folder = fresh_folder("new_robot_xml");
+  write(folder / "a&b c.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 2 3\nf 1 2 4\n");
+  write(folder / "part.obj", read(folder / "a&b c.obj"));
+  std::string text = arm();
+  for (const char* mesh : {"filename = \"a&amp;b c.obj\"", "filename\n=\n'package:///part.obj'"}) {
+    const std::string shape = "<cylinder radius=\"0.03\" length=\"0.15\"/>";
+    text.replace(text.find(shape), shape.size(), "<mesh " + std::string(mesh) + "/>");
+  }
+  write(folder / "arm.urdf", "<!-- filename=\"part.obj\" -->" + text);
+  const Outcome made = run("new robot arm.urdf --in project --no-run", folder);
+  CHECK_MESSAGE(made.exit_code == 0, (made.out + made.err));
+  const std::string urdf = read(folder / "project/models/arm/arm.urdf");
+  CHECK(has(urdf, "<!-- filename=\"part.obj\" -->"));
+  CHECK(has(urdf, "<mesh filename = \"meshes/a_b_c.obj\"/>"));
+  CHECK(has(urdf, "<mesh filename\n=\n'meshes/part.obj'/>"));
+  const Outcome checked = run("check --strict project/models/arm/arm.urdf", folder);
+  CHECK_MESSAGE(checked.exit_code == 0, (checked.out + checked.err));
+}
+
+TEST_CASE("new robot holds joints as stiffly as their damping and friction ask for") {
+  const auto folder = fresh_folder("new_robot_damped");
+  std::string text = arm();
+  const std::string end = "</joint>";
+  for (std::size_t at = 0; (at = text.find(end, at)) != std::string::npos;) {
+    const std::string damped = "<dynamics damping=\"6\" friction=\"0.4\"/>" + end;
+    text.replace(at, end.size(), damped);
+    at += damped.size();
+  }
+  write(folder / "from.urdf", text);
+  REQUIRE(run("new robot from.urdf --no-run", folder).exit_code == 0);
+  const Outcome nod = run("new behavior nod", folder);
+  CHECK_MESSAGE(nod.exit_code == 0, (nod.out + nod.err));
+}
+
+TEST_CASE("new robot takes no legs for wheels, whatever turns without end, and says why it bolts a robot down") {
+  const auto folder = fresh_folder("new_robot_why");
+  const auto said = [&](const std::string& urdf, const std::string& options = "") {
+    static int made = 0;
+    write(folder / "from.urdf", urdf);
+    const Outcome outcome = run("new robot from.urdf --no-run --name it" + std::to_string(++made) + options, folder);
+    CHECK_MESSAGE(outcome.exit_code == 0, (outcome.out + outcome.err));
+    return outcome.err;
+  };
+  std::string square = cart();
+  const auto replace_all = [](std::string& text, const std::string& from, const std::string& to) {
+    REQUIRE(has(text, from));
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+      text.replace(at, from.size(), to);
+  };
+  replace_all(square, "<cylinder radius=\"0.08\" length=\"0.03\"/>", "<box size=\"0.16 0.16 0.03\"/>");
+  CHECK(!has(said(square), "It rolls on"));
+  std::string free_wheels = cart();
+  replace_all(free_wheels, "effort=\"2\"", "effort=\"0\"");
+  CHECK(has(said(free_wheels), "It is bolted down (plant.fixed_base): its wheels have no motors."));
+  CHECK(has(said(arm()), "It is bolted down (plant.fixed_base): "));
+}
+
 TEST_CASE("new robot overwrites nothing, and refuses what it can make no robot of") {
   const auto folder = fresh_folder("new_robot_refused");
   write(folder / "arm.urdf", arm());
@@ -197,7 +255,10 @@ TEST_CASE("new robot overwrites nothing, and refuses what it can make no robot o
   CHECK(taken.exit_code == 2);
   CHECK(has(taken.err, "behaviors/arm: is there already; nothing is overwritten"));
   CHECK(!std::filesystem::exists(folder / "models"));
-  CHECK(run("new robot arm.urdf --name Arm --no-run", folder).exit_code == 2);
+  CHECK(has(run("new robot arm.urdf --name Arm --no-run", folder).err, "arm.urdf: 'Arm': a robot's name is words"));
+  const Outcome no_srdf = run("new robot arm.urdf --name other --srdf arm.urdf --no-run", folder);
+  CHECK(no_srdf.exit_code == 2);
+  CHECK(has(no_srdf.err, "> in its <robot>: this is a URDF"));
   CHECK(has(run("new robot none.urdf", folder).err, "there is no such file"));
   std::string limp = arm();
   for (std::size_t at; (at = limp.find("effort=\"60\"")) != std::string::npos;) limp.replace(at, 11, "effort=\"0\"");

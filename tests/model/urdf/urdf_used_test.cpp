@@ -154,6 +154,32 @@ TEST_CASE("A package is where it is said to be, where ROS says, or where a packa
   CHECK_FALSE(find_urdf_file("package://other/meshes/a.stl", urdf));
   const std::string cloned = place.write("clone/meshes/b.stl", "solid");  // under a name that is not the package's
   CHECK(find_urdf_file("package://other/meshes/b.stl", place.write("clone/urdf/b.urdf", "")) == cloned);
+  // Exporters that were told no package write none.
+  const std::string beside = place.write("bare/c.stl", "solid"), below = place.write("bare/meshes/d.stl", "solid");
+  const std::string bare = place.write("bare/b.urdf", "");
+  CHECK(find_urdf_file("package:///c.stl", bare) == beside);
+  CHECK(find_urdf_file("package://c.stl", bare) == beside);
+  CHECK(find_urdf_file("package:///meshes/d.stl", bare) == below);
+}
+
+TEST_CASE("A file that a package has not is not told as a package that is not there, and its name is told to its end") {
+  const test::TemporaryFolder place;
+  place.write("robot/package.xml", "<package><name>shell</name></package>");
+  const auto told = [&](const std::string& mesh) {
+    std::string text = duo_urdf;
+    const std::string sphere = R"(<sphere radius="0.1"/>)";
+    text.replace(text.find(sphere), sphere.size(), "<mesh filename=\"" + mesh + "\"/>");
+    std::vector<InputProblem> warnings;
+    (void)read_urdf_text(text, place.path().string() + "/robot/urdf/duo.urdf", {}, &warnings);
+    REQUIRE(warnings.size() == 1);
+    return warnings[0].message;
+  };
+  const std::string there = told("package://shell/meshes/of/the/robot/that/we/built/in/2008/left_foot_plate.stl");
+  CHECK_MESSAGE(there.find("that/we/built/in/2008/left_foot_plate.stl' is not there") != std::string::npos, there);
+  CHECK_MESSAGE(there.find("; package 'shell' is at '") != std::string::npos, there);
+  CHECK_MESSAGE(there.find("and has no such file") != std::string::npos, there);
+  CHECK(told("package:///left.stl").find("; it names no package, so its path starts from this file's folder") !=
+        std::string::npos);
 }
 
 TEST_CASE(
