@@ -222,3 +222,20 @@ end)
   CHECK(has(outcome.out, "fetsh.json"));
   CHECK(has(outcome.out, "pass_test.lua:43: no sensor 'seen.bal.x_m'"));
 }
+
+TEST_CASE(
+    "behavior test tells files without tests, behaviors that are not there, and knows a behavior that has ended") {
+  const Outcome none = tested("lua_test_none", "-- it('a', function() end)\n");
+  CHECK(none.exit_code == 2);
+  CHECK(has(none.err, "my_test.lua: no tests: describe(NAME, function) and it(NAME, function) make them"));
+  const Outcome bare = tested("lua_test_bare", "describe('a')\n");
+  CHECK(bare.exit_code == 2);
+  CHECK(has(bare.err, "my_test.lua:1: describe(\"a\") needs a function"));
+  const Outcome ended = tested("lua_test_ended",
+                               "local k = require 'kadans'\n"
+                               "it('a', function() k.play('squat.lua'):advance_to('done') end)\n"
+                               "it('b', function() k.play('no/such.lua') end)\n");
+  CHECK(ended.exit_code == 1);
+  CHECK_MESSAGE(has(ended.out, "1 passed, 1 failed"), ended.out);
+  CHECK_MESSAGE(has(ended.out, "such.lua: there is no such file"), ended.out);
+}

@@ -175,7 +175,7 @@ TEST_CASE("Further robots of a scenario have names of their own, and take the fi
           ":1:96: robots: only the bullet plant has one, this scenario's plant is ideal");
 }
 
-TEST_CASE("A scenario on the ideal plant has no world") {
+TEST_CASE("A scenario on the ideal plant has no world, and what nobody could see there") {
   const std::string file = KADANS_SOURCE_DIR "/config/scenarios/none.json";
   const auto text = [](const std::string& plant) {
     return R"({"name": "a", "robot": "config/tulip/robot.json", "duration_s": 1, "plant": ")" + plant +
@@ -185,6 +185,17 @@ TEST_CASE("A scenario on the ideal plant has no world") {
   CHECK_THROWS_WITH_AS(read_scenario_config_text(text("ideal"), file),
                        (file + ":1:95: world: only the bullet plant has one, this scenario's plant is ideal").c_str(),
                        InputError);
+  const auto refused = [&](const std::string& key, const std::string& what) {
+    const std::string more =
+        R"({"name": "a", "robot": "config/tulip/robot.json", "duration_s": 1, "plant": "ideal", ")";
+    CHECK_THROWS_WITH_AS(read_scenario_config_text(more + key + "\": []}", file),
+                         (file + ":1:" + std::to_string(more.size() + key.size() + 4) + ": " + key +
+                          ": only the bullet plant can be " + what + ", this scenario's plant is ideal")
+                             .c_str(),
+                         InputError);
+  };
+  refused("pushes", "pushed");
+  refused("carried", "carried");
 }
 
 }  // namespace kadans::world_config_test

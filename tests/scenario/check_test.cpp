@@ -117,7 +117,10 @@ TEST_CASE("within wants the condition soon after each time that `when` becomes t
   const CheckResult idle = judged(check, {2, 2, 9});
   CHECK_FALSE(idle.passed);
   CHECK(idle.note == "its `when` never became true");
-  CHECK(judged(check, {2, 0, 2}).passed);  // ended before it was due
+  CHECK(judged(check, {2, 0, 2, 9, 0, 2}).passed);  // ended before it was due once more
+  const CheckResult open = judged(check, {2, 0, 2});
+  CHECK_FALSE(open.passed);
+  CHECK(open.note == "the run ended before within_s had passed");
 }
 
 TEST_CASE("settles wants the value in its band for good") {
@@ -153,6 +156,23 @@ TEST_CASE("A condition that goes wrong in the run fails every check, with the re
   CHECK_FALSE(judged({.name = "n", .kind = CheckKind::never, .that = "x"}, {0, 1}).passed);
   const CheckResult number = judged({.name = "n", .kind = CheckKind::never, .that = "x + 1"}, {0, 1});
   CHECK(number.note == "not judged: 'x + 1' gives a number, wanted true or false");
+}
+
+TEST_CASE("A condition that goes wrong is told with its own check, and by its name with the others") {
+  const double x = 1;
+  SignalTable signals;
+  signals.add({"x", "", ""}, &x);
+  const std::vector<ScenarioCheck> all{{.name = "good", .kind = CheckKind::always, .that = "x > 0"},
+                                       {.name = "odd", .kind = CheckKind::always, .that = "x + 1"},
+                                       {.name = "low", .kind = CheckKind::always, .signal = "x", .max = 2}};
+  Checks checks(signals, all, "s.json");
+  checks.update(0, std::vector<double>{1});
+  const std::vector<CheckResult> results = checks.results();
+  REQUIRE(results.size() == 3);
+  for (const CheckResult& one : results) CHECK_FALSE(one.passed);
+  CHECK(results[0].note == "not judged: check 'odd' stopped all");
+  CHECK(results[1].note == "not judged: 'x + 1' gives a number, wanted true or false");
+  CHECK(results[2].note == "not judged: check 'odd' stopped all");
 }
 
 TEST_CASE("A condition cannot loop or reach for anything but signals and mathematics") {

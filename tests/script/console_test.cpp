@@ -127,6 +127,17 @@ TEST_CASE("a console only reads until :write, then each line is one transaction"
   CHECK(desk.says("m:wait(1)").find("error: ") == 0);
 }
 
+TEST_CASE("what belongs to a state is refused in a console, whatever is given") {
+  Desk desk;
+  desk.type(":write");
+  for (const char* given : {"", "'base.height_m > 3', function(c) c.posture:hold() end, { within_s = 5 }"})
+    CHECK(desk.says("m:on(" + std::string(given) + ")").find("m:on belongs to a state that is active") !=
+          std::string::npos);
+  for (const char* waits : {"-1", "0/0", "1e300"})
+    CHECK(desk.says("m:wait(" + std::string(waits) + ")").find("m:wait takes seconds >= 0") != std::string::npos);
+  CHECK(desk.queue.size() == 0);
+}
+
 TEST_CASE("faults are cleared by a command with a colon, or in Lua, after :write only") {
   Desk desk;
   CHECK(desk.says(":clear_faults").find("this console only reads: ':write' lets it command") != std::string::npos);

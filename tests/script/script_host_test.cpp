@@ -84,6 +84,18 @@ TEST_CASE("an error is reported once, with its line and the stack") {
   CHECK(theatre.log.joined().find("behaviors/b0.lua:4: in function") != std::string::npos);
 }
 
+TEST_CASE("no address of memory, which differs from run to run, is told with an error") {
+  for (const char* way : {"during = function() table.sort({ 1, 2 }, function() error('broken') end) end",
+                          "run = function() table.sort({ 1, 2 }, function() error('broken') end) end"}) {
+    Theatre theatre({behavior("bad", "k.state 'a' { " + std::string(way) + " }")});
+    theatre.tick(5);
+    const std::string said = theatre.log.joined();
+    CHECK_MESSAGE(said.find("[C]:") != std::string::npos, said);
+    CHECK_MESSAGE(said.find("0x") == std::string::npos, said);
+    CHECK_MESSAGE(said.find("in function <behaviors/b0.lua:2>", said.find("[C]:")) != std::string::npos, said);
+  }
+}
+
 TEST_CASE("stop leaves what plays") {
   Theatre theatre({behavior("one", "exit = function(m) m.posture:set_gains('soft') end, k.state 'a' {}")});
   theatre.tick(2);

@@ -66,6 +66,7 @@ class BehaviorTests {
       run(file);
     }
     if (cases_.empty() && !options_.only.empty()) refuse("--only", "no test has '" + options_.only + "' in its name");
+    if (cases_.empty()) refuse(listed(files), "no tests: describe(NAME, function) and it(NAME, function) make them");
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
     if (!options_.json)
       std::printf("%zu passed, %zu failed, %.0f ms\n", count(Verdict::passed), count(Verdict::failed),

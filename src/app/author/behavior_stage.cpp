@@ -5,6 +5,7 @@
 #include "config/json/problems.h"
 #include "config/robot/project_root.h"
 #include "decision_stage.h"
+#include "signal/input_file.h"
 #include "signal/number_text.h"
 
 namespace kadans {
@@ -75,6 +76,7 @@ fs::path only_robot(const fs::path& folder, const std::string& named) {
 }
 
 std::unique_ptr<TestStage> RobotStages::make(const fs::path& behavior, const Options& options) {
+  check_input_file(behavior);
   const std::string& plant = options.plant;
   const std::vector<std::string> models = plant_type_names(&PlantType::is_model);
   if (!plant.empty() && std::ranges::find(models, plant) == models.end())

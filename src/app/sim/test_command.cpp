@@ -29,6 +29,7 @@
 #include "kadans/signal/input_error.h"
 #include "kadans/signal/shell_word.h"
 #include "played_behaviors.h"
+#include "scenario/report/html_report.h"
 #include "script/check/check_behavior.h"
 #include "signal/durable_file.h"
 #include "signal/input_file.h"
@@ -92,6 +93,20 @@ std::vector<PlannedRun> runs_in(const std::vector<std::string>& lines, const std
     }
   }
   return runs;
+}
+
+// Records, reports and golden hashes go by the names of scenarios.
+void refuse_shared_names(const std::vector<ScenarioConfig>& scenarios) {
+  std::map<std::string, const ScenarioConfig*> by_page;
+  std::vector<InputProblem> problems;
+  for (const ScenarioConfig& scenario : scenarios) {
+    const auto [other, added] = by_page.emplace(report_file(scenario.name, 0), &scenario);
+    if (!added)
+      problems.push_back({.file = scenario.file,
+                          .message = "name '" + scenario.name + "': " + other->second->file + " has the name '" +
+                                     other->second->name + "': what is kept of their runs would be one"});
+  }
+  if (!problems.empty()) throw InputError(problems);
 }
 
 // All seeds of all scenarios, or with --rerun-failed the failed ones; --seed and --repeat choose the seeds.
@@ -285,6 +300,7 @@ int run_test(const TestOptions& options) {
   const std::vector<ScenarioConfig> scenarios = find_scenarios(folder, options.selectors);
   if (scenarios.empty()) refuse(folder, "there is no scenario here");
   const fs::path failed_file = state_file("failed-" + std::to_string(std::hash<std::string>()(fs::absolute(root))));
+  refuse_shared_names(scenarios);
   std::vector<PlannedRun> runs = plan_runs(options, scenarios, failed_file);
   if (runs.empty()) std::fputs("nothing failed the last time\n", options.json ? stderr : stdout);
   if (options.list) print_plan(runs, options.json);

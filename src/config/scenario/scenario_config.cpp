@@ -181,9 +181,12 @@ void plant_fields(Fields& f, ScenarioConfig& scenario) {
   scenario.plant = models[chosen];
   if (plant_type(plant_types(), scenario.plant).has_objects()) return;
   const std::string others = listed(plant_type_names(&PlantType::has_objects));
-  for (const std::string key : {"world", "robots"}) {
-    if (!f.has(key)) continue;
-    f.refuse(key, ": only the " + others + " plant has one, this scenario's plant is " + scenario.plant);
+  for (const auto& [key, what] : {std::pair{"world", "has one"},
+                                  {"robots", "has one"},
+                                  {"pushes", "can be pushed"},
+                                  {"carried", "can be carried"}}) {
+    if (f.has(key))
+      f.refuse(key, ": only the " + others + " plant " + what + ", this scenario's plant is " + scenario.plant);
   }
 }
 

@@ -89,11 +89,18 @@ void Checks::update(double time_s, std::span<const double> row) noexcept {
 
 std::vector<CheckResult> Checks::results() const {
   std::vector<CheckResult> results;
+  const std::size_t failed = conditions_.failed();
+  const auto of_failed = [&](const Judged& judged) { return judged.that == failed || judged.when == failed; };
+  const auto cause = std::ranges::find_if(judged_, of_failed);
   for (const Judged& judged : judged_) {
     results.push_back(judged.check.result());
     if (!broken_) continue;
     results.back().passed = false;
-    results.back().note = "not judged: " + conditions_.error();
+    results.back().note = "not judged: ";
+    if (cause == judged_.end() || of_failed(judged))
+      results.back().note += conditions_.error();
+    else
+      results.back().note += "check '" + cause->check.config().name + "' stopped all";
   }
   return results;
 }
@@ -149,7 +156,9 @@ void Check::update_within(double time_s, const Observation& seen) noexcept {
   value_ = seen.value;
   at_s_ = time_s;
   failed_ = time_s - began_s_ > check_.within_s;
-  if (seen.excess <= 0) waiting_ = false;
+  if (seen.excess > 0) return;
+  waiting_ = false;
+  met_ = true;
 }
 
 void Check::update_settling(double time_s, const Observation& seen) noexcept {
@@ -198,7 +207,8 @@ CheckResult Check::result() const {
       return result;
     }
     if (check_.kind == CheckKind::settles) return settled();
-    result.passed = !failed_;
+    result.passed = !failed_ && met_;
+    if (!failed_ && !met_) result.note = "the run ended before within_s had passed";
     return result;
   }
   if (!seen_) {

@@ -68,6 +68,7 @@ class Check {
   double began_s_ = 0;                                           // ... since this time
   double outside_s_ = -std::numeric_limits<double>::infinity();  // last time at which the demand did not hold
   double last_s_ = 0;
+  bool met_ = false;  // the demand was fulfilled once
   bool failed_ = false;
 };
 

@@ -200,7 +200,7 @@ int on(lua_State* state) {
   if (bindings.recording) return luaL_error(state, "m:on does not work inside the function of another m:on");
   if (bindings.armed_count == bindings.armed.size())
     return luaL_error(state, "m:on: %d transactions are armed already", static_cast<int>(max_armed));
-  if (!bindings.runner->active(bindings.runner->acting_index()))
+  if (bindings.runner == nullptr || !bindings.runner->active(bindings.runner->acting_index()))
     return luaL_error(state, "m:on belongs to a state that is active: call it in enter, during or run");
   if (!lua_isfunction(state, 3))
     return luaL_error(state, "m:on needs a function that says what to do: function(c) ... end");

@@ -148,7 +148,7 @@ constexpr double copied_field_instructions = 20;
 // m:wait(seconds): inside `run` only.
 int wait(lua_State* state) {
   const double seconds = luaL_checknumber(state, 2);
-  if (!(seconds >= 0 && seconds < 1e6)) return luaL_argerror(state, 1, "seconds >= 0");
+  if (!(seconds >= 0 && seconds < 1e6)) return luaL_error(state, "m:wait takes seconds >= 0, below 1e6");
   if (core_of(state).running != state) return luaL_error(state, "m:wait() works inside `run` only");
   ChartRunner& runner = *bindings_of(state).runner;
   runner.wait_until(runner.now_ns() + static_cast<std::int64_t>(std::llround(seconds * 1e9)));

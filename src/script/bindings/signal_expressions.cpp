@@ -88,7 +88,8 @@ void SignalExpressions::evaluate_all(lua_State* state, double time_s, std::span<
     if (!state_->begun) copy(values, last, i);
   }
   state_->begun = true;
-  for (Condition& condition : conditions_) {
+  for (failed_ = 0; failed_ < conditions_.size(); ++failed_) {
+    Condition& condition = conditions_[failed_];
     lua_rawgeti(state, LUA_REGISTRYINDEX, condition.function);
     lua_pushvalue(state, values);
     lua_pushnumber(state, time_s);

@@ -73,6 +73,7 @@ class SignalExpressions {
   double value(std::size_t index) const { return conditions_.at(index).value; }
   bool holds(std::size_t index) const { return value(index) != 0; }
   const std::string& error() const noexcept { return error_; }
+  std::size_t failed() const noexcept { return failed_; }  // which one it is of; size(): of none
 
  private:
   struct Condition {
@@ -95,6 +96,7 @@ class SignalExpressions {
   std::vector<Condition> conditions_;
   std::vector<SignalId> used_;  // used by any condition
   std::string error_;
+  std::size_t failed_ = 0;
 };
 
 }  // namespace kadans

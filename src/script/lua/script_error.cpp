@@ -23,7 +23,18 @@ void copy(std::span<char> to, const char* from, std::size_t length) noexcept {
 
 }  // namespace
 
-void ScriptError::set_traceback(const char* text) noexcept { copy(traceback, text, std::strlen(text)); }
+// A function in C has an address there, which differs from run to run.
+void ScriptError::set_traceback(const char* text) noexcept {
+  copy(traceback, text, std::strlen(text));
+  constexpr std::string_view address = "]: at 0x";
+  char* to = traceback.data();
+  for (const char* from = to; *from != '\0';) {
+    const bool here = std::string_view(from).starts_with(address);
+    for (std::size_t i = 0; i < (here ? address.size() - 6 : 1); ++i) *to++ = *from++;
+    if (here) from += 6 + std::strspn(from + 6, "0123456789abcdef");
+  }
+  *to = '\0';
+}
 
 void ScriptError::set_place(const char* chunk, int at_line) noexcept {
   copy(file, chunk, std::strlen(chunk));

@@ -34,6 +34,18 @@ Outcome run_test(const std::filesystem::path& folder, const std::string& options
 
 }  // namespace
 
+TEST_CASE("test refuses scenarios whose names are one in what is kept of their runs, before any runs") {
+  const auto folder = project();
+  for (const auto& [file, name] : {std::pair{"x.json", "bent"}, {"y.json", "a/b"}, {"z.json", "a_b"}})
+    write(folder / "config/scenarios" / file, scenario(name, "time_s > 0"));
+  const Outcome outcome = run_test(folder, "");
+  CHECK(outcome.exit_code == 2);
+  CHECK_MESSAGE(has(outcome.err, "x.json: name 'bent': "), outcome.err);
+  CHECK(has(outcome.err, "bent.json has the name 'bent'"));
+  CHECK(has(outcome.err, "has the name 'a/b'"));
+  CHECK(!has(outcome.out, "passed"));
+}
+
 TEST_CASE("test runs what is chosen by name, tag, pattern and path, and its exit code tells whether all passed") {
   const auto folder = project();
   for (const char* chosen : {"knee", "ben", "b*t", "config/scenarios/bent.json"}) {
