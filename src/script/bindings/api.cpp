@@ -200,11 +200,12 @@ constexpr ApiEntry written[] = {
     {"armed", "fired", "number", "How often it acted"},
     {"armed", "cancel()", "boolean?, string?", "Takes it back; nil, \"queue_full\""},
 
-    {"motion", "done", "boolean", "Whether the motion is over: arrived, cancelled or refused"},
+    {"motion", "done", "boolean",
+     "Whether the motion is over: arrived, taken over by another one, cancelled or refused"},
     {"motion", "outcome", "'moving'|'done'|'cancelled'|'queue_full'|'refused'|'expired'", "How it ended"},
     {"motion", "reason", "string?", "Why the control engine refused it: which set-point or parameter, and its range"},
     {"motion", "wait()", "boolean?, string?, string?",
-     "Waits until the motion is over; in `run` only; nil, outcome and reason when it did not arrive"},
+     "Waits until the motion is over; in `run` only; nil, outcome and reason when it was cancelled or refused"},
     {"motion", "cancel()", "boolean?, string?", "Comes to rest where it is; nil, \"queue_full\""},
 
     {"s", "joints", "kadans.Joints", "By name"},
