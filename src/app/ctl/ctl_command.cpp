@@ -316,7 +316,7 @@ int watch(CtlLink& link, const CtlOptions& options, const Json& answer) {
     while (!line && !interrupted()) line = link.receive(200);
     if (interrupted()) break;
     print_text((options.json ? *line : watch_line(parse_foreign_json(*line))) + "\n");
-    std::fflush(stdout);
+    if (std::fflush(stdout) != 0) break;  // nobody reads on, or nothing can be written: the program's end tells it
   }
   return exit_passed;
 }

@@ -202,7 +202,8 @@ void DeliveryFolder::take_next() {
     return sync_folder(folder_.parent_path());
   }
   trade(next());
-  fs::remove_all(beside(".before"), error);
+  fs::remove_all(beside(".older"), error);
+  fs::rename(beside(".before"), beside(".older"), error);  // there may be none
   fs::rename(next(), beside(".before"), error);
   if (error) refuse(beside(".before"), "cannot be kept: " + error.message());
   sync_folder(folder_.parent_path());
@@ -211,6 +212,19 @@ void DeliveryFolder::take_next() {
 void DeliveryFolder::undo() {
   if (!fs::exists(beside(".before"))) refuse(folder_, "there is nothing before what is there");
   trade(beside(".before"));
+}
+
+void DeliveryFolder::take_back() {
+  undo();
+  std::error_code error;
+  fs::remove_all(beside(".before"), error);
+  fs::rename(beside(".older"), beside(".before"), error);  // there may be none
+  sync_folder(folder_.parent_path());
+}
+
+void DeliveryFolder::forget_older() noexcept {
+  std::error_code error;
+  fs::remove_all(beside(".older"), error);
 }
 
 std::vector<DeliveryFolder::Change> DeliveryFolder::changes_to(const fs::path& other) const {

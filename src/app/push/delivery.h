@@ -55,6 +55,9 @@ class DeliveryFolder {
   void lay_out(const Delivery& delivery);
   // The laid out one counts from now on, and the present one is the one before it. Throws InputError.
   void take_next();
+  // What take_next() did was refused: the two folders are again what they were before it. Throws InputError.
+  void take_back();
+  void forget_older() noexcept;  // it was not
   // The one before counts again; the present one becomes the one before. Throws InputError when there is none.
   void undo();
 

@@ -187,7 +187,14 @@ int bring_up(RunThere& run, const std::vector<DeliveryFolder::Change>& changes, 
     std::printf("counts from the next start: %s\n", run.why_not().c_str());
     return exit_passed;
   }
-  if (const std::optional<std::string> refused = run.reload()) {
+  std::optional<std::string> refused;
+  try {
+    refused = run.reload();
+  } catch (const InputError&) {  // it is gone, or does not answer
+    back();
+    throw;
+  }
+  if (refused) {
     back();
     (void)run.reload();
     print_error(*refused);
@@ -246,9 +253,11 @@ int run_receive(const ReceiveOptions& options) {
   RunThere run(options.socket, place.folder());
   const bool first = !fs::exists(place.folder());
   place.take_next();
-  return bring_up(run, changes, [&] {
-    if (!first) place.undo();
+  const int code = bring_up(run, changes, [&] {
+    if (!first) place.take_back();
   });
+  place.forget_older();
+  return code;
 }
 
 }  // namespace

@@ -62,8 +62,10 @@ void CtlServer::run() {
     expire();
     requests_.upkeep();
     std::erase_if(guests_, [this](const Guest& guest) {
-      if (guest.gone) requests_.forget(*guest.session);
-      return guest.gone;
+      if (!guest.gone) return false;
+      heed_last_lines(*guest.session);
+      requests_.forget(*guest.session);
+      return true;
     });
   }
 }
@@ -96,7 +98,13 @@ void CtlServer::wait() {
 // Who came before anybody served, and gave up: what it asked for is not wanted any more, be it the emergency stop.
 void CtlServer::accept_waiting() {
   for (const Role role : roles) accept_all(role);
-  for (Guest& guest : guests_) guest.gone = guest.session->leaves;
+  std::erase_if(guests_, [](const Guest& guest) { return guest.session->leaves; });
+}
+
+// The emergency stop counts of whoever has gone, too, whatever stood before it and was not answered yet.
+void CtlServer::heed_last_lines(CtlSession& session) {
+  session.leaves = true;
+  for (const std::string& line : session.last_lines(now_ns_)) (void)requests_.take(session, line);
 }
 
 // Room for one more of this user: where there is none, the one that has been idle for longest goes, of the user who has

@@ -58,6 +58,7 @@ class CtlServer {
   void wait();
   void accept_all(Role role);
   void accept_waiting();
+  void heed_last_lines(CtlSession& session);
   bool make_room(Role role, std::uint32_t user);
   void serve(Guest& guest, short events);
   void answer_requests(Guest& guest);

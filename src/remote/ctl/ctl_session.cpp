@@ -62,6 +62,18 @@ bool CtlSession::take_line(std::string& line, std::int64_t now_ns) {
   return true;
 }
 
+std::vector<std::string> CtlSession::last_lines(std::int64_t now_ns) {
+  constexpr int reads_max = 16;
+  for (int i = 0; i < reads_max && !ended_ && receive(now_ns); ++i) {
+  }
+  std::vector<std::string> lines;
+  std::size_t begin = 0;
+  for (std::size_t end; (end = in_.find('\n', begin)) != std::string::npos; begin = end + 1)
+    lines.push_back(in_.substr(begin, end - begin));
+  in_.erase(0, begin);
+  return lines;
+}
+
 void CtlSession::say(const std::string& line, std::int64_t now_ns) {
   if (out_.empty()) progress_ns_ = now_ns;
   out_ += line;
@@ -71,7 +83,8 @@ void CtlSession::say(const std::string& line, std::int64_t now_ns) {
 namespace {
 
 constexpr double rate_usual_hz = 10;
-constexpr std::uint32_t row_every_ticks = 10;  // while nobody watches faster
+constexpr std::size_t readers_waiting_max = orders_waiting_max / 2;  // the other places are of those who may act
+constexpr std::uint32_t row_every_ticks = 10;                        // while nobody watches faster
 
 Json change_json(const ParameterChange& change) {
   return {{"name", change.name}, {"before", change.before}, {"now", change.now}};
@@ -134,8 +147,11 @@ std::string CtlRequests::at_once(CtlSession& session, const OrderRequest& reques
 std::string CtlRequests::send(CtlSession& session, const OrderRequest& request) {
   Order order = request.order(session.who(), session.number());
   session.has_console = session.has_console || order.kind == Order::Kind::line || order.kind == Order::Kind::complete;
-  session.order = port_.send(std::move(order));
+  const bool reads = session.role() == Role::read;
+  const bool room = !reads || readers_.size() < readers_waiting_max;
+  session.order = room ? port_.send(std::move(order)) : 0;
   if (session.order == 0) return refusal("too many orders wait for their answers; try again");
+  if (reads) readers_.insert(session.number());
   asked_.insert_or_assign(session.number(), request);
   return {};
 }
@@ -143,6 +159,7 @@ std::string CtlRequests::send(CtlSession& session, const OrderRequest& request) 
 std::string CtlRequests::answered(CtlSession& session, const Answer* answer) {
   const OrderRequest request = asked_.at(session.number());
   const std::uint64_t order = std::exchange(session.order, 0);
+  readers_.erase(session.number());
   try {
     if (answer == nullptr) port_.withdraw(order);
     if (answer == nullptr && !reports(session))
@@ -291,6 +308,7 @@ std::string CtlRequests::faults() {
 void CtlRequests::forget(const CtlSession& session) {
   if (session.order != 0) port_.withdraw(session.order);
   asked_.erase(session.number());
+  readers_.erase(session.number());
   watches_fast(session, false);
   if (session.has_console) leaving_.push_back(session.number());
 }

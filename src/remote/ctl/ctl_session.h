@@ -56,6 +56,8 @@ class CtlSession {
   // Takes a line, if there is one and no answer is pending.
   [[nodiscard]] bool take_line(std::string& line, std::int64_t now_ns);
   void say(const std::string& line, std::int64_t now_ns);
+  // What a client that is gone still said, bounded, also while an answer is pending.
+  std::vector<std::string> last_lines(std::int64_t now_ns);
 
   // True when an unfinished line, or an answer that is not read, is older than before_ns.
   bool half_since(std::int64_t before_ns) const noexcept { return half_ns_ < before_ns; }
@@ -129,6 +131,7 @@ class CtlRequests {
   std::map<std::uint64_t, OrderRequest> asked_;  // the pending request of each session
   std::vector<std::uint64_t> leaving_;           // clients whose consoles must be closed
   std::set<std::uint64_t> fast_;                 // sessions that watch faster than the usual row
+  std::set<std::uint64_t> readers_;              // sessions with the role read whose orders wait
   std::map<std::tuple<FaultCode, std::uint16_t, std::uint16_t>, Seen> faults_;  // by code, joint and robot
 };
 

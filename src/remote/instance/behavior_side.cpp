@@ -171,7 +171,11 @@ void BehaviorSide::heed_stop() {
   const auto snapshot = p_.exchange.snapshot.read(0);
   const bool stopped_before = std::exchange(stopped_, snapshot->status.safety.stopped);
   lifts_ = snapshot->status.safety.lifts;
-  if (stopped_ && !stopped_before) orders().order({.kind = PlayOrder::Kind::stop, .behavior = {}});
+  if (!stopped_ || stopped_before) return;
+  try {
+    orders().order({.kind = PlayOrder::Kind::stop, .behavior = {}});
+  } catch (const InputError&) {  // the behaviors' process is down: nothing plays
+  }
 }
 
 // True: it is carried out. False: it takes its time. Throws why not.

@@ -37,13 +37,14 @@
 namespace kadans {
 
 struct RecordStatus {
+  static constexpr std::size_t path_bytes = 4096;  // PATH_MAX
   bool goes_on = false;
   bool failed = false;  // writing to the disk failed
   std::uint64_t rows = 0, bytes = 0;
   std::uint32_t dropped = 0;
-  std::array<char, 256> file{};
-  std::uint32_t flights = 0;       // number of records that the flight recorder wrote
-  std::array<char, 256> flight{};  // file of the last one
+  std::array<char, path_bytes> file{};
+  std::uint32_t flights = 0;              // number of records that the flight recorder wrote
+  std::array<char, path_bytes> flight{};  // file of the last one
 };
 
 // Published by the supervisor about twenty times a second.

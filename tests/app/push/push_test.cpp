@@ -182,6 +182,8 @@ TEST_CASE("A run takes what was pushed at once, and goes on as it was when it re
     CHECK_MESSAGE(refused.exit_code == 1, (refused.out + refused.err));
     CHECK(has(refused.err, "the files are as they were"));
     CHECK(read(project / there / squat) == good);
+    CHECK(read(project / "there/tulip/robot.before" / squat) == waiting("here"));
+    CHECK(!fs::exists(project / "there/tulip/robot.older"));
   }
 }
 
