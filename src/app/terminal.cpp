@@ -19,7 +19,11 @@ namespace {
 
 volatile std::sig_atomic_t interrupt_flag = 0;
 
+// Whoever asks a third time does not want to wait for what hangs.
 void note_interrupt(int) {
+  static volatile std::sig_atomic_t asked = 0;
+  asked = asked + 1;
+  if (asked >= 3) _exit(exit_interrupted);
   interrupt_flag = 1;
   interrupt_scripts();
 }

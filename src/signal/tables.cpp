@@ -66,6 +66,8 @@ std::vector<std::string> ParameterTable::names() const {
 
 SetpointId SetpointTable::add(Setpoint setpoint) {
   if (!(setpoint.min <= setpoint.max)) throw std::invalid_argument("set-point " + setpoint.name + ": empty range");
+  if (setpoint.safe < setpoint.min || setpoint.safe > setpoint.max)  // NaN: it has none
+    throw std::invalid_argument("set-point " + setpoint.name + ": its safe value is outside its range");
   const auto id = static_cast<SetpointId>(entries_.size());
   if (!ids_.emplace(setpoint.name, id).second) {
     throw std::invalid_argument("set-point " + setpoint.name + " is declared twice");

@@ -130,8 +130,8 @@ TEST_CASE("an emergency stop counts whatever its client, which leaves, asked for
     hasty.close();
   }
   inattentive.attends = true;
-  const auto off = [](const Json& a) { return a["safety"]["level"] == "off"; };
-  const Json status = live.ask_until({{"verb", "status"}}, [&](const Json& a) { return off(a) && is_whole(a); });
+  const auto off = [](const Json& a) { return a["safety"]["level"] == "off" && is_whole(a); };
+  const Json status = live.ask_until({{"verb", "status"}}, off);
   CHECK(off(status));
   CHECK(status["paused"] == false);
 }

@@ -132,6 +132,9 @@ TEST_CASE("a set-point declared twice or with an empty range is refused by name"
                        "set-point x is declared twice", std::invalid_argument);
   CHECK_THROWS_WITH_AS(table.add({.name = "y", .unit = "", .min = 1, .max = 0, .doc = ""}), "set-point y: empty range",
                        std::invalid_argument);
+  for (const double safe : {-0.5, 1.5})
+    CHECK_THROWS_WITH_AS(table.add({.name = "z", .unit = "", .min = 0, .max = 1, .doc = "", .safe = safe}),
+                         "set-point z: its safe value is outside its range", std::invalid_argument);
   CHECK(table.size() == 1);
   CHECK_FALSE(table.find("y").has_value());
 }

@@ -47,6 +47,7 @@ constexpr std::string_view plant_source_template = R"(#include "@name@.h"
 #include <chrono>
 #include <cstring>
 #include <string>
+#include <thread>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -135,8 +136,10 @@ class @Class@Plant final : public Plant {
     while (std::chrono::steady_clock::now() < end) {
       if (give_up != nullptr && give_up()) return false;
       (void)socket_.send(encode(head(Kind::hello), buffer_));
+      const auto next = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
       socket_.wait(50);
       if (take_all()) return true;
+      std::this_thread::sleep_until(next);  // where nobody listens the wait is none
     }
     throw InputError({.file = site_.file,
                       .message = "no answer from " + settings_.peer + " that is of a robot with " +
@@ -499,9 +502,12 @@ int run_new_plant(const NewPlantOptions& options) {
   const std::string library = (fs::weakly_canonical(fs::absolute(folder)) / "build" / (name + ".so"))
                                   .lexically_relative(fs::weakly_canonical(robot.parent_path()))
                                   .string();
+  std::vector<std::string> plugins;  // a list takes the place of that of the base
+  for (const PlacedName& plugin : subject.robot.config.plugins) plugins.push_back(plugin.name);
+  plugins.push_back(library.starts_with("../") ? library : "./" + library);
   const nlohmann::ordered_json driven{{"doc", "Driven through " + name + "."},
                                       {"based_on", subject.robot_file},
-                                      {"plugins", {library.starts_with("../") ? library : "./" + library}},
+                                      {"plugins", plugins},
                                       {"plant", {{name, {{"peer", "127.0.0.1:7300"}}}}}};
   const auto file = [&](const std::string& file_name, std::string_view text) {
     return NewFile{folder / file_name, filled_template(text, names)};

@@ -149,10 +149,10 @@ void @Name@Code::initialise() noexcept {
   time_s_ = due_s_ = 0;
 }
 
-// Between two steps of the code its outputs hold.
+// Between two steps of the code its outputs hold; where they are shorter than a tick, several are made in it.
 void @Name@Code::step(double dt_s) noexcept {
   const double step_s = period_s > 0 ? period_s : dt_s;
-  if (due_s_ < 0.5 * dt_s) {
+  while (due_s_ < 0.5 * std::min(step_s, dt_s) || due_s_ + step_s <= dt_s) {
     @type@_step(code_, time_s_, step_s, inputs.data(), outputs.data(), parameters.data());
     time_s_ += step_s;
     due_s_ += step_s;

@@ -42,14 +42,17 @@ void merge_members(JsonValue& base, const JsonValue& given) {
   }
 }
 
+// Each item of the base takes one of its name; a second one is left to the reader, which refuses it.
 void merge_named(JsonValue& base, const JsonValue& given) {
+  std::vector<bool> taken(base.items.size());
   for (const JsonValue& item : given.items) {
-    const auto found =
-        std::ranges::find_if(base.items, [&](const JsonValue& b) { return *name_of(b) == *name_of(item); });
-    if (found == base.items.end()) {
-      base.items.push_back(item);
+    std::size_t at = 0;
+    while (at < taken.size() && (taken[at] || *name_of(base.items[at]) != *name_of(item))) ++at;
+    if (at < taken.size()) {
+      merge(base.items[at], item);
+      taken[at] = true;
     } else {
-      merge(*found, item);
+      base.items.push_back(item);
     }
   }
 }

@@ -116,7 +116,7 @@ TEST_CASE("A servo whose encoder is dead says so, and nothing is driven") {
   CHECK(project.all.seen.torque_share == 0);
 }
 
-TEST_CASE("Servos that stand still for moments have no dead encoder; where that never ends, they are let go") {
+TEST_CASE("Servos that stand still for moments have no dead encoder, and are let go where that never ends") {
   for (const int every : {410, 530, 1010}) {
     CAPTURE(every);
     Project project(servos);

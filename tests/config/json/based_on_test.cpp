@@ -65,6 +65,21 @@ TEST_CASE("A file based on another has its keys, its own in their place, and lis
   CHECK(list[2].find("name")->value.text == "r");
 }
 
+TEST_CASE(
+    "Two things of one name in a file stay two, so that their reader refuses them, whether its base has one or not") {
+  const Project project;
+  project.write("base.json", R"({ "list": [{ "name": "p" }, { "name": "q" }] })");
+  for (const auto& [name, items] : {std::pair{"p", 3U}, {"r", 4U}}) {
+    const std::string item = R"({ "name": ")" + std::string(name) + "\", \"v\": ";
+    const std::string text = R"({ "based_on": "config/base.json", "list": [)" + item + "1 }, " + item + "2 }] }";
+    const BasedJson json = parse_based_json(text, project.write("file.json", text));
+    const std::vector<JsonValue>& list = json.value.find("list")->value.items;
+    REQUIRE(list.size() == items);
+    CHECK(list.back().find("name")->value.text == name);
+    CHECK(list.back().find("v")->value.number == 2);
+  }
+}
+
 TEST_CASE("What a base says stands where the file names the base, what the file says in its own place") {
   const Project project;
   project.write("base.json", "{\n\n\n \"a\": { \"x\": 1 } }");
