@@ -245,4 +245,9 @@ class Scanner {
 
 XmlScan scan_xml(const SourceText& source) { return Scanner(source).run(); }
 
+std::string_view first_element(std::string_view text) {
+  const XmlScan scan = scan_xml(SourceText(text));
+  return scan.tags.empty() ? std::string_view() : scan.tags.front().name;
+}
+
 }  // namespace kadans

@@ -69,5 +69,6 @@ struct XmlScan {
 };
 
 XmlScan scan_xml(const SourceText& source);
+std::string_view first_element(std::string_view text);  // its name, in the text; "": there is none
 
 }  // namespace kadans

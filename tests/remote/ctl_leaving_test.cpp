@@ -14,7 +14,6 @@ using namespace kadans::remote_test;
 
 namespace {
 
-const char* const kp = "posture.hip.kp_Nm_per_rad";
 const char* const spare_kp = "spare.hip.kp_Nm_per_rad";
 
 // Of a status: the behavior thread told its part.
@@ -54,14 +53,14 @@ TEST_CASE("an order expires with its client: nobody carries out later what nobod
   gone.close();
   live.server->start();
   RawClient waits(live.socket(Role::develop)), leaves(live.socket(Role::develop));
-  REQUIRE(leaves.send("{\"verb\":\"set\",\"name\":\"" + std::string(kp) + "\",\"value\":77}\n"));
+  REQUIRE(leaves.send("{\"verb\":\"set\",\"name\":\"" + std::string(hip_kp) + "\",\"value\":77}\n"));
   REQUIRE(waits.send("{\"verb\":\"set\",\"name\":\"" + std::string(spare_kp) + "\",\"value\":66}\n"));
   leaves.close();
   const auto served = [](const Json& a) { return a["clients"]["served"] >= 2; };
   (void)live.ask_until({{"verb", "status"}}, served);
   live.start();
   CHECK(Json::parse(waits.line().value())["ok"] == true);
-  CHECK(live.ask({{"verb", "get"}, {"name", kp}})["value"] == 40);
+  CHECK(live.ask({{"verb", "get"}, {"name", hip_kp}})["value"] == 40);
   CHECK(live.ask({{"verb", "get"}, {"name", spare_kp}})["value"] == 66);
   CHECK(live.ask({{"verb", "status"}})["safety"]["faults"] == 0);
   CHECK(live.ask({{"verb", "status"}})["paused"] == false);

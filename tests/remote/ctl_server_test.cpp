@@ -11,8 +11,6 @@ using namespace kadans::remote_test;
 
 namespace {
 
-const char* const kp = "posture.hip.kp_Nm_per_rad";
-
 std::string error_of(const Json& answer) { return answer.value("error", std::string("no error")); }
 bool says(const Json& answer, const std::string& text) { return answer.dump().find(text) != std::string::npos; }
 Json item(const Json& answer, const std::string& name) {
@@ -44,7 +42,7 @@ TEST_CASE("status tells of the robot, its ticks go on, and nothing plays") {
 TEST_CASE("lists name all there is, with units, ranges and values") {
   LiveInstance live;
   live.start();
-  const Json parameter = item(live.ask({{"verb", "list"}, {"what", "parameters"}}), kp);
+  const Json parameter = item(live.ask({{"verb", "list"}, {"what", "parameters"}}), hip_kp);
   CHECK(parameter["value"] == 40);
   CHECK(parameter["unit"] == "Nm/rad");
   CHECK(parameter["max"] > 40);
@@ -58,13 +56,13 @@ TEST_CASE("lists name all there is, with units, ranges and values") {
 TEST_CASE("get gives parameters and signals, and knows what was meant") {
   LiveInstance live;
   live.start();
-  CHECK(live.ask({{"verb", "get"}, {"name", kp}})["value"] == 40);
+  CHECK(live.ask({{"verb", "get"}, {"name", hip_kp}})["value"] == 40);
   const Json signal =
       live.ask_until({{"verb", "get"}, {"name", "safety.level"}}, [](const Json& a) { return a["ok"] == true; });
   CHECK(signal["kind"] == "signal");
   CHECK(signal["value"] == 0);
   CHECK(error_of(live.ask({{"verb", "get"}, {"name", "posture.hip.kp_Nm_per_rd"}}))
-            .find("did you mean '" + std::string(kp)) != std::string::npos);
+            .find("did you mean '" + std::string(hip_kp)) != std::string::npos);
 }
 
 TEST_CASE("ctl tells what the drives say of themselves") {
@@ -162,7 +160,7 @@ TEST_CASE("estop damps and then switches off, orders are refused with the reason
   CHECK(live.ask({{"verb", "estop"}}, Role::operate)["ok"] == true);
   const auto off = [](const Json& a) { return a["safety"]["level"] == "off"; };
   CHECK(off(live.ask_until({{"verb", "status"}}, off)));
-  CHECK(says(live.ask({{"verb", "set"}, {"name", kp}, {"value", 50}}), "held"));
+  CHECK(says(live.ask({{"verb", "set"}, {"name", hip_kp}, {"value", 50}}), "held"));
   const std::string who = "uid " + std::to_string(getuid()) + " (operate)";
   const Json status = live.ask({{"verb", "status"}})["safety"];
   CHECK(status["faults"] >= 1);
@@ -186,8 +184,8 @@ TEST_CASE("estop and status work although the behavior thread is dead, everythin
   LiveInstance live({.answer_max_ns = 50'000'000, .report_max_ns = 50'000'000});
   live.start(false);
   CHECK(says(live.ask({{"verb", "status"}}), "the behavior thread does not answer"));
-  CHECK(says(live.ask({{"verb", "set"}, {"name", kp}, {"value", 50}}), "the behavior thread does not answer"));
-  CHECK(live.ask({{"verb", "get"}, {"name", kp}})["value"] == 40);
+  CHECK(says(live.ask({{"verb", "set"}, {"name", hip_kp}, {"value", 50}}), "the behavior thread does not answer"));
+  CHECK(live.ask({{"verb", "get"}, {"name", hip_kp}})["value"] == 40);
   CHECK(live.ask({{"verb", "estop"}})["ok"] == true);
   const auto off = [](const Json& a) { return a["safety"]["level"] == "off"; };
   CHECK(off(live.ask_until({{"verb", "status"}}, off)));

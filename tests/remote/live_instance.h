@@ -22,6 +22,8 @@ namespace kadans::remote_test {
 
 using Json = nlohmann::json;
 
+inline constexpr const char* hip_kp = "posture.hip.kp_Nm_per_rad";  // its value is 40 at first
+
 // Gone with the test. Holds a project: a configuration with comments, a behavior "nod" and one that never ends, "wait".
 struct Project {
   test::TemporaryFolder folder;

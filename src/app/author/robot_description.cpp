@@ -35,11 +35,6 @@ std::string expanded_xacro(const std::filesystem::path& file) {
   return output.out;
 }
 
-std::string first_element(const std::string& text) {
-  const XmlScan scan = scan_xml(SourceText(text));
-  return scan.tags.empty() ? "" : std::string(scan.tags.front().name);
-}
-
 }  // namespace
 
 bool is_robot_description(const std::filesystem::path& file) {
@@ -69,8 +64,8 @@ RobotDescription read_robot_description(const std::filesystem::path& file, const
   RobotDescription robot;
   const bool is_xacro = file.extension() == ".xacro";
   robot.urdf = is_xacro ? expanded_xacro(file) : read_input_file(file.string(), urdf_max_bytes);
-  const std::string root = first_element(robot.urdf);
-  if (!is_xacro && (root == "mujoco" || (root != "robot" && file.extension() == ".xml")))
+  const std::string_view root = is_xacro ? "robot" : first_element(robot.urdf);
+  if (root == "mujoco" || (root != "robot" && file.extension() == ".xml"))
     return read_mjcf(file.string(), options, warnings);
   std::optional<XacroValues> values;
   if (!is_xacro) values = with_xacro_values(robot.urdf, file.string());

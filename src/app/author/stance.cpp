@@ -165,10 +165,16 @@ class StanceSearch {
 
   StandingPose run() {
     StandingPose stance;
-    find_wheels(stance);
-    if (stance.wheels.empty()) find_legs();
+    body_.place(position_);
+    if (is_fixed()) {
+      stance.why_held = "its root is 'world', or fixed to it";
+    } else if (const auto [low, high] = extent(); high < low) {
+      stance.why_held = "none of its links has a shape to touch with";
+    } else {
+      find_wheels(stance);
+      if (stance.wheels.empty()) find_legs(stance);
+    }
     if (legs_.size() < 2) {
-      if (stance.wheels.empty()) stance.why_held = why_not_;
       stance.stand = stance.low = position_;
       for (std::size_t i = 0; i < position_.size(); ++i) {
         if (model_.joints[i].passive() || stance.is_wheel(i)) continue;
@@ -263,10 +269,7 @@ class StanceSearch {
   }
   // Wheels, none when they and what else is as low do not carry the centre of mass.
   void find_wheels(StandingPose& stance) {
-    body_.place(position_);
-    if (is_fixed()) return (void)(why_not_ = "its root is 'world', or fixed to it");
     const auto [low, high] = extent();
-    if (high < low) return (void)(why_not_ = "none of its links has a shape to touch with");
     const double near_m = std::clamp(0.05 * (high - low), 0.005, 0.01);
     std::vector<Vector3d> carrying;
     bool any = false;
@@ -285,8 +288,9 @@ class StanceSearch {
     bool carried = true;
     across(carrying, body_.com(),
            [&](double low_m, double high_m) { carried = carried && low_m < -least_reach_m && high_m > least_reach_m; });
-    if (any) why_not_ = carried ? "its wheels have no motors" : "its wheels do not carry its centre of mass";
     if (!carried) stance.wheels.clear();
+    if (stance.wheels.empty() && any)
+      stance.why_held = carried ? "its wheels have no motors" : "its wheels do not carry its centre of mass";
     if (stance.wheels.empty()) return;
     stance.held = false;
     stance.height_m = -low;
@@ -392,16 +396,14 @@ class StanceSearch {
     return std::clamp(wanted, lower + margin, upper - margin);
   }
 
-  void find_legs() {
-    body_.place(position_);
+  void find_legs(StandingPose& stance) {
     std::vector<bool> ends(model_.links.size(), true);
     for (const Joint& joint : model_.joints) ends[joint.parent] = false;
     const auto [low, high] = extent();
     const double share = 0.1 * (high - low);
-    if (is_fixed() || high < low) return;
     const bool low_base = !body_.tips_of(0).empty() && body_.lowest(0) < low + share;
-    if (why_not_.empty())
-      why_not_ =
+    if (stance.why_held.empty())
+      stance.why_held =
           low_base ? "its base is as low as what it would stand on" : "no two links at its ends are the lowest of all";
     if (low_base) return;
     for (std::size_t i = 1; i < model_.links.size(); ++i) {
@@ -508,7 +510,6 @@ class StanceSearch {
   Body body_;
   std::vector<double> position_;
   std::vector<Leg> legs_;
-  std::string why_not_;  // stands on nothing; a clause
 };
 
 struct Carried {

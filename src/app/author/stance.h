@@ -35,7 +35,7 @@ struct StandingPose {
   std::vector<StandingWheel> wheels;  // or these, with casters where it has some
   double width_m = 0;                 // of all soles together, where they are narrowest
   bool held = true;                   // bolted to the world: without feet, or on less than 6 cm, which takes steps
-  std::string why_held;               // without feet and wheels: a clause
+  std::string why_held;               // of one without feet and wheels: a clause
   std::vector<double> stand;          // positions of the joints, rad (m of a slider)
   std::vector<double> low;            // lower, or for a robot that is bolted down a little aside
   double height_m = 0;                // of the base's frame over the ground, in `stand`; clear of it when held

@@ -149,15 +149,17 @@ void @Name@Code::initialise() noexcept {
   time_s_ = due_s_ = 0;
 }
 
-// Between two steps of the code its outputs hold; where they are shorter than a tick, several are made in it.
+// Between two steps of the code its outputs hold; where they are shorter than a tick, several are made in it, but not
+// without bound: what a long tick leaves beyond that is not made up for.
 void @Name@Code::step(double dt_s) noexcept {
+  constexpr int steps_max = 16;
   const double step_s = period_s > 0 ? period_s : dt_s;
-  while (due_s_ < 0.5 * std::min(step_s, dt_s) || due_s_ + step_s <= dt_s) {
+  for (int made = 0; made < steps_max && due_s_ < 0.5 * std::min(step_s, dt_s); ++made) {
     @type@_step(code_, time_s_, step_s, inputs.data(), outputs.data(), parameters.data());
     time_s_ += step_s;
     due_s_ += step_s;
   }
-  due_s_ -= dt_s;
+  due_s_ = std::max(due_s_ - dt_s, -steps_max * step_s);
 }
 
 @Name@::@Name@(const ObjectSetup& setup) {

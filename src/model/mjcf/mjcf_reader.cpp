@@ -568,10 +568,7 @@ class MjcfReader {
 
 }  // namespace
 
-bool is_mjcf(const std::string& text) {
-  const XmlScan scan = scan_xml(SourceText(text));
-  return !scan.tags.empty() && scan.tags.front().name == "mujoco";
-}
+bool is_mjcf(const std::string& text) { return first_element(text) == "mujoco"; }
 
 RobotDescription read_mjcf(const std::string& file, const UrdfOptions& options, std::vector<InputProblem>* warnings) {
   return read_mjcf_text(read_input_file(file, description_max_bytes), file, options, warnings);
